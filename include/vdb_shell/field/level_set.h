@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <openvdb/openvdb.h>
+
+#include <optional>
+
+namespace vdb_shell
+{
+
+struct LevelSetOptions {
+    /// Edge length of a voxel in world units. Unset: from `resolution`.
+    std::optional<double> voxel_size;
+    /// Voxels along the longest side of the bounding box (the paper: 256).
+    int resolution = 256;
+    /// Width of the band outside the surface.
+    double exterior_voxels = 3.0;
+    /// Depth of the band inside, in world units. Unset: half the diagonal of the bounding box, as
+    /// deep as any line can go (the paper, section 3).
+    std::optional<double> interior_depth;
+    /// Refuse a grid that is estimated to need more than this. Unset: what the machine has free.
+    std::optional<double> max_memory_gib;
+};
+
+/// Voxel size that the options mean for this mesh, in world units.
+/// Throws InvalidOption for sizes that are not positive and finite.
+double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& options);
+
+/// Upper estimate in bytes of the level set's memory, from the area, the bounding box and the band.
+double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
+                                const LevelSetOptions& options);
+
+/// The signed distance to a closed mesh: negative inside, name "surface", class level set, world
+/// units, background = exterior band width; the interior band reaches as deep as the options say.
+/// Throws InvalidOption (see above), GeometryError when no voxel centre lies inside ("voxel larger
+/// than the object") or when the estimated memory is over the limit, Cancelled. Same bits for any
+/// number of threads.
+openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
+                                          Interrupter* interrupter = nullptr);
+
+} // namespace vdb_shell

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// How many elements have a defect, and the first of them by index (at most kFirstShown).
+template <typename Element> struct Defect {
+    static constexpr std::size_t kFirstShown = 8;
+    std::size_t count = 0;
+    std::vector<Element> first;
+};
+using Edge = std::array<std::uint32_t, 2>;         ///< two point indices, smaller first
+using TrianglePair = std::array<std::uint32_t, 2>; ///< two triangle indices, smaller first
+
+/// One edge-connected piece of the surface.
+struct Component {
+    std::size_t triangles = 0;
+    std::uint32_t first_triangle = 0;
+    double volume = 0; ///< signed; meaningful when the component is closed
+    bool closed = false;
+    int euler = 0;
+    /// How many other closed components enclose this one. Even: an outer surface. Odd: a cavity,
+    /// which has to be oriented the other way round (its own signed volume is negative).
+    int nesting_depth = 0;
+    bool inside_out = false; ///< closed, but oriented against its nesting depth
+};
+
+struct MeshCheck {
+    std::size_t points = 0, triangles = 0;
+    Defect<Edge> boundary_edges;     ///< one incident triangle
+    Defect<Edge> non_manifold_edges; ///< three or more incident triangles
+    Defect<Edge> inconsistent_edges; ///< two triangles that run through the edge the same way
+    Defect<std::uint32_t> non_manifold_vertices; ///< incident triangles do not form one fan
+    Defect<std::uint32_t> degenerate_triangles;  ///< exactly zero area (exact arithmetic)
+    Defect<std::uint32_t> duplicate_triangles;   ///< same three points as an earlier triangle
+    Defect<TrianglePair> self_intersections; ///< touching other than in shared vertices and edges
+    std::vector<Component> components;       ///< by first triangle
+    double volume = 0;                       ///< sum of the signed volumes
+
+    bool closed() const { return boundary_edges.count == 0; }
+    bool manifold() const { return non_manifold_edges.count + non_manifold_vertices.count == 0; }
+    bool embedded() const { return self_intersections.count == 0; }
+    std::size_t inside_out_components() const;
+};
+
+struct CheckOptions {
+    /// Accept surfaces that cross themselves: they have a level set and can be stepped, but no
+    /// shell of theirs can be free of overlaps.
+    bool allow_self_intersections = false;
+    /// Turn components that are oriented against their nesting depth, instead of refusing them.
+    bool turn_inside_out = false;
+};
+
+/// Looks at everything that the stages after this one rely on. Exact predicates, no tolerance.
+/// Never throws for a bad mesh: the findings are the result.
+MeshCheck check_mesh(const TriangleMesh& mesh);
+
+/// Throws GeometryError with counts and first offenders by index when the mesh cannot be worked
+/// with under `options`; `name` (the file) opens the message, which ends in the option that helps,
+/// if any.
+void require_usable(const MeshCheck& check, const CheckOptions& options, const std::string& name);
+
+/// The mesh with every inside-out component reversed.
+TriangleMesh turn_outward(TriangleMesh mesh, const MeshCheck& check);
+
+} // namespace vdb_shell

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+
+struct ReadOptions {
+    /// Merge vertices of exactly equal float32 position (seams of OBJ files, every STL file). Off,
+    /// the vertices stay as the file has them.
+    bool weld = true;
+};
+
+/// What a file said and what became of it. `file_*` is counted by a scan of the file of our own,
+/// independent of the reader, so that nothing can be lost silently.
+struct ReadReport {
+    std::string format;                     ///< "OBJ", "PLY (binary)", ...
+    std::size_t file_vertices = 0;          ///< vertices that the file declares or lists
+    std::size_t file_faces = 0;             ///< faces that the file declares or lists
+    std::size_t polygons_triangulated = 0;  ///< faces of more than three corners
+    std::size_t welded_vertices = 0;        ///< vertices merged into an equal one before them
+    std::size_t unused_vertices = 0;        ///< vertices of the file that no triangle uses; dropped
+    std::vector<std::size_t> skipped_faces; ///< file faces left out: a corner repeats after welding
+};
+
+struct ReadResult {
+    TriangleMesh mesh;
+    ReadReport report;
+};
+
+/// Reads OBJ, PLY, OFF or STL (ASCII and binary where the format has both), by extension.
+/// Polygons are triangulated (fan from the corner that keeps a planar polygon's orientation).
+/// Throws ReadError with file, element and value: missing, empty or truncated file, unknown
+/// extension, a coordinate that is not finite in float32, a face index out of range, no faces.
+/// Guarantee: file_faces = polygons kept + skipped_faces.size(); every triangle of the mesh indexes
+/// three different points; points stand in the file's order.
+ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
+
+/// Writes OBJ, PLY (binary), OFF or STL (binary), by extension. Coordinates are written so that
+/// reading them gives the same float32 bit for bit. The file appears whole or not at all.
+/// Throws WriteError; InvalidOption for an unknown extension.
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+
+} // namespace vdb_shell

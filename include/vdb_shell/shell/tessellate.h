@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/shell/prism_shell.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// How the diagonals of the prisms' quads are chosen. A quad over the edge {u,v} has its diagonal
+/// from outer u to inner v when u comes before v; prisms on both sides see the same diagonal, so
+/// the tets are conforming by construction (docs/theory: any order without a cycle inside a
+/// triangle will do).
+enum class SplitRule {
+    vertex_index,      ///< smaller index first: stable when lengths change
+    length_descending, ///< longest pillar first, ties by index: the best shaped tets
+    length_ascending,  ///< shortest pillar first, ties by index
+    ripple,            ///< the randomised method of [9], for comparison
+};
+
+struct SplitOptions {
+    SplitRule rule = SplitRule::length_descending;
+    std::uint64_t seed = 1; ///< ripple only
+};
+
+/// Per triangle, its three corners (0,1,2) from first to last in the order that fixes the
+/// diagonals. A prism with order x,y,z splits into (ax,ay,az,bz), (ax,ay,by,bz), (ax,bx,by,bz).
+struct PrismSplit {
+    std::vector<std::array<std::uint8_t, 3>> order;
+    std::size_t ripples = 0; ///< inconsistencies that the ripple method had to pass on
+};
+
+struct TetMesh {
+    std::vector<openvdb::Vec3s>
+        points; ///< all outer vertices, then the inner vertex of each un-pinned one
+    std::vector<openvdb::Vec4I> tets; ///< det(b-a, c-a, d-a) > 0 when the tet is not inverted
+    std::vector<std::uint32_t> prism; ///< per tet: the triangle above it
+    std::vector<std::uint32_t> source_vertex; ///< per point: the surface vertex it belongs to
+    std::vector<std::uint8_t> layer;          ///< per point: 0 outer, 1 inner
+};
+
+/// Chooses the diagonals. Deterministic; the ripple method for a given seed.
+/// Throws GeometryError when the ripple method cannot become consistent within its bound (it has no
+/// proof of convergence; the other rules cannot fail).
+PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options);
+
+/// The tets in order of their prisms: three a prism, less one for each pinned corner (its pillar's
+/// tet). Precondition: `split` is consistent, as split_prisms gives it.
+TetMesh make_tets(const PrismShell& shell, const PrismSplit& split);
+
+} // namespace vdb_shell

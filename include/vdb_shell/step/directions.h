@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+enum class DirectionSource {
+    pseudo_normal, ///< angle-weighted pseudo-normal of the mesh, [15] of the paper
+    gradient,      ///< the field's own gradient at the vertex, eq. 5
+};
+
+struct DirectionOptions {
+    DirectionSource source = DirectionSource::pseudo_normal;
+    /// Tilts each direction by a random tangential amount of at most this angle, against alignment
+    /// with a symmetry line (the paper, section 2). 0: none.
+    double perturbation_radians = 0.0;
+    std::uint64_t seed = 1;
+};
+
+/// Per vertex, index for index with the mesh's points.
+struct Directions {
+    std::vector<openvdb::Vec3d> inward; ///< unit length; zero where none could be found
+    /// Smallest cosine between -inward and the normals of the incident triangles. Not positive: the
+    /// direction leaves some incident triangle on its outer side, and its prism inverts at any
+    /// length.
+    std::vector<double> visibility;
+};
+
+/// Angle-weighted pseudo-normals, outward, unit length (zero where the incident triangles cancel).
+std::vector<openvdb::Vec3d> pseudo_normals(const TriangleMesh& mesh);
+
+/// Smallest cosine between `outward` and the normals of the triangles around each vertex.
+std::vector<double> visibility_of(const TriangleMesh& mesh,
+                                  const std::vector<openvdb::Vec3d>& outward);
+
+/// Directions of the extrusion lines. The level set is read only for DirectionSource::gradient.
+/// The same seed gives the same directions, whatever the number of threads.
+Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
+                              const DirectionOptions& options);
+
+} // namespace vdb_shell

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/step/directions.h"
+
+#include <openvdb/openvdb.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// When a line stops. g(q) is the gradient of the field at q: central differences of the grid,
+/// interpolated trilinearly and not normalised, as the paper's authors compute it; n = -inward.
+enum class StopTest {
+    none,            ///< never by the field: only thickness and limits bound the line
+    normal,          ///< eq. 10: go on while g(q) . n > rho
+    start_gradient,  ///< eq. 7: go on while g(q) . g(p) > rho
+    distance,        ///< eq. 8: go on while |e + phi(q)| < distance_threshold_voxels
+    bisection,       ///< eq. 1 by bisection on e = -phi(q): the paper's baseline
+    relative_normal, ///< go on while g(q) . n > rho * s0, s0 taken where the stencil is clear of
+                     ///< the start
+};
+
+/// Why a line ended where it did.
+enum class StopReason : std::uint8_t {
+    none,         ///< not stepped
+    stop_test,    ///< the stop test failed
+    thickness,    ///< reached the user's thickness
+    limit,        ///< reached a thin-shell limit
+    left_solid,   ///< phi became positive: the line left the solid again
+    left_band,    ///< reached the depth of the grid's interior band
+    no_direction, ///< no usable direction at this vertex
+    converged,    ///< bisection closed its interval
+    iterations,   ///< bisection hit its iteration limit
+};
+inline constexpr int kStopReasonCount = 9;
+
+/// Name for reports: "stop_test", "thickness", ...
+const char* name_of(StopReason reason);
+
+struct LineStepOptions {
+    StopTest test = StopTest::normal;
+    /// rho = cos(alpha) of eq. 10 and 11; the paper uses 0.9 (alpha = 0.4363 radians).
+    double rho = 0.9;
+    /// Increment along the line; 0.5 is eq. 6.
+    double step_voxels = 0.5;
+    /// Eq. 8's threshold; also bisection's, on |e + phi|.
+    double distance_threshold_voxels = 1.0;
+    int bisection_iterations = 1000;
+    /// relative_normal measures its reference slope s0 at this distance from the start.
+    double reference_voxels = 1.5;
+    /// Largest length of any line, world units (epsilon_user of eq. 1). Unset: no such bound.
+    std::optional<double> thickness;
+};
+
+/// One entry per vertex.
+struct LineLengths {
+    std::vector<double> length; ///< world units, >= 0; 0 = the vertex stays where it is
+    std::vector<std::uint32_t> steps;
+    std::vector<StopReason> reason;
+};
+
+/// Steps from every vertex inward along its direction, in parallel over VDB samplers.
+/// `thickness_grid` (may be null): a float grid of largest lengths, sampled at each vertex; a
+/// negative or non-finite sample throws GeometryError with the vertex. Throws InvalidOption when an
+/// option is out of its range, Cancelled. Guarantee: length <= thickness and <= the sampled
+/// thickness; same bits for any number of threads. Cost: O(V N), eq. 12.
+LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
+                      const Directions& directions, const LineStepOptions& options,
+                      const openvdb::FloatGrid* thickness_grid = nullptr,
+                      Interrupter* interrupter = nullptr);
+
+} // namespace vdb_shell

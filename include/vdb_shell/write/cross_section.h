@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/shell/tessellate.h"
+
+#include <filesystem>
+
+namespace vdb_shell
+{
+
+enum class Axis { x, y, z };
+
+struct CrossSectionOptions {
+    Axis axis = Axis::z;     ///< normal of the cutting plane
+    double position = 0.5;   ///< share of the bounding box along the axis
+    int width_pixels = 1024; ///< of the longer side of the picture
+};
+
+/// Draws the shell cut by a plane, as a PNG: prisms in alternating tints, tet edges, the outer and
+/// inner outlines, places that more than one tet covers in red. Throws WriteError; InvalidOption
+/// for a width outside [16, 16384] or a position outside [0, 1].
+void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,
+                         const TetMesh& tets, const CrossSectionOptions& options = {});
+
+} // namespace vdb_shell

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/coverage.h"
+#include "vdb_shell/certify/quality.h"
+#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/field/smooth.h"
+#include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/step/line_step.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// What one stage cost. Peak memory is the process's high-water mark at the stage's end.
+struct StageCost {
+    std::string stage;
+    double seconds = 0;
+    std::uint64_t peak_memory_bytes = 0;
+};
+
+struct FieldReport {
+    double voxel_size = 0;
+    std::uint64_t active_voxels = 0;
+    std::uint64_t memory_bytes = 0;
+    double interior_depth = 0; ///< world units, -(smallest value)
+    SmoothReport smooth;
+};
+
+struct LineReport {
+    double min_visibility = 0;
+    std::size_t blind_vertices = 0; ///< visibility <= 0
+    std::size_t stuck_vertices = 0; ///< length 0
+    std::size_t steps = 0;
+    std::array<std::size_t, kStopReasonCount> stops{}; ///< vertices by StopReason
+    Spread length;                                     ///< world units
+    Spread length_voxels;
+};
+
+/// Everything that is known about one run, as numbers. Names no time of day and no machine.
+struct ShellReport {
+    std::string source; ///< file name of the surface, without its folder
+    std::optional<ReadReport> read;
+    MeshCheck mesh;
+    FieldReport field;
+    LineReport lines;
+    std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
+    TetSigns signs;
+    Conformity conformity;
+    QualityReport quality;
+    double solid_volume = 0;
+    double shell_volume = 0; ///< sum of signed tet volumes
+    double fill = 0;         ///< shell_volume / solid_volume
+    Coverage coverage;
+    std::vector<StageCost> stages;
+};
+
+/// The report as JSON text, keys in a fixed order, two-space indent. Angles are given in degrees,
+/// in keys that end in `_degrees`. `with_costs` off leaves out seconds and memory, which differ
+/// from run to run.
+std::string report_json(const ShellReport& report, bool with_costs = true);
+
+/// The report for a person: some twenty lines.
+std::string report_text(const ShellReport& report);
+
+} // namespace vdb_shell

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/shell/tessellate.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// Extensions that write_tets knows: ".vtu", ".node", ".ele", ".mesh", ".msh".
+const std::vector<std::string>& tet_file_extensions();
+
+/// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name
+/// writes both), Medit (.mesh), Gmsh 4.1 (.msh). Coordinates are the float32 values exactly:
+/// binary, or nine significant digits and more. Data beside them, where the format has a place: per
+/// point source vertex and layer, per tet its prism. Files appear whole or not at all. Throws
+/// WriteError, InvalidOption.
+void write_tets(const std::filesystem::path& path, const TetMesh& tets);
+
+} // namespace vdb_shell

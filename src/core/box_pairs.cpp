@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/box_pairs.h"
+
+#include "core/parallel.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using Pair = std::array<std::uint32_t, 2>;
+using PairsByThread = tbb::enumerable_thread_specific<std::vector<Pair>>;
+
+void store_bounds(const RTCBoundsFunctionArguments* arguments)
+{
+    const auto& boxes = *static_cast<const std::vector<Box>*>(arguments->geometryUserPtr);
+    const Box& box = boxes[arguments->primID];
+    RTCBounds& bounds = *arguments->bounds_o;
+    bounds.lower_x = box.low[0], bounds.lower_y = box.low[1], bounds.lower_z = box.low[2];
+    bounds.upper_x = box.high[0], bounds.upper_y = box.high[1], bounds.upper_z = box.high[2];
+}
+
+void store_pairs(void* user, RTCCollision* collisions, unsigned int count)
+{
+    std::vector<Pair>& pairs = static_cast<PairsByThread*>(user)->local();
+    for (unsigned int i = 0; i < count; ++i) {
+        const std::uint32_t first = collisions[i].primID0, second = collisions[i].primID1;
+        if (first < second)
+            pairs.push_back({first, second});
+        if (second < first)
+            pairs.push_back({second, first});
+    }
+}
+
+} // namespace
+
+std::vector<Box> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
+                                const std::vector<openvdb::Vec3I>& triangles)
+{
+    std::vector<Box> boxes(triangles.size());
+    for_each_index(triangles.size(), [&](std::size_t t) {
+        Box box{points[triangles[t][0]], points[triangles[t][0]]};
+        for (int corner = 1; corner < 3; ++corner) {
+            const openvdb::Vec3s& p = points[triangles[t][corner]];
+            box.low = openvdb::math::minComponent(box.low, p);
+            box.high = openvdb::math::maxComponent(box.high, p);
+        }
+        boxes[t] = box;
+    });
+    return boxes;
+}
+
+std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes)
+{
+    if (boxes.empty())
+        return {};
+    RTCDevice device = rtcNewDevice(nullptr);
+    if (!device)
+        throw std::runtime_error("Embree could not be started");
+    RTCScene scene = rtcNewScene(device);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(boxes.size()));
+    rtcSetGeometryUserData(geometry, const_cast<std::vector<Box>*>(&boxes));
+    rtcSetGeometryBoundsFunction(geometry, store_bounds, nullptr);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcCommitScene(scene);
+
+    PairsByThread by_thread;
+    rtcCollide(scene, scene, store_pairs, &by_thread);
+    rtcReleaseGeometry(geometry);
+    rtcReleaseScene(scene);
+    const bool ok = rtcGetDeviceError(device) == RTC_ERROR_NONE;
+    rtcReleaseDevice(device);
+    if (!ok)
+        throw std::runtime_error("Embree could not collide the bounding boxes");
+
+    std::vector<Pair> pairs;
+    for (const std::vector<Pair>& part : by_thread)
+        pairs.insert(pairs.end(), part.begin(), part.end());
+    tbb::parallel_sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/exact.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/intersections.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace vdb_shell::exact
+{
+namespace
+{
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point2 = Kernel::Point_2;
+using Point3 = Kernel::Point_3;
+using Segment = Kernel::Segment_3;
+using Triangle = Kernel::Triangle_3;
+
+Point3 point3(const openvdb::Vec3s& p)
+{
+    return {p[0], p[1], p[2]};
+}
+Point2 point2(const openvdb::Vec3s& p)
+{
+    return {p[0], p[1]};
+}
+
+struct SharedCorners {
+    int count = 0;
+    std::array<int, 3> in_first{}, in_second{}; ///< shared corners first, then the others
+};
+
+SharedCorners match_corners(const openvdb::Vec3I& first, const openvdb::Vec3I& second)
+{
+    SharedCorners shared;
+    std::array<bool, 3> first_used{}, second_used{};
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            if (first[i] != second[j])
+                continue;
+            const auto slot = static_cast<std::size_t>(shared.count++);
+            shared.in_first[slot] = i;
+            shared.in_second[slot] = j;
+            first_used[static_cast<std::size_t>(i)] = second_used[static_cast<std::size_t>(j)] =
+                true;
+        }
+    }
+    auto append_unused = [&](std::array<int, 3>& corners, const std::array<bool, 3>& used) {
+        auto slot = static_cast<std::size_t>(shared.count);
+        for (int i = 0; i < 3; ++i)
+            if (!used[static_cast<std::size_t>(i)])
+                corners[slot++] = i;
+    };
+    append_unused(shared.in_first, first_used);
+    append_unused(shared.in_second, second_used);
+    return shared;
+}
+
+} // namespace
+
+int orient3d(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c,
+             const openvdb::Vec3s& d)
+{
+    // Static filter: the float32 differences are rounded once each in double; 7.8e-16 times the
+    // permanent bounds the error of the determinant (Shewchuk 1997, "Adaptive Precision
+    // Floating-Point Arithmetic and Fast Robust Geometric Predicates", bound A of ORIENT3D).
+    const double bx = double(b[0]) - a[0], by = double(b[1]) - a[1], bz = double(b[2]) - a[2];
+    const double cx = double(c[0]) - a[0], cy = double(c[1]) - a[1], cz = double(c[2]) - a[2];
+    const double dx = double(d[0]) - a[0], dy = double(d[1]) - a[1], dz = double(d[2]) - a[2];
+    const double xy = bx * cy, yx = by * cx, yz = by * cz, zy = bz * cy, zx = bz * cx, xz = bx * cz;
+    const double det = dz * (xy - yx) + dx * (yz - zy) + dy * (zx - xz);
+    const double permanent = std::abs(dz) * (std::abs(xy) + std::abs(yx)) +
+                             std::abs(dx) * (std::abs(yz) + std::abs(zy)) +
+                             std::abs(dy) * (std::abs(zx) + std::abs(xz));
+    constexpr double kErrorBound = 7.8e-16;
+    // Products of float32 differences cannot underflow in double unless they are subnormal squares;
+    // the tiny absolute term sends those to the exact path.
+    constexpr double kUnderflowGuard = 1e-280;
+    const double bound = kErrorBound * permanent + kUnderflowGuard;
+    if (det > bound)
+        return 1;
+    if (det < -bound)
+        return -1;
+    return static_cast<int>(CGAL::orientation(point3(a), point3(b), point3(c), point3(d)));
+}
+
+bool collinear(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c)
+{
+    return CGAL::collinear(point3(a), point3(b), point3(c));
+}
+
+bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
+                     const openvdb::Vec3I& second)
+{
+    const SharedCorners shared = match_corners(first, second);
+    auto p = [&](std::size_t slot) { return point3(points[first[shared.in_first[slot]]]); };
+    auto q = [&](std::size_t slot) { return point3(points[second[shared.in_second[slot]]]); };
+    switch (shared.count) {
+    case 0:
+        return CGAL::do_intersect(Triangle(p(0), p(1), p(2)), Triangle(q(0), q(1), q(2)));
+    case 1:
+        // The common part is convex and holds the shared corner; if it holds more, it reaches the
+        // opposite edge of one of the two.
+        return CGAL::do_intersect(Segment(p(1), p(2)), Triangle(q(0), q(1), q(2))) ||
+               CGAL::do_intersect(Segment(q(1), q(2)), Triangle(p(0), p(1), p(2)));
+    case 2:
+        return CGAL::orientation(p(0), p(1), p(2), q(2)) == CGAL::COPLANAR &&
+               CGAL::coplanar_orientation(p(0), p(1), p(2), q(2)) == CGAL::POSITIVE;
+    default:
+        return true;
+    }
+}
+
+namespace
+{
+
+/// For the half-open rule: whether the directed edge a->b, seen from above, passes the point on its
+/// positive-x side while crossing the point's y. A vertex at exactly the point's y counts as below
+/// it, so that consecutive edges agree.
+bool crosses_ray(const Point2& p, const Point2& a, const Point2& b)
+{
+    const bool a_above = a.y() > p.y(), b_above = b.y() > p.y();
+    if (a_above == b_above)
+        return false;
+    const CGAL::Orientation side = CGAL::orientation(a, b, p);
+    return b_above ? side == CGAL::LEFT_TURN : side == CGAL::RIGHT_TURN;
+}
+
+} // namespace
+
+int crossing_above(const openvdb::Vec3s& point, const openvdb::Vec3s& a, const openvdb::Vec3s& b,
+                   const openvdb::Vec3s& c, bool& on_surface)
+{
+    const Point2 p = point2(point), pa = point2(a), pb = point2(b), pc = point2(c);
+    const CGAL::Orientation turn = CGAL::orientation(pa, pb, pc);
+    const int side = orient3d(a, b, c, point); // < 0: the point lies behind the triangle
+    if (side == 0 && !collinear(a, b, c)) {
+        const Triangle triangle(point3(a), point3(b), point3(c));
+        on_surface = on_surface || triangle.has_on(point3(point));
+    }
+    if (turn == CGAL::COLLINEAR)
+        return 0;
+    const bool inside = crosses_ray(p, pa, pb) ^ crosses_ray(p, pb, pc) ^ crosses_ray(p, pc, pa);
+    if (!inside)
+        return 0;
+    const int up = turn == CGAL::LEFT_TURN ? 1 : -1;
+    return side == -up ? up : 0;
+}
+
+} // namespace vdb_shell::exact

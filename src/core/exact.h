@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Predicates whose sign is always right: CGAL's filtered kernel on the float32 coordinates
+// themselves.
+
+#include <openvdb/Types.h>
+
+#include <vector>
+
+namespace vdb_shell::exact
+{
+
+/// Sign (-1, 0, 1) of det(b-a, c-a, d-a).
+int orient3d(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c,
+             const openvdb::Vec3s& d);
+
+/// Whether the three points lie on one line.
+bool collinear(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c);
+
+/// Whether two triangles touch anywhere but in the corners and edges that they share *by index*:
+/// no shared corner - any common point; one - a common point besides it; two - one folded flat onto
+/// the other; three - always. Precondition: neither triangle is degenerate.
+bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
+                     const openvdb::Vec3I& second);
+
+/// Whether the vertical line through `point` (parallel to z) crosses the triangle above it, with
+/// the half-open rule that counts a shared edge or corner for exactly one of its triangles. 0: no
+/// crossing above; +1 / -1: crossed, the triangle's normal pointing up / down. `on_surface` is set
+/// when the point lies on the triangle.
+int crossing_above(const openvdb::Vec3s& point, const openvdb::Vec3s& a, const openvdb::Vec3s& b,
+                   const openvdb::Vec3s& c, bool& on_surface);
+
+} // namespace vdb_shell::exact

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/core/interrupter.h"
+
+namespace vdb_shell
+{
+
+/// Frames a stage for the interrupter, which may be null.
+class StageProgress
+{
+public:
+    StageProgress(Interrupter* interrupter, const char* name) : interrupter_(interrupter)
+    {
+        if (interrupter_)
+            interrupter_->start(name);
+        stop_if_interrupted(0);
+    }
+    ~StageProgress()
+    {
+        if (interrupter_)
+            interrupter_->end();
+    }
+    StageProgress(const StageProgress&) = delete;
+    StageProgress& operator=(const StageProgress&) = delete;
+
+    /// Throws Cancelled when the caller asked to stop. Call it from the stage's own thread only.
+    void stop_if_interrupted(int percent) const
+    {
+        if (interrupter_ && interrupter_->wasInterrupted(percent))
+            throw Cancelled();
+    }
+
+private:
+    Interrupter* interrupter_;
+};
+
+} // namespace vdb_shell

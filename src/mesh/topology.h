@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// Triangles around each vertex in ascending order: those of vertex v stand at [offset[v],
+/// offset[v+1]).
+struct VertexTriangles {
+    std::vector<std::uint32_t> offset, triangle;
+
+    struct Range {
+        const std::uint32_t *first, *last;
+        const std::uint32_t* begin() const { return first; }
+        const std::uint32_t* end() const { return last; }
+        std::size_t size() const { return static_cast<std::size_t>(last - first); }
+    };
+    Range around(std::size_t vertex) const
+    {
+        return {triangle.data() + offset[vertex], triangle.data() + offset[vertex + 1]};
+    }
+};
+VertexTriangles triangles_around_vertices(std::size_t vertex_count,
+                                          const std::vector<openvdb::Vec3I>& triangles);
+
+/// One use of an edge by a triangle's side `side` (corner side -> corner side+1).
+struct EdgeUse {
+    std::array<std::uint32_t, 2> edge; ///< smaller vertex first
+    std::uint32_t triangle;
+    std::uint8_t side;
+    bool forward; ///< the triangle runs from the smaller to the larger vertex
+};
+
+/// All edge uses, sorted by edge, then triangle: uses of one edge stand together.
+std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangles);
+
+} // namespace vdb_shell

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+namespace vdb_shell
+{
+
+Bounds bounds_of(const std::vector<openvdb::Vec3s>& points)
+{
+    Bounds bounds{openvdb::Vec3d(points.front()), openvdb::Vec3d(points.front())};
+    for (const openvdb::Vec3s& p : points) {
+        bounds.low = openvdb::math::minComponent(bounds.low, openvdb::Vec3d(p));
+        bounds.high = openvdb::math::maxComponent(bounds.high, openvdb::Vec3d(p));
+    }
+    return bounds;
+}
+
+double diagonal_of(const Bounds& bounds)
+{
+    return (bounds.high - bounds.low).length();
+}
+
+double signed_volume(const std::vector<openvdb::Vec3s>& points,
+                     const std::vector<openvdb::Vec3I>& triangles)
+{
+    if (points.empty())
+        return 0.0;
+    const Bounds bounds = bounds_of(points);
+    const openvdb::Vec3d centre = 0.5 * (bounds.low + bounds.high);
+    double six_volumes = 0.0;
+    for (const openvdb::Vec3I& t : triangles) {
+        const openvdb::Vec3d a = openvdb::Vec3d(points[t[0]]) - centre;
+        const openvdb::Vec3d b = openvdb::Vec3d(points[t[1]]) - centre;
+        const openvdb::Vec3d c = openvdb::Vec3d(points[t[2]]) - centre;
+        six_volumes += a.dot(b.cross(c));
+    }
+    return six_volumes / 6.0;
+}
+
+} // namespace vdb_shell

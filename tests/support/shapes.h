@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+// Surfaces whose volume, distances and medial axis are known; closed, outward, unless said
+// otherwise.
+
+namespace vdb_shell::test
+{
+
+TriangleMesh unit_tetrahedron();                                         ///< corners 0, x, y, z
+TriangleMesh box(const openvdb::Vec3d& low, const openvdb::Vec3d& high); ///< 8 points, 12 triangles
+TriangleMesh icosphere(double radius,
+                       int subdivisions); ///< 20 * 4^n triangles, vertices on the sphere
+TriangleMesh torus(double major, double minor, int around, int across);
+/// A box whose faces are split into n x n quads (2 triangles each): flat vertices as well as
+/// corners.
+TriangleMesh gridded_box(const openvdb::Vec3d& low, const openvdb::Vec3d& high, int n);
+
+TriangleMesh translated(TriangleMesh mesh, const openvdb::Vec3d& by);
+TriangleMesh reversed(TriangleMesh mesh); ///< every triangle turned round
+TriangleMesh joined(TriangleMesh first, const TriangleMesh& second);    ///< both, not welded
+TriangleMesh without_triangle(TriangleMesh mesh, std::size_t triangle); ///< an open surface
+
+} // namespace vdb_shell::test
