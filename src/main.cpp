@@ -1,5 +1,91 @@
 // SPDX-License-Identifier: Apache-2.0
-int main()
+#include "vdb_shell/core/error.h"
+
+#include "command/build_command.h"
+#include "command/exit_code.h"
+#include "command/file_commands.h"
+#include "command/signals.h"
+
+#include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
+
+#include <functional>
+#include <iostream>
+#include <memory>
+
+namespace
 {
-    return 0;
+
+using namespace vdb_shell;
+using namespace vdb_shell::command;
+
+int run(int argc, char** argv)
+{
+    CLI::App app{"Thick shells of prisms and tets from triangle surfaces, as OpenVDB volumes.",
+                 "vdb_shell"};
+    app.set_version_flag("--version", "vdb_shell " VDB_SHELL_VERSION);
+    app.require_subcommand(1);
+    app.fallthrough();
+    int threads = 0;
+    app.add_option("--threads", threads, "Threads to use; 0 is all. Results do not depend on it")
+        ->capture_default_str()
+        ->check(CLI::NonNegativeNumber);
+
+    BuildArguments build;
+    FileArguments info, convert, check;
+    CLI::App& build_app = *app.add_subcommand("build", "Build a shell from a triangle surface");
+    CLI::App& info_app = *app.add_subcommand("info", "Print what a shell's .vdb holds");
+    CLI::App& convert_app =
+        *app.add_subcommand("convert", "Write other formats from a shell's .vdb");
+    CLI::App& check_app =
+        *app.add_subcommand("check", "Verify that a shell's .vdb is what it claims");
+    add_build_command(build_app, build);
+    add_info_command(info_app, info);
+    add_convert_command(convert_app, convert);
+    add_check_command(check_app, check);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? success : usage_error;
+    }
+
+    std::unique_ptr<tbb::global_control> limit;
+    if (threads > 0)
+        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(threads));
+    catch_signals();
+    if (build_app.parsed())
+        return run_build(build);
+    if (info_app.parsed())
+        return run_info(info);
+    if (convert_app.parsed())
+        return run_convert(convert);
+    return run_check(check);
+}
+
+int status_of(const std::exception& error)
+{
+    if (dynamic_cast<const Cancelled*>(&error))
+        return caught_signal() ? signal_base + caught_signal() : internal_error;
+    if (dynamic_cast<const InvalidOption*>(&error))
+        return usage_error;
+    if (dynamic_cast<const ReadError*>(&error))
+        return read_error;
+    if (dynamic_cast<const GeometryError*>(&error))
+        return geometry_error;
+    if (dynamic_cast<const WriteError*>(&error))
+        return write_error;
+    return internal_error;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        std::cerr << "vdb_shell: " << error.what() << '\n';
+        return status_of(error);
+    }
 }

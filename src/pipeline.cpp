@@ -1,2 +1,120 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/pipeline.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "core/option_names.h"
+#include "core/stage_clock.h"
+#include "pipeline_figures.h"
+
+#include <nlohmann/json.hpp>
+#include <openvdb/tools/Count.h>
+
+#include <algorithm>
+
+namespace vdb_shell
+{
+namespace
+{
+
+void require_a_bound(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
+{
+    if (options.line_step.test == StopTest::none && options.limits.limit == Limit::none &&
+        !options.line_step.thickness && !thickness_grid)
+        throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "
+                            "would end the lines");
+}
+
+/// A band no deeper than the longest line that the user allows.
+LevelSetOptions band_for(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
+{
+    LevelSetOptions band = options.level_set;
+    if (band.interior_depth)
+        return band;
+    if (options.line_step.thickness)
+        band.interior_depth = options.line_step.thickness;
+    if (thickness_grid) {
+        const double painted = openvdb::tools::minMax(thickness_grid->tree()).max();
+        const double background = thickness_grid->background();
+        const double deepest = std::max(painted, background);
+        if (deepest > 0.0)
+            band.interior_depth = std::min(band.interior_depth.value_or(deepest), deepest);
+    }
+    return band;
+}
+
+} // namespace
+
+ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
+                        const std::string& name, const openvdb::FloatGrid* thickness_grid,
+                        Interrupter* interrupter)
+{
+    require_a_bound(options, thickness_grid);
+    ShellResult r;
+    r.report.source = name;
+    StageClock clock(r.report.stages);
+
+    clock.run("check", [&] {
+        r.report.mesh = check_mesh(mesh);
+        require_usable(r.report.mesh, options.check, name);
+        r.surface = turn_outward(mesh, r.report.mesh);
+    });
+    clock.run("level set", [&] {
+        r.level_set = mesh_to_level_set(r.surface, band_for(options, thickness_grid), interrupter);
+    });
+    clock.run("smooth", [&] {
+        r.report.field.smooth =
+            smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
+    });
+    clock.run("directions", [&] {
+        r.directions = compute_directions(r.surface, *r.level_set, options.directions);
+    });
+    clock.run("line stepping", [&] {
+        r.lengths = line_step(r.surface, *r.level_set, r.directions, options.line_step,
+                              thickness_grid, interrupter);
+    });
+    clock.run("limits", [&] {
+        apply_limits(r.lengths, vertex_limits(r.surface, r.directions, options.limits.limit));
+    });
+    clock.run("prisms", [&] { r.shell = extrude(r.surface, r.directions, r.lengths); });
+    clock.run("tets", [&] {
+        r.split = split_prisms(r.shell, options.split);
+        r.tets = make_tets(r.shell, r.split);
+    });
+    clock.run("figures", [&] { measure_result(r); });
+    clock.run("coverage", [&] {
+        r.report.coverage = estimate_coverage(r.surface, r.tets, options.coverage, interrupter);
+    });
+    return r;
+}
+
+std::string options_json(const ShellOptions& options)
+{
+    auto or_null = [](const auto& optional) {
+        return optional ? nlohmann::ordered_json(*optional) : nlohmann::ordered_json(nullptr);
+    };
+    nlohmann::ordered_json json;
+    json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
+                     {"turn_inside_out", options.check.turn_inside_out}};
+    json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},
+                         {"resolution", options.level_set.resolution},
+                         {"exterior_voxels", options.level_set.exterior_voxels},
+                         {"interior_depth", or_null(options.level_set.interior_depth)}};
+    json["smooth"] = {{"iterations", options.smooth.iterations}};
+    json["directions"] = {{"source", name_in_table(options.directions.source)},
+                          {"perturbation_radians", options.directions.perturbation_radians},
+                          {"seed", options.directions.seed}};
+    json["line_step"] = {{"test", name_in_table(options.line_step.test)},
+                         {"rho", options.line_step.rho},
+                         {"step_voxels", options.line_step.step_voxels},
+                         {"distance_threshold_voxels", options.line_step.distance_threshold_voxels},
+                         {"bisection_iterations", options.line_step.bisection_iterations},
+                         {"reference_voxels", options.line_step.reference_voxels},
+                         {"thickness", or_null(options.line_step.thickness)}};
+    json["limits"] = {{"limit", name_in_table(options.limits.limit)}};
+    json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};
+    json["coverage"] = {{"samples", options.coverage.samples}, {"seed", options.coverage.seed}};
+    return json.dump(2);
+}
+
+} // namespace vdb_shell

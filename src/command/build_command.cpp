@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command/build_command.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "command/bind.h"
+#include "command/exit_code.h"
+#include "command/signals.h"
+#include "core/atomic_file.h"
+#include "core/stage_clock.h"
+
+#include <iostream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+void add_surface_options(CLI::App& app, BuildArguments& arguments)
+{
+    app.add_flag("--weld,!--no-weld", arguments.read.weld,
+                 "Merge vertices of equal position (the default) or keep them apart")
+        ->group("Surface");
+    app.add_flag("--turn-outward", arguments.shell.check.turn_inside_out,
+                 "Turn closed components that are inside out instead of refusing them")
+        ->group("Surface");
+    app.add_flag("--allow-self-intersections", arguments.shell.check.allow_self_intersections,
+                 "Accept a surface that crosses itself; its shell overlaps too")
+        ->group("Surface");
+}
+
+void add_field_options(CLI::App& app, ShellOptions& shell)
+{
+    CLI::Option* voxel = app.add_option("--voxel-size", shell.level_set.voxel_size,
+                                        "Edge length of a voxel, world units")
+                             ->group("Level set");
+    app.add_option("--resolution", shell.level_set.resolution,
+                   "Voxels along the longest side of the bounding box")
+        ->capture_default_str()
+        ->excludes(voxel)
+        ->group("Level set");
+    app.add_option("--exterior-voxels", shell.level_set.exterior_voxels,
+                   "Width of the band outside the surface")
+        ->capture_default_str()
+        ->group("Level set");
+    app.add_option("--interior-depth", shell.level_set.interior_depth,
+                   "Depth of the band inside, world units [the thickness, else half the diagonal]")
+        ->group("Level set");
+    app.add_option("--max-memory", shell.level_set.max_memory_gib,
+                   "Refuse a level set that would need more GiB than this [what is free]")
+        ->group("Level set");
+    app.add_option("--smooth", shell.smooth.iterations, "Steps of mean-curvature flow")
+        ->capture_default_str()
+        ->group("Level set");
+}
+
+void add_line_options(CLI::App& app, BuildArguments& arguments)
+{
+    ShellOptions& shell = arguments.shell;
+    bind_enum(app, "--directions", shell.directions.source, "Where the lines' directions come from")
+        ->group("Lines");
+    app.add_option("--perturb", shell.directions.perturbation_radians,
+                   "Largest random tilt of a direction, radians")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--perturb-seed", shell.directions.seed, "Seed of the random tilt")
+        ->capture_default_str()
+        ->group("Lines");
+    bind_enum(app, "--stop-test", shell.line_step.test, "When a line stops")->group("Lines");
+    app.add_option("--rho", shell.line_step.rho, "Threshold of the normal tests, a cosine")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--step", shell.line_step.step_voxels, "Increment along a line, voxels")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--distance-threshold", shell.line_step.distance_threshold_voxels,
+                   "Threshold of the distance test and of bisection, voxels")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--bisection-iterations", shell.line_step.bisection_iterations,
+                   "Iteration limit of bisection")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--reference", shell.line_step.reference_voxels,
+                   "Where relative-normal takes its reference slope, voxels from the start")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--thickness", shell.line_step.thickness,
+                   "Largest length of any line, world units")
+        ->group("Lines");
+    app.add_option("--thickness-grid", arguments.thickness_grid,
+                   "Float grid of largest lengths: FILE.vdb or FILE.vdb:GRID")
+        ->group("Lines");
+    bind_enum(app, "--limit", shell.limits.limit, "Thin-shell limit on the lengths")
+        ->group("Lines");
+}
+
+void add_shell_options(CLI::App& app, ShellOptions& shell)
+{
+    bind_enum(app, "--split", shell.split.rule, "How the prisms' diagonals are chosen")
+        ->group("Tets");
+    app.add_option("--ripple-seed", shell.split.seed, "Seed of the ripple method")
+        ->capture_default_str()
+        ->group("Tets");
+    app.add_option("--samples", shell.coverage.samples,
+                   "Monte Carlo points inside the solid; 0 leaves the estimate out")
+        ->capture_default_str()
+        ->group("Tets");
+    app.add_option("--samples-seed", shell.coverage.seed, "Seed of the Monte Carlo points")
+        ->capture_default_str()
+        ->group("Tets");
+}
+
+openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
+{
+    if (name.empty())
+        return nullptr;
+    const std::size_t colon = name.rfind(".vdb:");
+    if (colon == std::string::npos)
+        return read_float_grid(name, "");
+    constexpr std::size_t kExtension = 4; // ".vdb"
+    return read_float_grid(name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1));
+}
+
+ShellFile to_file(const ShellResult& result, const BuildArguments& arguments,
+                  Interrupter* interrupter)
+{
+    ShellFile file;
+    file.shell = result.shell;
+    file.split = result.split;
+    file.tets = result.tets;
+    file.parameters_json = options_json(arguments.shell);
+    file.report_json = report_json(result.report, false);
+    if (wants_vdb(arguments.outputs)) {
+        file.surface = result.level_set;
+        file.depth = shell_depth_grid(result.tets, result.report.field.voxel_size, interrupter);
+    }
+    return file;
+}
+
+void require_sensible(const BuildArguments& arguments)
+{
+    if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
+        throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
+    require_possible(arguments.outputs, {arguments.mesh});
+    if (!arguments.report.empty())
+        require_writable(arguments.report);
+}
+
+} // namespace
+
+void add_build_command(CLI::App& app, BuildArguments& arguments)
+{
+    app.add_option("mesh", arguments.mesh, "Triangle surface: .obj .ply .off .stl")->required();
+    add_output_options(app, arguments.outputs);
+    app.add_option("--report", arguments.report, "Write all figures as JSON")->group("Output");
+    app.add_flag("-q,--quiet", arguments.quiet, "Print no figures")->group("Output");
+    app.add_flag("--progress", arguments.progress, "Name each stage on standard error as it begins")
+        ->group("Output");
+    add_surface_options(app, arguments);
+    add_field_options(app, arguments.shell);
+    add_line_options(app, arguments);
+    add_shell_options(app, arguments.shell);
+}
+
+int run_build(const BuildArguments& arguments)
+{
+    require_sensible(arguments);
+    SignalInterrupter interrupter(arguments.progress);
+    std::vector<StageCost> read_cost, write_cost;
+
+    ReadResult read;
+    StageClock(read_cost).run("read", [&] { read = read_mesh(arguments.mesh, arguments.read); });
+    const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
+    ShellResult result = build_shell(read.mesh, arguments.shell, arguments.mesh.filename().string(),
+                                     thickness.get(), &interrupter);
+    result.report.read = read.report;
+    StageClock(write_cost).run("write", [&] {
+        write_outputs(arguments.outputs, to_file(result, arguments, &interrupter));
+    });
+
+    std::vector<StageCost>& stages = result.report.stages;
+    stages.insert(stages.begin(), read_cost.begin(), read_cost.end());
+    stages.insert(stages.end(), write_cost.begin(), write_cost.end());
+    if (!arguments.report.empty())
+        write_stream_atomically(arguments.report, [&](std::ostream& out) {
+            out << report_json(result.report) << '\n';
+        });
+    if (!arguments.quiet)
+        std::cout << report_text(result.report);
+    return success;
+}
+
+} // namespace vdb_shell::command

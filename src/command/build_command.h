@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/pipeline.h"
+
+#include "command/outputs.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace vdb_shell::command
+{
+
+struct BuildArguments {
+    std::filesystem::path mesh;
+    ReadOptions read;
+    ShellOptions shell;
+    std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID
+    Outputs outputs;
+    std::filesystem::path report;
+    bool quiet = false;
+    bool progress = false;
+};
+
+void add_build_command(CLI::App& app, BuildArguments& arguments);
+
+/// Reads, builds, writes; prints the figures to standard output. Throws what the stages throw.
+int run_build(const BuildArguments& arguments);
+
+} // namespace vdb_shell::command

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command/file_commands.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/write/verify_file.h"
+
+#include "command/bind.h"
+#include "command/exit_code.h"
+#include "command/signals.h"
+
+#include <nlohmann/json.hpp>
+
+#include <iostream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+void add_file(CLI::App& app, FileArguments& arguments)
+{
+    app.add_option("file", arguments.file, "A .vdb that vdb_shell wrote")->required();
+}
+
+void print_grid(const openvdb::FloatGrid& grid)
+{
+    std::cout << "  " << grid.getName() << ": "
+              << openvdb::GridBase::gridClassToString(grid.getGridClass()) << ", voxel "
+              << grid.voxelSize()[0] << ", " << grid.activeVoxelCount() << " active voxels\n";
+}
+
+} // namespace
+
+void add_info_command(CLI::App& app, FileArguments& arguments)
+{
+    add_file(app, arguments);
+    app.add_flag("--json", arguments.json,
+                 "Print the stored parameters and report as one JSON object");
+}
+
+void add_convert_command(CLI::App& app, FileArguments& arguments)
+{
+    add_file(app, arguments);
+    add_output_options(app, arguments.outputs);
+    app.get_option("--output")->required();
+}
+
+void add_check_command(CLI::App& app, FileArguments& arguments)
+{
+    add_file(app, arguments);
+}
+
+int run_info(const FileArguments& arguments)
+{
+    const ShellFile file = read_shell_vdb(arguments.file);
+    if (arguments.json) {
+        nlohmann::ordered_json json;
+        json["parameters"] = nlohmann::ordered_json::parse(file.parameters_json);
+        json["report"] = nlohmann::ordered_json::parse(file.report_json);
+        std::cout << json.dump(2) << '\n';
+        return success;
+    }
+    std::cout << arguments.file.string() << ": shell, schema " << kShellSchema << "\n  "
+              << file.shell.outer.size() << " surface vertices, " << file.shell.triangles.size()
+              << " prisms, " << file.tets.points.size() << " points, " << file.tets.tets.size()
+              << " tets\n";
+    print_grid(*file.surface);
+    print_grid(*file.depth);
+    std::cout << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
+    return success;
+}
+
+int run_convert(const FileArguments& arguments)
+{
+    require_possible(arguments.outputs, {arguments.file});
+    write_outputs(arguments.outputs, read_shell_vdb(arguments.file));
+    return success;
+}
+
+int run_check(const FileArguments& arguments)
+{
+    SignalInterrupter interrupter(false);
+    bool all_hold = true;
+    for (const Verification& entry : verify_shell(read_shell_vdb(arguments.file), &interrupter)) {
+        std::cout << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": " << entry.detail
+                  << '\n';
+        all_hold = all_hold && entry.holds;
+    }
+    std::cout << arguments.file.string()
+              << (all_hold ? ": is what it claims\n" : ": is NOT what it claims\n");
+    return all_hold ? success : check_failed;
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "command/outputs.h"
+
+#include <filesystem>
+
+namespace CLI
+{
+class App;
+}
+
+// The commands that work on a shell's .vdb: info, convert, check.
+
+namespace vdb_shell::command
+{
+
+struct FileArguments {
+    std::filesystem::path file;
+    Outputs outputs;   ///< convert only
+    bool json = false; ///< info only: the stored parameters and report as JSON
+};
+
+void add_info_command(CLI::App& app, FileArguments& arguments);
+void add_convert_command(CLI::App& app, FileArguments& arguments);
+void add_check_command(CLI::App& app, FileArguments& arguments);
+
+int run_info(const FileArguments& arguments);
+int run_convert(const FileArguments& arguments);
+
+/// Prints one line for each thing verified; check_failed when one of them does not hold.
+int run_check(const FileArguments& arguments);
+
+} // namespace vdb_shell::command

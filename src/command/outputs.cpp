@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command/outputs.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/write/tet_file.h"
+
+#include "command/bind.h"
+#include "core/atomic_file.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+enum class Kind { vdb, tets, surface, picture, unknown };
+
+Kind kind_of(const fs::path& path)
+{
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".vdb")
+        return Kind::vdb;
+    if (extension == ".png")
+        return Kind::picture;
+    const std::vector<std::string>& tets = tet_file_extensions();
+    if (std::find(tets.begin(), tets.end(), extension) != tets.end())
+        return Kind::tets;
+    for (const char* surface : {".obj", ".ply", ".off", ".stl"})
+        if (extension == surface)
+            return Kind::surface;
+    return Kind::unknown;
+}
+
+} // namespace
+
+void add_output_options(CLI::App& app, Outputs& outputs)
+{
+    app.add_option(
+           "-o,--output", outputs.paths,
+           "File to write; give it once for each file wanted. By extension: .vdb (everything), "
+           ".vtu .node .ele .mesh .msh (tets), .obj .ply .off .stl (inner surface), .png "
+           "(picture of a cross-section)")
+        ->group("Output");
+    bind_enum(app, "--points", outputs.vdb.points,
+              "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb")
+        ->group("Output");
+    bind_enum(app, "--section-axis", outputs.picture.axis, "Normal of the picture's cutting plane")
+        ->group("Output");
+    app.add_option("--section-position", outputs.picture.position,
+                   "Place of the cutting plane, as a share of the bounding box")
+        ->capture_default_str()
+        ->group("Output");
+    app.add_option("--picture-width", outputs.picture.width_pixels,
+                   "Pixels along the picture's longer side")
+        ->capture_default_str()
+        ->group("Output");
+}
+
+void require_possible(const Outputs& outputs, const std::vector<fs::path>& inputs)
+{
+    for (auto path = outputs.paths.begin(); path != outputs.paths.end(); ++path) {
+        if (kind_of(*path) == Kind::unknown)
+            throw InvalidOption(
+                path->string() + ": unknown extension \"" + path->extension().string() +
+                "\"; known are .vdb .vtu .node .ele .mesh .msh .obj .ply .off .stl .png");
+        if (std::find(outputs.paths.begin(), path, *path) != path)
+            throw InvalidOption(path->string() + ": given twice as an output");
+        for (const fs::path& input : inputs) {
+            std::error_code ignored;
+            if (fs::equivalent(*path, input, ignored))
+                throw InvalidOption(path->string() + ": is the input; it is not overwritten");
+        }
+        require_writable(*path);
+    }
+}
+
+bool wants_vdb(const Outputs& outputs)
+{
+    return std::any_of(outputs.paths.begin(), outputs.paths.end(),
+                       [](const fs::path& path) { return kind_of(path) == Kind::vdb; });
+}
+
+void write_outputs(const Outputs& outputs, const ShellFile& file)
+{
+    for (const fs::path& path : outputs.paths) {
+        switch (kind_of(path)) {
+        case Kind::vdb:
+            write_shell_vdb(path, file, outputs.vdb);
+            break;
+        case Kind::tets:
+            write_tets(path, file.tets);
+            break;
+        case Kind::surface:
+            write_mesh(path, inner_surface(file.shell));
+            break;
+        case Kind::picture:
+            write_cross_section(path, file.shell, file.tets, outputs.picture);
+            break;
+        case Kind::unknown:
+            break; // refused by require_possible
+        }
+    }
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/write/cross_section.h"
+#include "vdb_shell/write/vdb_file.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace CLI
+{
+class App;
+}
+
+namespace vdb_shell::command
+{
+
+/// Files to write, the format of each by its extension.
+struct Outputs {
+    std::vector<std::filesystem::path> paths;
+    VdbWriteOptions vdb;
+    CrossSectionOptions picture;
+};
+
+/// Binds -o and the options of single formats.
+void add_output_options(CLI::App& app, Outputs& outputs);
+
+/// Throws InvalidOption for an unknown extension or a path given twice, WriteError for a folder
+/// that cannot be written: asked before any work is done. `inputs` must not be overwritten.
+void require_possible(const Outputs& outputs, const std::vector<std::filesystem::path>& inputs);
+
+/// True when some output needs the grids of the file.
+bool wants_vdb(const Outputs& outputs);
+
+/// Writes every output. `file.surface` and `file.depth` may be null unless wants_vdb().
+void write_outputs(const Outputs& outputs, const ShellFile& file);
+
+} // namespace vdb_shell::command

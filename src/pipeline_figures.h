@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/pipeline.h"
+
+namespace vdb_shell
+{
+
+/// Fills in the report's figures of field, lines, prisms and tets (not coverage) from the rest of
+/// the result.
+void measure_result(ShellResult& result);
+
+} // namespace vdb_shell

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/write/verify_file.h"
+
+#include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/mesh/check_mesh.h"
+
+#include <nlohmann/json.hpp>
+#include <openvdb/tools/Interpolation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using nlohmann::json;
+
+template <typename T> bool same_bytes(const std::vector<T>& a, const std::vector<T>& b)
+{
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+/// A figure of the report by its JSON pointer; NaN where it is missing, which equals nothing.
+double stated(const json& report, const char* pointer)
+{
+    const json::json_pointer place(pointer);
+    return report.contains(place) && report.at(place).is_number() ? report.at(place).get<double>()
+                                                                  : std::nan("");
+}
+
+std::string compare(double found, double claimed)
+{
+    return "found " + json(found).dump() + ", the file says " + json(claimed).dump();
+}
+
+Verification verify_surface(const ShellFile& file, const json& report)
+{
+    const MeshCheck check = check_mesh({file.shell.outer, file.shell.triangles});
+    const double crossings = stated(report, "/mesh/self_intersections");
+    const bool sound = check.closed() && check.manifold() && check.inconsistent_edges.count == 0 &&
+                       check.degenerate_triangles.count == 0;
+    return {"surface is closed, manifold and as embedded as stated",
+            sound && double(check.self_intersections.count) == crossings,
+            std::to_string(check.boundary_edges.count) + " boundary edges, " +
+                std::to_string(check.non_manifold_edges.count + check.non_manifold_vertices.count) +
+                " non-manifold elements; self-intersections: " +
+                compare(double(check.self_intersections.count), crossings)};
+}
+
+Verification verify_tets(const ShellFile& file)
+{
+    const TetMesh expected = make_tets(file.shell, file.split);
+    const bool same = same_bytes(expected.points, file.tets.points) &&
+                      same_bytes(expected.tets, file.tets.tets) &&
+                      same_bytes(expected.prism, file.tets.prism);
+    return {"tets are those of the prisms", same,
+            std::to_string(file.tets.tets.size()) + " tets, " +
+                std::to_string(expected.tets.size()) + " expected"};
+}
+
+Verification verify_conformity(const ShellFile& file)
+{
+    const Conformity found = check_conformity(file.shell, file.tets);
+    return {"tets conform", found.conforming(),
+            std::to_string(found.crowded_faces.count) + " crowded, " +
+                std::to_string(found.misoriented_faces.count) + " misoriented, " +
+                std::to_string(found.stray_faces.count) + " stray faces, " +
+                std::to_string(found.missing_triangles.count) + " missing triangles"};
+}
+
+Verification verify_signs(const ShellFile& file, const json& report)
+{
+    const TetSigns found = count_tet_signs(file.tets);
+    const double inverted = stated(report, "/tets/inverted"), flat = stated(report, "/tets/flat");
+    return {"tet signs are as stated",
+            double(found.inverted.count) == inverted && double(found.flat.count) == flat,
+            "inverted: " + compare(double(found.inverted.count), inverted) +
+                "; flat: " + compare(double(found.flat.count), flat)};
+}
+
+Verification verify_volume(const ShellFile& file, const json& report)
+{
+    const double found = tet_volume(file.tets), claimed = stated(report, "/volume/shell");
+    // Both sums run over the same floats in the same order; JSON keeps doubles exactly.
+    return {"volume is as stated", found == claimed, compare(found, claimed)};
+}
+
+Verification verify_level_set(const ShellFile& file, const json& report)
+{
+    const openvdb::FloatGrid& grid = *file.surface;
+    const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> phi(grid);
+    double worst = 0.0;
+    for (const openvdb::Vec3s& p : file.shell.outer)
+        worst = std::max(worst, std::abs(double(phi.wsSample(openvdb::Vec3d(p)))));
+    // A vertex lies on the zero crossing to within the cell that holds it, plus what smoothing
+    // moved.
+    const double drift = stated(report, "/field/smooth/max_drift");
+    const double bound =
+        std::sqrt(3.0) * grid.voxelSize()[0] + (std::isfinite(drift) ? drift : 0.0);
+    const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
+    return {"level set follows the surface", level_set && worst <= bound,
+            "largest |phi| at a vertex " + json(worst).dump() + ", allowed " + json(bound).dump() +
+                (level_set ? "" : "; its class is not level set")};
+}
+
+} // namespace
+
+std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter)
+{
+    const json report = json::parse(file.report_json, nullptr, false);
+    const openvdb::FloatGrid::Ptr depth =
+        shell_depth_grid(file.tets, file.surface->voxelSize()[0], interrupter);
+    return {verify_surface(file, report),
+            verify_tets(file),
+            verify_conformity(file),
+            verify_signs(file, report),
+            verify_volume(file, report),
+            verify_level_set(file, report),
+            {"depth grid is that of the tets",
+             depth->tree().hasSameTopology(file.depth->tree()) &&
+                 depth->activeVoxelCount() == file.depth->activeVoxelCount(),
+             std::to_string(file.depth->activeVoxelCount()) + " active voxels, " +
+                 std::to_string(depth->activeVoxelCount()) + " expected"}};
+}
+
+} // namespace vdb_shell
