@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and makes a shell of the sample creature in build/quickstart/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+bash .ci/install_packages.sh build
+cmake --preset release -DVDB_SHELL_BUILD_TESTS=OFF
+cmake --build --preset release
+out=build/quickstart
+mkdir -p "$out"
+build/release/src/vdb_shell build samples/meshes/creature.obj \
+    -o "$out/creature.vdb" -o "$out/creature.vtu" -o "$out/creature.png" --report "$out/creature.json"
+build/release/src/vdb_shell check "$out/creature.vdb"
+echo
+echo "The shell:    $out/creature.vdb (level set, depth, points) and $out/creature.vtu (tets)"
+echo "Its figures:  $out/creature.json"
+echo "Its picture:  $out/creature.png"

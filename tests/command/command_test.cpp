@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/mesh/read_mesh.h"
+
+#include "command/exit_code.h"
+#include "support/files.h"
+#include "support/shapes.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+// Runs the real command as a user would.
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+using command::ExitCode;
+
+struct Run {
+    int status = -1;
+    std::string out, err;
+};
+
+class Command : public ::testing::Test
+{
+protected:
+    Run run(const std::string& arguments)
+    {
+        const std::string line = std::string(VDB_SHELL_COMMAND) + " " + arguments + " >" +
+                                 (folder / "out").string() + " 2>" + (folder / "err").string();
+        const int status = std::system(line.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(folder / "out"),
+                read_bytes(folder / "err")};
+    }
+
+    std::string file(const std::string& name) { return (folder / name).string(); }
+
+    std::string mesh_file(const std::string& name, const TriangleMesh& mesh)
+    {
+        write_mesh(folder / name, mesh);
+        return file(name);
+    }
+
+    /// The command fails with this status, says all of `words`, and prints one line.
+    void expect_refusal(const std::string& arguments, int status,
+                        const std::vector<std::string>& words)
+    {
+        const Run result = run(arguments);
+        EXPECT_EQ(result.status, status) << arguments << '\n' << result.err;
+        for (const std::string& word : words)
+            EXPECT_NE(result.err.find(word), std::string::npos)
+                << '"' << word << "\" is not in: " << result.err;
+    }
+
+    TemporaryFolder folder;
+};
+
+const char* const kCoarse = " --resolution 24 --samples 1000 ";
+
+TEST_F(Command, BuildsEveryFormatAndTheFigures)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
+    std::string outputs;
+    for (const char* name : {"s.vdb", "s.vtu", "s.node", "s.mesh", "s.msh", "inner.ply", "s.png"})
+        outputs += " -o " + file(name);
+    const Run result = run("build " + sphere + kCoarse + outputs + " --report " + file("s.json"));
+    ASSERT_EQ(result.status, ExitCode::success) << result.err;
+    for (const char* name :
+         {"s.vdb", "s.vtu", "s.node", "s.ele", "s.mesh", "s.msh", "inner.ply", "s.png"})
+        EXPECT_GT(std::filesystem::file_size(folder / name), 0u) << name;
+    const auto report = nlohmann::json::parse(read_bytes(folder / "s.json"));
+    EXPECT_EQ(report.at("source"), "sphere.obj");
+    EXPECT_GT(report.at("volume").at("fill").get<double>(), 0.5);
+    EXPECT_FALSE(result.out.empty());
+}
+
+TEST_F(Command, QuietPrintsNothing)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const Run result = run("build -q " + sphere + kCoarse + " -o " + file("s.vdb"));
+    EXPECT_EQ(result.status, ExitCode::success);
+    EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST_F(Command, CheckAcceptsWhatBuildWrote)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
+    ASSERT_EQ(run("build " + sphere + kCoarse + " -o " + file("s.vdb")).status, ExitCode::success);
+    const Run check = run("check " + file("s.vdb"));
+    EXPECT_EQ(check.status, ExitCode::success) << check.out << check.err;
+    EXPECT_EQ(check.out.find("FAILED"), std::string::npos) << check.out;
+}
+
+TEST_F(Command, ConvertGivesTheFilesThatBuildGave)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
+    ASSERT_EQ(run("build " + sphere + kCoarse + " -o " + file("s.vdb") + " -o " + file("a.vtu") +
+                  " -o " + file("a.mesh") + " -o " + file("a.stl"))
+                  .status,
+              ExitCode::success);
+    ASSERT_EQ(run("convert " + file("s.vdb") + " -o " + file("b.vtu") + " -o " + file("b.mesh") +
+                  " -o " + file("b.stl"))
+                  .status,
+              ExitCode::success);
+    for (const char* extension : {"vtu", "mesh", "stl"})
+        EXPECT_EQ(read_bytes(folder / (std::string("a.") + extension)),
+                  read_bytes(folder / (std::string("b.") + extension)))
+            << extension;
+}
+
+TEST_F(Command, InfoPrintsTheStoredFigures)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    ASSERT_EQ(run("build " + sphere + kCoarse + " -o " + file("s.vdb")).status, ExitCode::success);
+    const Run info = run("info --json " + file("s.vdb"));
+    ASSERT_EQ(info.status, ExitCode::success) << info.err;
+    const auto json = nlohmann::json::parse(info.out);
+    EXPECT_EQ(json.at("parameters").at("level_set").at("resolution"), 24);
+    EXPECT_EQ(json.at("report").at("source"), "sphere.obj");
+}
+
+TEST_F(Command, SameBytesForAnyNumberOfThreads)
+{
+    const std::string torus_file = mesh_file("torus.obj", torus(1.0, 0.4, 24, 12));
+    std::vector<std::string> bytes;
+    for (const char* threads : {"1", "2", "7"}) {
+        const std::string name = std::string("t") + threads;
+        ASSERT_EQ(run("--threads " + std::string(threads) + " build " + torus_file +
+                      " --resolution 48 -o " + file(name + ".vdb") + " -o " + file(name + ".vtu") +
+                      " -o " + file(name + ".png"))
+                      .status,
+                  ExitCode::success);
+        std::string vdb = read_bytes(folder / (name + ".vdb"));
+        constexpr std::size_t kUuidStart = 21,
+                              kUuidLength = 36; // OpenVDB's random identity of each file
+        vdb.replace(kUuidStart, kUuidLength, kUuidLength, '-');
+        bytes.push_back(vdb + read_bytes(folder / (name + ".vtu")) +
+                        read_bytes(folder / (name + ".png")));
+    }
+    EXPECT_EQ(bytes[0], bytes[1]);
+    EXPECT_EQ(bytes[0], bytes[2]);
+}
+
+TEST_F(Command, RefusesBadInputAndLeavesTheOutputAlone)
+{
+    const std::string kept = "what stood here before";
+    write_bytes(folder / "kept.vdb", kept);
+    const std::string to_kept = " -o " + file("kept.vdb");
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const std::string open = mesh_file("open.obj", without_triangle(icosphere(1.0, 1), 3));
+    const std::string inside_out = mesh_file("inside_out.obj", reversed(icosphere(1.0, 1)));
+    write_bytes(folder / "empty.obj", "");
+    write_bytes(folder / "nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
+    write_bytes(folder / "inf.obj", "v 0 0 0\nv 1 0 1e99\nv 0 1 0\nf 1 2 3\n");
+    write_bytes(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n");
+    write_bytes(folder / "points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    write_bytes(folder / "mesh.xyz", "0 0 0\n");
+
+    expect_refusal("build " + file("none.obj") + to_kept, ExitCode::read_error, {"none.obj"});
+    expect_refusal("build " + file("empty.obj") + to_kept, ExitCode::read_error,
+                   {"empty.obj", "empty"});
+    expect_refusal("build " + file("nan.obj") + to_kept, ExitCode::read_error,
+                   {"nan.obj", "vertex"});
+    expect_refusal("build " + file("inf.obj") + to_kept, ExitCode::read_error,
+                   {"inf.obj", "vertex"});
+    expect_refusal("build " + file("range.obj") + to_kept, ExitCode::read_error,
+                   {"range.obj", "face"});
+    expect_refusal("build " + file("points.obj") + to_kept, ExitCode::read_error,
+                   {"points.obj", "face"});
+    expect_refusal("build " + file("mesh.xyz") + to_kept, ExitCode::read_error,
+                   {"mesh.xyz", ".xyz"});
+    expect_refusal("build " + open + to_kept, ExitCode::geometry_error, {"open.obj", "boundary"});
+    expect_refusal("build " + inside_out + to_kept, ExitCode::geometry_error,
+                   {"inside_out.obj", "--turn-outward"});
+    expect_refusal("build " + sphere + " --voxel-size 3" + to_kept, ExitCode::geometry_error,
+                   {"voxel", "3"});
+    expect_refusal("build " + sphere + " --voxel-size 1e-6" + to_kept, ExitCode::geometry_error,
+                   {"voxel", "GiB"});
+    expect_refusal("build " + sphere + " --voxel-size 0" + to_kept, ExitCode::usage_error,
+                   {"voxel"});
+    expect_refusal("build " + sphere + " --voxel-size 0.1 --resolution 9" + to_kept,
+                   ExitCode::usage_error, {"--resolution"});
+    expect_refusal("build " + sphere + " --stop-test none" + to_kept, ExitCode::usage_error,
+                   {"stop test"});
+    expect_refusal("build " + sphere + " --stop-test nonsense" + to_kept, ExitCode::usage_error,
+                   {"nonsense"});
+    expect_refusal("build " + sphere + " --thickness-grid " + file("none.vdb") + to_kept,
+                   ExitCode::read_error, {"none.vdb"});
+    EXPECT_EQ(read_bytes(folder / "kept.vdb"), kept);
+
+    expect_refusal("build " + sphere + " -o " + file("out.abc"), ExitCode::usage_error,
+                   {"out.abc", ".abc"});
+    expect_refusal("build " + sphere + " -o " + file("no_folder/out.vdb"), ExitCode::write_error,
+                   {"no_folder"});
+    expect_refusal("build " + sphere + " -o " + sphere, ExitCode::usage_error, {"input"});
+    expect_refusal("check " + sphere, ExitCode::read_error, {"sphere.obj"});
+    expect_refusal("", ExitCode::usage_error, {});
+    expect_refusal("build", ExitCode::usage_error, {"mesh"});
+}
+
+TEST_F(Command, TurnsAnInsideOutMeshOnlyWhenAsked)
+{
+    const std::string inside_out = mesh_file("inside_out.obj", reversed(icosphere(1.0, 2)));
+    const Run result =
+        run("build --turn-outward " + inside_out + kCoarse + " --report " + file("r.json"));
+    ASSERT_EQ(result.status, ExitCode::success) << result.err;
+    const auto report = nlohmann::json::parse(read_bytes(folder / "r.json"));
+    EXPECT_GT(report.at("volume").at("solid").get<double>(), 0.0);
+}
+
+TEST_F(Command, ThicknessIsNeverExceeded)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
+    const Run result =
+        run("build " + sphere + kCoarse + " --thickness 0.25 --report " + file("r.json"));
+    ASSERT_EQ(result.status, ExitCode::success) << result.err;
+    const auto report = nlohmann::json::parse(read_bytes(folder / "r.json"));
+    EXPECT_LE(report.at("lines").at("length").at("max").get<double>(), 0.25);
+    EXPECT_NEAR(report.at("lines").at("length").at("median").get<double>(), 0.25, 1e-6);
+}
+
+} // namespace
+} // namespace vdb_shell::test
