@@ -31,7 +31,9 @@ struct Component {
     /// How many other closed components enclose this one. Even: an outer surface. Odd: a cavity,
     /// which has to be oriented the other way round (its own signed volume is negative).
     int nesting_depth = 0;
-    bool inside_out = false; ///< closed, but oriented against its nesting depth
+    /// Closed, every edge run through as often one way as the other, but oriented against the
+    /// nesting depth.
+    bool inside_out = false;
 };
 
 struct MeshCheck {
@@ -39,7 +41,8 @@ struct MeshCheck {
     Defect<Edge> boundary_edges;     ///< one incident triangle
     Defect<Edge> non_manifold_edges; ///< three or more incident triangles
     Defect<Edge> inconsistent_edges; ///< two triangles that run through the edge the same way
-    Defect<std::uint32_t> non_manifold_vertices; ///< incident triangles do not form one fan
+    /// Incident triangles do not form one fan; the ends of non-manifold edges are among them.
+    Defect<std::uint32_t> non_manifold_vertices;
     Defect<std::uint32_t> degenerate_triangles;  ///< exactly zero area (exact arithmetic)
     Defect<std::uint32_t> duplicate_triangles;   ///< same three points as an earlier triangle
     Defect<TrianglePair> self_intersections; ///< touching other than in shared vertices and edges
@@ -61,7 +64,9 @@ struct CheckOptions {
 };
 
 /// Looks at everything that the stages after this one rely on. Exact predicates, no tolerance.
-/// Never throws for a bad mesh: the findings are the result.
+/// Precondition, which read_mesh guarantees: finite points, corners that index them; else
+/// InvalidOption. Never throws for a bad surface: the findings are the result. Degenerate and
+/// duplicate triangles are listed as such, not among the self-intersections.
 MeshCheck check_mesh(const TriangleMesh& mesh);
 
 /// Throws GeometryError with counts and first offenders by index when the mesh cannot be worked

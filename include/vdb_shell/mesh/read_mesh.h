@@ -12,8 +12,9 @@ namespace vdb_shell
 {
 
 struct ReadOptions {
-    /// Merge vertices of exactly equal float32 position (seams of OBJ files, every STL file). Off,
-    /// the vertices stay as the file has them.
+    /// Merge vertices of exactly equal float32 position (seams of OBJ files). Off, the vertices stay
+    /// as the file has them; but STL has no vertices to keep, so there equal positions are merged in
+    /// any case.
     bool weld = true;
 };
 
@@ -26,7 +27,9 @@ struct ReadReport {
     std::size_t polygons_triangulated = 0;  ///< faces of more than three corners
     std::size_t welded_vertices = 0;        ///< vertices merged into an equal one before them
     std::size_t unused_vertices = 0;        ///< vertices of the file that no triangle uses; dropped
-    std::vector<std::size_t> skipped_faces; ///< file faces left out: a corner repeats after welding
+    /// File faces left out, ascending: of their corners, repeats of the corner before them left
+    /// aside, fewer than three remain or one comes twice (by index, and by position when welded).
+    std::vector<std::size_t> skipped_faces;
 };
 
 struct ReadResult {
@@ -35,9 +38,12 @@ struct ReadResult {
 };
 
 /// Reads OBJ, PLY, OFF or STL (ASCII and binary where the format has both), by extension.
-/// Polygons are triangulated (fan from the corner that keeps a planar polygon's orientation).
+/// Polygons are triangulated: a fan when convex, else by cutting ears in the plane of the Newell
+/// normal, which is right for planar simple polygons (of up to 1000 corners; a fan beyond).
 /// Throws ReadError with file, element and value: missing, empty or truncated file, unknown
-/// extension, a coordinate that is not finite in float32, a face index out of range, no faces.
+/// extension, a coordinate that is not finite in float32, a face index out of range, no faces, data
+/// beyond what a header declares, and binary OFF, of which there are two incompatible kinds. Text
+/// coordinates are rounded once, to the nearest float32.
 /// Guarantee: file_faces = polygons kept + skipped_faces.size(); every triangle of the mesh indexes
 /// three different points; points stand in the file's order.
 ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/components.h"
+
+#include "core/box_pairs.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using Indices = std::vector<std::uint32_t>;
+
+std::uint32_t root_of(Indices& parent, std::uint32_t i)
+{
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/// The triangles of each component, ascending.
+std::vector<Indices> triangles_by_component(const Indices& component_of)
+{
+    std::vector<Indices> result;
+    for (std::uint32_t t = 0; t < component_of.size(); ++t) {
+        if (component_of[t] == result.size())
+            result.emplace_back();
+        result[component_of[t]].push_back(t);
+    }
+    return result;
+}
+
+/// Relative to a point of the component, so that a small one far from the origin keeps its sign.
+double volume_of(const TriangleMesh& mesh, const Indices& triangles)
+{
+    const openvdb::Vec3d origin(mesh.points[mesh.triangles[triangles.front()][0]]);
+    double six_volumes = 0.0;
+    for (const std::uint32_t t : triangles) {
+        const openvdb::Vec3I& corner = mesh.triangles[t];
+        const openvdb::Vec3d a = openvdb::Vec3d(mesh.points[corner[0]]) - origin;
+        const openvdb::Vec3d b = openvdb::Vec3d(mesh.points[corner[1]]) - origin;
+        const openvdb::Vec3d c = openvdb::Vec3d(mesh.points[corner[2]]) - origin;
+        six_volumes += a.dot(b.cross(c));
+    }
+    return six_volumes / 6.0;
+}
+
+int count_points(const TriangleMesh& mesh, const Indices& triangles)
+{
+    Indices points;
+    points.reserve(3 * triangles.size());
+    for (const std::uint32_t t : triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            points.push_back(mesh.triangles[t][corner]);
+    std::sort(points.begin(), points.end());
+    return static_cast<int>(std::unique(points.begin(), points.end()) - points.begin());
+}
+
+/// What the edges say: which components are closed, which run through each edge as often one way
+/// as the other (only these have an inside), and how many edges each has.
+struct EdgeFindings {
+    std::vector<char> closed, balanced;
+    std::vector<int> edges;
+};
+
+EdgeFindings look_at_edges(const std::vector<EdgeUse>& uses, const Indices& component_of,
+                           std::size_t components)
+{
+    EdgeFindings found{std::vector<char>(components, 1), std::vector<char>(components, 1),
+                       std::vector<int>(components, 0)};
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        int forward = 0;
+        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end)
+            forward += uses[end].forward ? 1 : -1;
+        if (uses[begin].edge[0] == uses[begin].edge[1])
+            continue; // of a triangle that is listed as degenerate
+        const std::uint32_t component = component_of[uses[begin].triangle];
+        ++found.edges[component];
+        if (end - begin == 1)
+            found.closed[component] = 0;
+        if (forward != 0)
+            found.balanced[component] = 0;
+    }
+    return found;
+}
+
+Box box_of(const std::vector<Box>& triangle_boxes, const Indices& triangles)
+{
+    Box box = triangle_boxes[triangles.front()];
+    for (const std::uint32_t t : triangles) {
+        box.low = openvdb::math::minComponent(box.low, triangle_boxes[t].low);
+        box.high = openvdb::math::maxComponent(box.high, triangle_boxes[t].high);
+    }
+    return box;
+}
+
+bool contains(const Box& box, const openvdb::Vec3s& p)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        if (p[axis] < box.low[axis] || p[axis] > box.high[axis])
+            return false;
+    return true;
+}
+
+struct Piece {
+    Indices triangles;
+    Box box;
+    bool closed;
+};
+
+/// Whether `point` lies inside the closed `piece`: an odd number of crossings above it.
+bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Piece& piece,
+              const openvdb::Vec3s& point, bool& on_surface)
+{
+    bool inside = false;
+    for (const std::uint32_t t : piece.triangles) {
+        const Box& box = boxes[t];
+        if (point[0] < box.low[0] || point[0] > box.high[0] || point[1] < box.low[1] ||
+            point[1] > box.high[1] || point[2] > box.high[2])
+            continue;
+        const openvdb::Vec3I& corner = mesh.triangles[t];
+        inside ^= exact::crossing_above(point, mesh.points[corner[0]], mesh.points[corner[1]],
+                                        mesh.points[corner[2]], on_surface) != 0;
+    }
+    return inside;
+}
+
+bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Piece& outer,
+              const Piece& inner)
+{
+    // A point on the other surface says nothing; the next corner may.
+    for (const std::uint32_t t : inner.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const openvdb::Vec3s& point = mesh.points[mesh.triangles[t][corner]];
+            bool on_surface = false;
+            const bool inside =
+                contains(outer.box, point) && encloses(mesh, boxes, outer, point, on_surface);
+            if (!on_surface)
+                return inside;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::size_t triangle_count)
+{
+    Indices parent(triangle_count);
+    std::iota(parent.begin(), parent.end(), 0U);
+    for (std::size_t i = 1; i < sorted_uses.size(); ++i) {
+        const auto& edge = sorted_uses[i].edge;
+        if (edge != sorted_uses[i - 1].edge || edge[0] == edge[1])
+            continue;
+        const std::uint32_t a = root_of(parent, sorted_uses[i - 1].triangle);
+        const std::uint32_t b = root_of(parent, sorted_uses[i].triangle);
+        parent[std::max(a, b)] = std::min(a, b); // so a root is its component's first triangle
+    }
+    Indices component(triangle_count);
+    std::uint32_t count = 0;
+    for (std::uint32_t t = 0; t < triangle_count; ++t) {
+        const std::uint32_t root = root_of(parent, t);
+        component[t] = root == t ? count++ : component[root];
+    }
+    return component;
+}
+
+std::vector<Component> describe_components(const TriangleMesh& mesh,
+                                           const std::vector<EdgeUse>& sorted_uses,
+                                           const Indices& component_of)
+{
+    std::vector<Indices> triangles = triangles_by_component(component_of);
+    const std::size_t count = triangles.size();
+    const EdgeFindings found = look_at_edges(sorted_uses, component_of, count);
+    const std::vector<Box> boxes = triangle_boxes(mesh.points, mesh.triangles);
+    std::vector<Piece> pieces(count);
+    std::vector<Component> components(count);
+    for_each_index(count, [&](std::size_t c) {
+        Component& component = components[c];
+        component.triangles = triangles[c].size();
+        component.first_triangle = triangles[c].front();
+        component.volume = volume_of(mesh, triangles[c]);
+        component.closed = found.closed[c] != 0;
+        component.euler = count_points(mesh, triangles[c]) - found.edges[c] +
+                          static_cast<int>(triangles[c].size());
+        const Box box = box_of(boxes, triangles[c]);
+        pieces[c] = {std::move(triangles[c]), box, component.closed};
+    });
+    for_each_index(
+        count,
+        [&](std::size_t c) {
+            int& depth = components[c].nesting_depth;
+            for (std::size_t other = 0; other < count; ++other)
+                if (other != c && pieces[other].closed)
+                    depth += encloses(mesh, boxes, pieces[other], pieces[c]);
+            const bool outer = depth % 2 == 0;
+            const double volume = components[c].volume;
+            components[c].inside_out =
+                found.closed[c] != 0 && found.balanced[c] != 0 && (outer ? volume < 0 : volume > 0);
+        },
+        1);
+    return components;
+}
+
+} // namespace vdb_shell

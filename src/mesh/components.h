@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/topology.h"
+#include "vdb_shell/mesh/check_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// The component of each triangle: triangles that share an edge share a component. Components are
+/// numbered by their first triangle.
+std::vector<std::uint32_t> component_of_triangles(const std::vector<EdgeUse>& sorted_uses,
+                                                  std::size_t triangle_count);
+
+/// Everything that check_mesh says about the components.
+std::vector<Component> describe_components(const TriangleMesh& mesh,
+                                           const std::vector<EdgeUse>& sorted_uses,
+                                           const std::vector<std::uint32_t>& component_of);
+
+} // namespace vdb_shell

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/file_scan.h"
+
+#include <algorithm>
+
+namespace vdb_shell
+{
+namespace
+{
+
+// OpenMesh's OBJ reader gives up on a texture coordinate beyond float range, reads no line
+// continuation, opens the material files that are named, and lets an index of 2^40 or a vertex of
+// two coordinates pass. It is given the lines of vertices and faces only.
+
+struct ObjScan {
+    const std::string& name;
+    FileScan scan;
+    std::string faces;                 ///< the face lines of scan.stream, which come last
+    std::vector<std::int64_t> largest; ///< 0-based, of each face
+    std::vector<std::size_t> line_of_face;
+    Corners corners; ///< of the face in hand
+};
+
+void add_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
+{
+    const std::size_t index = obj.scan.file_vertices++;
+    const Place vertex{"vertex", index, line};
+    openvdb::Vec3s point;
+    obj.scan.stream += 'v';
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string_view word = cut_word(rest);
+        if (word.empty())
+            refuse(obj.name, vertex.text() + " has " + std::to_string(axis) +
+                                 " coordinates where 3 are needed");
+        point[axis] = parse_coordinate(obj.name, vertex, word);
+        obj.scan.stream += ' ';
+        obj.scan.stream += word;
+    }
+    obj.scan.stream += '\n';
+    obj.scan.points.push_back(point);
+}
+
+void add_face(ObjScan& obj, std::string_view rest, std::size_t line)
+{
+    const Place face{"face", obj.scan.file_faces, line};
+    const auto vertices = static_cast<std::int64_t>(obj.scan.file_vertices);
+    std::int64_t largest = -1;
+    obj.corners.clear();
+    for (std::string_view word = cut_word(rest); !word.empty(); word = cut_word(rest)) {
+        if (word[0] == '#')
+            break;
+        const std::string_view vertex = word.substr(0, word.find('/'));
+        const std::int64_t given = parse_integer(obj.name, face, vertex);
+        const std::int64_t index = given < 0 ? vertices + given : given - 1;
+        // Above, the index may name a vertex that is still to come: see require_known_corners.
+        if (index < 0 || index > INT32_MAX)
+            require_corner(obj.name, face, -1, obj.scan.file_vertices, std::to_string(given));
+        obj.corners.push_back(static_cast<std::uint32_t>(index));
+        largest = std::max(largest, index);
+    }
+    if (obj.corners.size() < 3)
+        refuse(obj.name, face.text() + " has " + std::to_string(obj.corners.size()) +
+                             " corners where at least 3 are needed");
+    obj.largest.push_back(largest);
+    obj.line_of_face.push_back(line);
+    if (!count_face(obj.scan, obj.corners))
+        return;
+    obj.faces += 'f';
+    for (const std::uint32_t corner : obj.corners)
+        obj.faces += ' ' + std::to_string(corner + 1);
+    obj.faces += '\n';
+}
+
+void require_known_corners(const ObjScan& obj)
+{
+    for (std::size_t f = 0; f < obj.largest.size(); ++f)
+        require_corner(obj.name, {"face", f, obj.line_of_face[f]}, obj.largest[f],
+                       obj.scan.file_vertices, std::to_string(obj.largest[f] + 1));
+}
+
+/// The line without its final backslash, which joins the next one to it.
+bool cut_continuation(std::string_view& line)
+{
+    const std::size_t last = line.find_last_not_of(" \t");
+    if (last == line.npos || line[last] != '\\')
+        return false;
+    line = line.substr(0, last);
+    return true;
+}
+
+} // namespace
+
+FileScan scan_obj(const std::string& name, const std::string& bytes)
+{
+    ObjScan obj{name, {}, {}, {}, {}, {}};
+    obj.scan.format = "OBJ";
+    obj.scan.reader = "obj";
+    Lines lines(bytes);
+    std::string joined;
+    for (std::string_view line; lines.next(line);) {
+        const std::size_t number = lines.number();
+        if (cut_continuation(line)) {
+            joined = line;
+            for (bool more = true; more && lines.next(line);) {
+                more = cut_continuation(line);
+                (joined += ' ') += line;
+            }
+            line = joined;
+        }
+        const std::string_view keyword = cut_word(line);
+        if (keyword == "v")
+            add_vertex(obj, line, number);
+        else if (keyword == "f")
+            add_face(obj, line, number);
+    }
+    require_known_corners(obj);
+    obj.scan.stream += obj.faces;
+    return std::move(obj.scan);
+}
+
+} // namespace vdb_shell
