@@ -1,2 +1,212 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/field/level_set.h"
+
+#include "core/stage_progress.h"
+#include "field/latched_interrupter.h"
+#include "vdb_shell/core/error.h"
+
+#include <openvdb/tools/MeshToVolume.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string>
+
+namespace vdb_shell
+{
+
+using openvdb::Vec3d;
+
+namespace
+{
+
+constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
+
+// A point at most `interior_depth` deep reads voxels up to one cell diagonal and one voxel of the
+// central difference away, 2.74 voxels.
+constexpr double kStencilVoxels = 3.0;
+// Below it the stencil of a vertex on the surface would reach over the end of the band.
+constexpr double kSmallestExteriorVoxels = 3.0;
+// OpenVDB's maps refuse a determinant under 3e-15.
+constexpr double kSmallestVoxel = 1.5e-5;
+// Points are float32 in index space too while distances are computed: up to here they resolve a
+// quarter of a voxel. (Index coordinates end only at 2^31.)
+constexpr double kLargestIndex = 4194304.0;
+
+template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
+{
+    std::ostringstream message;
+    (message << ... << parts);
+    throw Error("level set: " + message.str());
+}
+
+double longest_side(const Bounds& bounds)
+{
+    const Vec3d size = bounds.high - bounds.low;
+    return std::max({size[0], size[1], size[2]});
+}
+
+struct BandVoxels {
+    double exterior, interior;
+};
+
+BandVoxels band_of(const TriangleMesh& mesh, double voxel, const LevelSetOptions& options)
+{
+    const double deepest = 0.5 * diagonal_of(bounds_of(mesh.points));
+    const double depth = std::min(options.interior_depth.value_or(deepest), deepest);
+    return {options.exterior_voxels, depth / voxel + kStencilVoxels};
+}
+
+void check_mesh_and_options(const TriangleMesh& mesh, const LevelSetOptions& options)
+{
+    if (mesh.points.empty() || mesh.triangles.empty())
+        fail<GeometryError>("the mesh has ", mesh.points.size(), " points and ",
+                            mesh.triangles.size(), " triangles");
+    if (!(options.exterior_voxels >= kSmallestExteriorVoxels && options.exterior_voxels <= 1e4))
+        fail<InvalidOption>("exterior_voxels is ", options.exterior_voxels,
+                            ", must be in [3, 10000]");
+    const auto positive = [](const std::optional<double>& x) {
+        return !x || (std::isfinite(*x) && *x > 0);
+    };
+    if (!positive(options.interior_depth))
+        fail<InvalidOption>("interior_depth is ", *options.interior_depth,
+                            ", must be positive and finite");
+    if (!positive(options.max_memory_gib))
+        fail<InvalidOption>("max_memory_gib is ", *options.max_memory_gib,
+                            ", must be positive and finite");
+}
+
+void check_voxel_size(const TriangleMesh& mesh, double voxel)
+{
+    const Bounds bounds = bounds_of(mesh.points);
+    const double size = longest_side(bounds);
+    if (voxel >= size)
+        fail<GeometryError>("voxel larger than the object: voxel size ", voxel, ", longest side ",
+                            size);
+    if (voxel < kSmallestVoxel)
+        fail<GeometryError>("voxel size ", voxel, " is below ", kSmallestVoxel,
+                            ", the smallest that OpenVDB's transforms can hold; scale the mesh up");
+    for (int axis = 0; axis < 3; ++axis) {
+        const double far = std::max(std::abs(bounds.low[axis]), std::abs(bounds.high[axis]));
+        if (far / voxel > kLargestIndex)
+            fail<GeometryError>("voxel size ", voxel, " is too small for coordinates up to ", far,
+                                ": voxel index ", far / voxel, " is over the limit ", kLargestIndex,
+                                "; enlarge the voxels or move the mesh to the origin");
+    }
+}
+
+/// Free memory in bytes as Linux reports it; infinite where it does not.
+double free_memory()
+{
+    std::ifstream info("/proc/meminfo");
+    for (std::string key, rest; info >> key && std::getline(info, rest);)
+        if (key == "MemAvailable:")
+            return std::stod(rest) * 1024.0;
+    return std::numeric_limits<double>::infinity();
+}
+
+void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions& options)
+{
+    const double estimate = estimate_level_set_bytes(mesh, voxel, options);
+    const double limit = options.max_memory_gib ? *options.max_memory_gib * kGib : free_memory();
+    if (!(estimate <= limit))
+        fail<GeometryError>("voxel size ", voxel, " needs an estimated ", estimate / kGib,
+                            " GiB, over the limit of ", limit / kGib,
+                            " GiB; enlarge the voxels or bound the interior depth");
+}
+
+bool has_inside(const openvdb::FloatGrid& grid)
+{
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->cbeginValueOn(); value; ++value)
+            if (*value < 0)
+                return true;
+    return false;
+}
+
+} // namespace
+
+double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& options)
+{
+    if (options.voxel_size) {
+        if (!(std::isfinite(*options.voxel_size) && *options.voxel_size > 0))
+            fail<InvalidOption>("voxel_size is ", *options.voxel_size,
+                                ", must be positive and finite");
+        return *options.voxel_size;
+    }
+    if (options.resolution <= 0)
+        fail<InvalidOption>("resolution is ", options.resolution, ", must be positive");
+    if (mesh.points.empty())
+        fail<GeometryError>("the mesh has no points");
+    const double size = longest_side(bounds_of(mesh.points));
+    if (!(std::isfinite(size) && size > 0))
+        fail<GeometryError>("the mesh's longest side is ", size,
+                            ", must be positive and finite to derive a voxel size from");
+    return size / options.resolution;
+}
+
+double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
+                                const LevelSetOptions& options)
+{
+    const BandVoxels band = band_of(mesh, voxel_size, options);
+    double area = 0;
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        const Vec3d a(mesh.points[t[0]]);
+        area += 0.5 * (Vec3d(mesh.points[t[1]]) - a).cross(Vec3d(mesh.points[t[2]]) - a).length();
+    }
+    area /= voxel_size * voxel_size;
+    const double solid =
+        std::abs(signed_volume(mesh.points, mesh.triangles)) / std::pow(voxel_size, 3);
+    // A sheet of w voxels meets the 8^3 leaves within w + 8 (|nx| + |ny| + |nz|) voxels, 1.5 on
+    // average; half of that on either side.
+    constexpr double kLeafReach = 6.0;
+    const double inside = std::min(area * band.interior, solid) + area * kLeafReach;
+    const double outside = area * (band.exterior + kLeafReach);
+    const Bounds bounds = bounds_of(mesh.points);
+    double box = 1;
+    for (int axis = 0; axis < 3; ++axis)
+        box *= (bounds.high[axis] - bounds.low[axis]) / voxel_size + 2 * band.exterior + 16;
+    const double voxels = std::min(inside + outside, box);
+    // Distance, index of the nearest triangle and the buffer of the renormalisation, 4 bytes each;
+    // masks, node pointers and the allocator's slack for a third more.
+    constexpr double kBytesPerVoxel = 16.0;
+    // The root's children of both grids, and a few leaves more than the averages say.
+    constexpr double kFixed = 16.0 * 1024 * 1024;
+    return voxels * kBytesPerVoxel + kFixed;
+}
+
+openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
+                                          Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "level set");
+    check_mesh_and_options(mesh, options);
+    const double voxel = resolve_voxel_size(mesh, options);
+    check_voxel_size(mesh, voxel);
+    check_memory(mesh, voxel, options);
+
+    const BandVoxels band = band_of(mesh, voxel, options);
+    // Voxel centres at whole multiples of the voxel size, wherever the mesh stands: grids of
+    // different objects of a scene then fit voxel on voxel.
+    const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
+    LatchedInterrupter latched(interrupter);
+    openvdb::util::NullInterrupter& tool = latched;
+    const auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+        tool, *transform, mesh.points, mesh.triangles, {}, static_cast<float>(band.exterior),
+        static_cast<float>(band.interior));
+    if (latched.stopped())
+        throw Cancelled();
+    if (!has_inside(*grid))
+        fail<GeometryError>(
+            "voxel larger than the object: no voxel centre lies inside, voxel size ", voxel,
+            ", longest side ", longest_side(bounds_of(mesh.points)));
+    grid->setName("surface");
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    grid->setIsInWorldSpace(true);
+    grid->setCreator("vdb_shell");
+    return grid;
+}
+
+} // namespace vdb_shell

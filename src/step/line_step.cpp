@@ -1,2 +1,159 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/step/line_step.h"
+
+#include "core/parallel.h"
+#include "core/stage_progress.h"
+#include "field/field_sampler.h"
+#include "step/march.h"
+#include "vdb_shell/core/error.h"
+
+#include <openvdb/tools/Interpolation.h>
+
+#include <cassert>
+#include <sstream>
+
+namespace vdb_shell
+{
+
+namespace
+{
+
+// Bisection to a thousandth of a voxel: far below what the grid can resolve.
+constexpr double kIntervalVoxels = 1.0 / 1024;
+// A line that is not inside after this many voxels never will be.
+constexpr double kEntryVoxels = 1.5;
+constexpr double kSmallestStepVoxels = 1e-3;
+// Vertices between two looks at the interrupter.
+constexpr std::size_t kBlock = 4096;
+
+void require(bool good, const char* name, double value, const char* range)
+{
+    if (good)
+        return;
+    std::ostringstream message;
+    message << "line step: " << name << " is " << value << ", must be " << range;
+    throw InvalidOption(message.str());
+}
+
+void check_options(const LineStepOptions& options)
+{
+    const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
+    require(options.rho >= 0 && options.rho < 1, "rho", options.rho, "in [0, 1)");
+    require(std::isfinite(options.step_voxels) && options.step_voxels >= kSmallestStepVoxels,
+            "step_voxels", options.step_voxels, "finite and at least 0.001");
+    require(positive(options.distance_threshold_voxels), "distance_threshold_voxels",
+            options.distance_threshold_voxels, "positive and finite");
+    require(options.bisection_iterations > 0, "bisection_iterations", options.bisection_iterations,
+            "positive");
+    require(positive(options.reference_voxels), "reference_voxels", options.reference_voxels,
+            "positive and finite");
+    if (options.thickness)
+        require(positive(*options.thickness), "thickness", *options.thickness,
+                "positive and finite");
+}
+
+MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
+                    const LineStepOptions& options)
+{
+    const double voxel = level_set.voxelSize()[0];
+    MarchRules rules;
+    rules.test = options.test;
+    rules.rho = options.rho;
+    rules.step = options.step_voxels * voxel;
+    rules.distance_threshold = options.distance_threshold_voxels * voxel;
+    rules.reference = options.reference_voxels * voxel;
+    rules.entry = kEntryVoxels * voxel;
+    rules.search_depth = 0.5 * diagonal_of(bounds_of(mesh.points));
+    rules.interval = kIntervalVoxels * voxel;
+    rules.bisection_iterations = options.bisection_iterations;
+    return rules;
+}
+
+std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::FloatGrid& grid)
+{
+    std::vector<double> sampled(mesh.points.size());
+    for_each_range(sampled.size(), [&](std::size_t begin, std::size_t end) {
+        const auto accessor = grid.getConstAccessor();
+        for (std::size_t v = begin; v < end; ++v) {
+            const auto index = grid.transform().worldToIndex(openvdb::Vec3d(mesh.points[v]));
+            sampled[v] = static_cast<double>(openvdb::tools::BoxSampler::sample(accessor, index));
+        }
+    });
+    for (std::size_t v = 0; v < sampled.size(); ++v)
+        if (!(std::isfinite(sampled[v]) && sampled[v] >= 0)) {
+            std::ostringstream message;
+            message << "thickness grid '" << grid.getName() << "': value " << sampled[v]
+                    << " at vertex " << v << " " << mesh.points[v]
+                    << ", must be finite and not negative";
+            throw GeometryError(message.str());
+        }
+    return sampled;
+}
+
+} // namespace
+
+const char* name_of(StopReason reason)
+{
+    switch (reason) {
+    case StopReason::none:
+        return "none";
+    case StopReason::stop_test:
+        return "stop_test";
+    case StopReason::thickness:
+        return "thickness";
+    case StopReason::limit:
+        return "limit";
+    case StopReason::left_solid:
+        return "left_solid";
+    case StopReason::left_band:
+        return "left_band";
+    case StopReason::no_direction:
+        return "no_direction";
+    case StopReason::converged:
+        return "converged";
+    case StopReason::iterations:
+        return "iterations";
+    }
+    assert(false && "a stop reason without a name");
+    return "";
+}
+
+LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
+                      const Directions& directions, const LineStepOptions& options,
+                      const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "line step");
+    check_options(options);
+    const std::size_t count = mesh.points.size();
+    assert(directions.inward.size() == count);
+    if (!level_set.hasUniformVoxels())
+        throw GeometryError("line step: the level set '" + level_set.getName() +
+                            "' has voxels of different sizes along the axes");
+    LineLengths lengths{std::vector<double>(count), std::vector<std::uint32_t>(count),
+                        std::vector<StopReason>(count, StopReason::none)};
+    if (count == 0)
+        return lengths;
+    const MarchRules rules = rules_of(mesh, level_set, options);
+    std::vector<double> sampled;
+    if (thickness_grid)
+        sampled = sample_thickness(mesh, *thickness_grid);
+    const double thickness = options.thickness.value_or(std::numeric_limits<double>::infinity());
+
+    for (std::size_t block = 0; block < count; block += kBlock) {
+        progress.stop_if_interrupted(static_cast<int>(100 * block / count));
+        for_each_range(std::min(kBlock, count - block), [&](std::size_t begin, std::size_t end) {
+            FieldSampler field(level_set);
+            for (std::size_t v = block + begin; v < block + end; ++v) {
+                const double bound = sampled.empty() ? thickness : std::min(thickness, sampled[v]);
+                const LineEnd line_end = step_one(
+                    field, {openvdb::Vec3d(mesh.points[v]), directions.inward[v], bound}, rules);
+                lengths.length[v] = line_end.length;
+                lengths.steps[v] = line_end.steps;
+                lengths.reason[v] = line_end.reason;
+            }
+        });
+    }
+    return lengths;
+}
+
+} // namespace vdb_shell

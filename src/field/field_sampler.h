@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstddef>
+
+namespace vdb_shell
+{
+
+/// What a field says at one point.
+struct FieldSample {
+    double phi = 0;
+    openvdb::Vec3d gradient{0.0}; ///< central differences, interpolated trilinearly, per world unit
+    bool in_band = false;         ///< every voxel that was read is active
+};
+
+/// Reads a level set at world points. The gradient is OpenTissue's: central differences at the
+/// eight voxels around the point, interpolated trilinearly, left at the length that comes out (half
+/// the stencil's slope across a medial sheet; method of the paper's authors). One object per
+/// thread.
+class FieldSampler
+{
+public:
+    explicit FieldSampler(const openvdb::FloatGrid& grid)
+        : transform_(grid.transform()), accessor_(grid.getConstAccessor())
+    {
+    }
+
+    FieldSample at(const openvdb::Vec3d& world)
+    {
+        const openvdb::Vec3d index = transform_.worldToIndex(world);
+        const openvdb::Coord base = openvdb::Coord::floor(index);
+        if (!fetched_ || base != base_)
+            fetch(base);
+        const openvdb::Vec3d f = index - base.asVec3d();
+        FieldSample sample;
+        sample.in_band = in_band_;
+        openvdb::Vec3d gradient(0.0);
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j)
+                for (int k = 0; k < 2; ++k) {
+                    const double weight =
+                        (i ? f[0] : 1 - f[0]) * (j ? f[1] : 1 - f[1]) * (k ? f[2] : 1 - f[2]);
+                    sample.phi += weight * value(i, j, k);
+                    gradient += 0.5 * weight *
+                                openvdb::Vec3d(value(i + 1, j, k) - value(i - 1, j, k),
+                                               value(i, j + 1, k) - value(i, j - 1, k),
+                                               value(i, j, k + 1) - value(i, j, k - 1));
+                }
+        sample.gradient = transform_.baseMap()->applyIJT(gradient);
+        return sample;
+    }
+
+private:
+    // The point's cell has corners 0 and 1 on each axis; the stencil reaches from -1 to 2.
+    double value(int i, int j, int k) const
+    {
+        return values_[static_cast<std::size_t>((i + 1) * 16 + (j + 1) * 4 + k + 1)];
+    }
+
+    void fetch(const openvdb::Coord& base)
+    {
+        base_ = base;
+        fetched_ = in_band_ = true;
+        for (int i = -1; i <= 2; ++i)
+            for (int j = -1; j <= 2; ++j)
+                for (int k = -1; k <= 2; ++k) {
+                    const int beyond = (i < 0 || i > 1) + (j < 0 || j > 1) + (k < 0 || k > 1);
+                    if (beyond > 1)
+                        continue;
+                    float read = 0;
+                    in_band_ &= accessor_.probeValue(base.offsetBy(i, j, k), read);
+                    values_[static_cast<std::size_t>((i + 1) * 16 + (j + 1) * 4 + k + 1)] = read;
+                }
+    }
+
+    const openvdb::math::Transform& transform_;
+    openvdb::FloatGrid::ConstAccessor accessor_;
+    // Two steps of half a voxel mostly fall into one cell: the stencil is read once for both.
+    openvdb::Coord base_;
+    bool fetched_ = false, in_band_ = false;
+    std::array<double, 64> values_{};
+};
+
+} // namespace vdb_shell

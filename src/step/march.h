@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/step/line_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// One extrusion line, free of threads and grids: Field is anything with
+// `FieldSample at(const Vec3d& world)`, so that a test can give it a formula.
+
+namespace vdb_shell
+{
+
+/// The options in world units.
+struct MarchRules {
+    StopTest test = StopTest::normal;
+    double rho = 0.9;
+    double step = 0;
+    double distance_threshold = 0;
+    double reference = 0;    ///< relative_normal's s0 is measured here, and its test starts here
+    double entry = 0;        ///< a line that is not inside by here has missed the solid
+    double search_depth = 0; ///< bisection looks no deeper: half the diagonal
+    double interval = 0;     ///< bisection has converged when its interval is this short
+    int bisection_iterations = 0;
+};
+
+struct Line {
+    openvdb::Vec3d start{0.0};
+    openvdb::Vec3d inward{0.0}; ///< unit length
+    double max_length = std::numeric_limits<double>::infinity();
+};
+
+struct LineEnd {
+    double length = 0;
+    std::uint32_t steps = 0;
+    StopReason reason = StopReason::none;
+};
+
+/// Bisection on eq. 1: the largest length at which e = -phi(q) up to the threshold, taking for
+/// granted that it holds up to some length and fails beyond.
+template <typename Field>
+LineEnd bisect_line(Field& field, const Line& line, const MarchRules& rules)
+{
+    const auto holds = [&](double e) {
+        const auto sample = field.at(line.start + e * line.inward);
+        // Where the grid ends, its values no longer say how deep the point is.
+        return sample.in_band && std::abs(e + sample.phi) < rules.distance_threshold;
+    };
+    double low = 0, high = std::min(line.max_length, rules.search_depth);
+    if (line.max_length <= rules.search_depth && holds(high))
+        return {high, 1, StopReason::thickness};
+    LineEnd end{0, 1, StopReason::iterations};
+    for (int i = 0; i < rules.bisection_iterations; ++i) {
+        if (high - low <= rules.interval) {
+            end.reason = StopReason::converged;
+            break;
+        }
+        const double middle = 0.5 * (low + high);
+        (holds(middle) ? low : high) = middle;
+        ++end.steps;
+    }
+    end.length = low;
+    return end;
+}
+
+/// Steps along the line while the test holds. The length is the last one at which it held.
+template <typename Field>
+LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
+{
+    const openvdb::Vec3d outward = -line.inward;
+    const auto sample_at = [&](double e) { return field.at(line.start + e * line.inward); };
+    const auto start = sample_at(0);
+    // Smoothing can leave a vertex outside the zero crossing: it has that much further to go in.
+    const double entry = rules.entry + std::max(0.0, start.phi);
+
+    double least_slope = rules.rho;
+    if (rules.test == StopTest::relative_normal && rules.reference < line.max_length) {
+        const double reference_slope = sample_at(rules.reference).gradient.dot(outward);
+        if (!(reference_slope > 0))
+            return {0, 1, StopReason::stop_test};
+        least_slope = rules.rho * reference_slope;
+    }
+    const auto holds = [&](double e, const auto& sample) {
+        switch (rules.test) {
+        case StopTest::normal:
+            return sample.gradient.dot(outward) > rules.rho;
+        case StopTest::start_gradient:
+            return sample.gradient.dot(start.gradient) > rules.rho;
+        case StopTest::distance:
+            return std::abs(e + sample.phi) < rules.distance_threshold;
+        case StopTest::relative_normal:
+            return e <= rules.reference || sample.gradient.dot(outward) > least_slope;
+        case StopTest::none:
+        case StopTest::bisection:
+            break;
+        }
+        return true;
+    };
+
+    LineEnd end;
+    bool inside = false;
+    while (true) {
+        const double e = std::min(++end.steps * rules.step, line.max_length);
+        const auto sample = sample_at(e);
+        inside = inside || sample.phi <= 0;
+        const bool left = !(sample.phi <= 0) && (inside || e > entry);
+        if (left || (sample.phi <= 0 && !sample.in_band)) {
+            end.reason = left ? StopReason::left_solid : StopReason::left_band;
+            break;
+        }
+        if (!holds(e, sample)) {
+            end.reason = StopReason::stop_test;
+            break;
+        }
+        end.length = e;
+        if (e >= line.max_length) {
+            end.reason = StopReason::thickness;
+            break;
+        }
+    }
+    // Steps taken outside, on the way in, are no depth.
+    if (!inside)
+        end.length = 0;
+    return end;
+}
+
+inline LineEnd step_line_of(const Line& line)
+{
+    const bool bounded = std::isfinite(line.max_length);
+    return {line.max_length, 0, bounded ? StopReason::thickness : StopReason::none};
+}
+
+template <typename Field> LineEnd step_one(Field& field, const Line& line, const MarchRules& rules)
+{
+    if (line.inward.lengthSqr() == 0)
+        return {0, 0, StopReason::no_direction};
+    if (line.max_length == 0)
+        return {0, 0, StopReason::thickness};
+    switch (rules.test) {
+    case StopTest::none:
+        return step_line_of(line);
+    case StopTest::bisection:
+        return bisect_line(field, line, rules);
+    default:
+        return march_line(field, line, rules);
+    }
+}
+
+} // namespace vdb_shell
