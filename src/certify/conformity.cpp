@@ -1,2 +1,156 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/certify/conformity.h"
+
+#include "certify/tet_faces.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3I;
+
+/// One side of a face. The two surfaces are given sides of their own, turned away from the shell,
+/// so that in a conforming mesh every face has exactly two, of opposite turn.
+struct FaceSide {
+    std::array<std::uint32_t, 3> corners; ///< ascending
+    std::uint32_t owner;                  ///< tet, or triangle of the surface
+    bool of_surface;
+    bool even; ///< whether ascending order is an even permutation of the outward order
+};
+
+bool operator<(const FaceSide& x, const FaceSide& y)
+{
+    return std::tie(x.corners, x.of_surface, x.owner, x.even) <
+           std::tie(y.corners, y.of_surface, y.owner, y.even);
+}
+
+FaceSide side_of(const Vec3I& face, std::uint32_t owner, bool of_surface)
+{
+    FaceSide side{{face[0], face[1], face[2]}, owner, of_surface, true};
+    auto order = [&](std::size_t i, std::size_t j) {
+        if (side.corners[i] <= side.corners[j])
+            return;
+        std::swap(side.corners[i], side.corners[j]);
+        side.even = !side.even;
+    };
+    order(0, 1);
+    order(1, 2);
+    order(0, 1);
+    return side;
+}
+
+constexpr std::uint32_t kNoPoint = ~std::uint32_t(0);
+
+struct PointIndex {
+    std::vector<std::uint32_t> outer, inner;
+};
+
+PointIndex index_points(const PrismShell& shell, const TetMesh& mesh)
+{
+    PointIndex index;
+    index.outer.assign(shell.outer.size(), kNoPoint);
+    index.inner.assign(shell.outer.size(), kNoPoint);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        if (mesh.source_vertex[p] < shell.outer.size())
+            (mesh.layer[p] ? index.inner : index.outer)[mesh.source_vertex[p]] =
+                static_cast<std::uint32_t>(p);
+    }
+    for (std::size_t v = 0; v < shell.outer.size(); ++v)
+        if (shell.pinned(v))
+            index.inner[v] = index.outer[v];
+    return index;
+}
+
+/// Offending owners, listed once each, counted face by face.
+class Offenders
+{
+public:
+    void add(std::uint32_t owner) { owners_.push_back(owner); }
+    Defect<std::uint32_t> listed()
+    {
+        Defect<std::uint32_t> defect;
+        defect.count = owners_.size();
+        std::sort(owners_.begin(), owners_.end());
+        owners_.erase(std::unique(owners_.begin(), owners_.end()), owners_.end());
+        owners_.resize(std::min(owners_.size(), Defect<std::uint32_t>::kFirstShown));
+        defect.first = owners_;
+        return defect;
+    }
+
+private:
+    std::vector<std::uint32_t> owners_;
+};
+
+struct Findings {
+    Offenders crowded, misoriented, stray, missing;
+};
+
+/// The sides that the surfaces should find a tet at. A triangle with three pinned corners has no
+/// prism: its outer and inner triangle are one, and no tet is expected there.
+void append_surface_sides(const PrismShell& shell, const TetMesh& mesh,
+                          std::vector<FaceSide>& sides, Findings& findings)
+{
+    const PointIndex index = index_points(shell, mesh);
+    auto append = [&](const Vec3I& face, std::uint32_t triangle) {
+        if (face[0] == kNoPoint || face[1] == kNoPoint || face[2] == kNoPoint)
+            findings.missing.add(triangle);
+        else
+            sides.push_back(side_of(face, triangle, true));
+    };
+    for (std::uint32_t t = 0; t < shell.triangles.size(); ++t) {
+        const Vec3I& v = shell.triangles[t];
+        if (shell.pinned(v[0]) && shell.pinned(v[1]) && shell.pinned(v[2]))
+            continue;
+        append({index.outer[v[0]], index.outer[v[2]], index.outer[v[1]]}, t);
+        append({index.inner[v[0]], index.inner[v[1]], index.inner[v[2]]}, t);
+    }
+}
+
+/// `first` to `last`: all sides of one face, tets before surfaces.
+void judge_face(const FaceSide* first, const FaceSide* last, Findings& findings)
+{
+    const FaceSide* surface =
+        std::find_if(first, last, [](const FaceSide& side) { return side.of_surface; });
+    const auto tets = surface - first, surfaces = last - surface;
+    if (tets >= 3)
+        findings.crowded.add(first->owner);
+    if (tets == 1 && surfaces == 0)
+        findings.stray.add(first->owner);
+    const bool paired = (tets == 2 && surfaces == 0) || (tets == 1 && surfaces >= 1);
+    if (paired && first[0].even == first[1].even)
+        findings.misoriented.add(first->owner);
+    // A surface triangle wants a free face of its own.
+    for (const FaceSide* side = surface + (tets == 1 && surfaces >= 1 ? 1 : 0); side < last; ++side)
+        findings.missing.add(side->owner);
+}
+
+} // namespace
+
+Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh)
+{
+    Findings findings;
+    std::vector<FaceSide> sides;
+    sides.reserve(4 * mesh.tets.size() + 2 * shell.triangles.size());
+    for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            sides.push_back(side_of(tet_face(mesh.tets[i], corner), i, false));
+    append_surface_sides(shell, mesh, sides, findings);
+    tbb::parallel_sort(sides.begin(), sides.end());
+    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+        while (last < sides.size() && sides[last].corners == sides[first].corners)
+            ++last;
+        judge_face(sides.data() + first, sides.data() + last, findings);
+    }
+    return {findings.crowded.listed(), findings.misoriented.listed(), findings.stray.listed(),
+            findings.missing.listed()};
+}
+
+} // namespace vdb_shell

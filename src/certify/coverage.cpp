@@ -1,2 +1,275 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/certify/coverage.h"
+
+#include "certify/cell_grid.h"
+#include "certify/solid_cells.h"
+#include "certify/tet_faces.h"
+#include "core/counter_random.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+#include "core/stage_progress.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+struct Point {
+    Vec3s position;
+    std::uint32_t cell;
+    bool in_solid;
+};
+
+/// Everything that stays the same from batch to batch.
+struct Scene {
+    const TriangleMesh& surface;
+    const TetMesh& tets;
+    CellGrid grid;
+    double span = 0;
+    std::vector<std::int8_t> sign; ///< of each tet; flat ones have no inside
+    SolidCells solid;
+    std::vector<std::uint32_t> drawn_cells; ///< where the points are drawn
+};
+
+std::array<Vec3s, 4> corners_of(const TetMesh& tets, std::size_t tet)
+{
+    const openvdb::Vec4I& t = tets.tets[tet];
+    return {tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]};
+}
+
+struct FloatBox {
+    Vec3s low, high;
+};
+FloatBox box_of(const std::array<Vec3s, 4>& p)
+{
+    using openvdb::math::maxComponent;
+    using openvdb::math::minComponent;
+    return {minComponent(minComponent(p[0], p[1]), minComponent(p[2], p[3])),
+            maxComponent(maxComponent(p[0], p[1]), maxComponent(p[2], p[3]))};
+}
+
+/// visit(cell) for all cells that the tet may meet; none for a flat tet.
+template <typename Visit>
+void visit_cells_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
+{
+    if (scene.sign[tet] == 0)
+        return;
+    const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
+    const FloatBox box = box_of(corners);
+    visit_cells(scene.grid, scene.grid.overlapped(box.low, box.high),
+                HalfSpaces::of_tet(corners, scene.sign[tet], scene.span), visit);
+}
+
+bool strictly_inside(const std::array<Vec3s, 4>& corners, int sign, const Vec3s& point)
+{
+    for (const auto& face : kTetFaces)
+        if (exact::orient3d(corners[static_cast<std::size_t>(face[0])],
+                            corners[static_cast<std::size_t>(face[1])],
+                            corners[static_cast<std::size_t>(face[2])], point) != -sign)
+            return false;
+    return true;
+}
+
+Bounds bounds_of_both(const TriangleMesh& surface, const TetMesh& tets)
+{
+    Bounds bounds = bounds_of(surface.points);
+    if (tets.points.empty())
+        return bounds;
+    const Bounds other = bounds_of(tets.points);
+    bounds.low = openvdb::math::minComponent(bounds.low, other.low);
+    bounds.high = openvdb::math::maxComponent(bounds.high, other.high);
+    return bounds;
+}
+
+/// Finer for more samples, so that laying out the cells stays a small part of the work.
+std::size_t cells_for(std::uint64_t samples)
+{
+    constexpr std::uint64_t kFewest = 4096, kMost = 1U << 21;
+    return static_cast<std::size_t>(std::clamp(4 * std::min(samples, kMost), kFewest, kMost));
+}
+
+Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t samples)
+{
+    const Bounds bounds = bounds_of_both(surface, tets);
+    Scene scene{surface, tets, make_cell_grid(bounds, cells_for(samples)), diagonal_of(bounds), {},
+                {},      {}};
+    scene.sign.resize(tets.tets.size());
+    for_each_index(scene.sign.size(), [&](std::size_t i) {
+        const std::array<Vec3s, 4> p = corners_of(tets, i);
+        scene.sign[i] = static_cast<std::int8_t>(exact::orient3d(p[0], p[1], p[2], p[3]));
+    });
+    scene.solid = classify_cells(scene.grid, surface);
+    std::vector<std::atomic<bool>> met_by_tet(scene.grid.cells());
+    for_each_index(tets.tets.size(), [&](std::size_t i) {
+        visit_cells_of_tet(scene, i, [&](std::uint32_t cell) {
+            met_by_tet[cell].store(true, std::memory_order_relaxed);
+        });
+    });
+    for (std::uint32_t cell = 0; cell < scene.grid.cells(); ++cell)
+        if (scene.solid.kind[cell] != CellKind::outside ||
+            met_by_tet[cell].load(std::memory_order_relaxed))
+            scene.drawn_cells.push_back(cell);
+    return scene;
+}
+
+/// Point `number` of the sequence: all its random numbers come from that number.
+Point draw(const Scene& scene, const CounterRandom& random, std::uint64_t number)
+{
+    const std::uint64_t counter = 4 * number;
+    Point point;
+    point.cell = scene.drawn_cells[random.below(counter, scene.drawn_cells.size())];
+    point.position =
+        scene.grid.point_in(point.cell, Vec3d(random.unit(counter + 1), random.unit(counter + 2),
+                                              random.unit(counter + 3)));
+    const CellKind kind = scene.solid.kind[point.cell];
+    point.in_solid = kind == CellKind::inside ||
+                     (kind == CellKind::surface &&
+                      inside_solid(scene.solid, scene.surface, scene.grid.column_of(point.cell),
+                                   point.position));
+    return point;
+}
+
+/// Points `first` and on, up to and with the one that is the `wanted`-th inside the solid.
+std::vector<Point> draw_batch(const Scene& scene, const CounterRandom& random, std::uint64_t first,
+                              std::uint64_t wanted)
+{
+    constexpr std::uint64_t kFewest = 4096, kMost = 1U << 20;
+    std::vector<Point> points(std::clamp(wanted + wanted / 2, kFewest, kMost));
+    for_each_index(points.size(),
+                   [&](std::size_t i) { points[i] = draw(scene, random, first + i); });
+    std::size_t kept = 0;
+    for (std::uint64_t inside = 0; kept < points.size() && inside < wanted; ++kept)
+        inside += points[kept].in_solid;
+    points.resize(kept);
+    return points;
+}
+
+struct PointsByCell {
+    std::vector<std::uint32_t> offset; ///< points of cell c stand at [offset[c], offset[c+1])
+    std::vector<std::uint32_t> point;
+    std::vector<Vec3s> position; ///< in the same order, so that a tet reads them in one go
+};
+
+PointsByCell sort_by_cell(const std::vector<Point>& points, std::size_t cells)
+{
+    PointsByCell sorted;
+    sorted.offset.assign(cells + 1, 0);
+    for (const Point& p : points)
+        ++sorted.offset[p.cell + 1];
+    for (std::size_t c = 0; c < cells; ++c)
+        sorted.offset[c + 1] += sorted.offset[c];
+    sorted.point.resize(points.size());
+    sorted.position.resize(points.size());
+    std::vector<std::uint32_t> next(sorted.offset.begin(), sorted.offset.end() - 1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::uint32_t slot = next[points[i].cell]++;
+        sorted.point[slot] = static_cast<std::uint32_t>(i);
+        sorted.position[slot] = points[i].position;
+    }
+    return sorted;
+}
+
+/// In how many tets each point lies. Integer increments: the order of the tets does not matter.
+std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
+                                                   const std::vector<Point>& points)
+{
+    const PointsByCell sorted = sort_by_cell(points, scene.grid.cells());
+    std::vector<std::atomic<std::uint32_t>> hits(points.size());
+    for_each_index(scene.tets.tets.size(), [&](std::size_t tet) {
+        const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
+        const FloatBox box = box_of(corners);
+        visit_cells_of_tet(scene, tet, [&](std::uint32_t cell) {
+            for (std::uint32_t i = sorted.offset[cell]; i < sorted.offset[cell + 1]; ++i) {
+                const Vec3s& p = sorted.position[i];
+                const bool in_box = box.low[0] < p[0] && p[0] < box.high[0] && box.low[1] < p[1] &&
+                                    p[1] < box.high[1] && box.low[2] < p[2] && p[2] < box.high[2];
+                if (in_box && strictly_inside(corners, scene.sign[tet], p))
+                    hits[sorted.point[i]].fetch_add(1, std::memory_order_relaxed);
+            }
+        });
+    });
+    return hits;
+}
+
+void add_batch(const Scene& scene, const std::vector<Point>& points, Coverage& coverage)
+{
+    const std::vector<std::atomic<std::uint32_t>> hits = count_tets(scene, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::uint32_t tets = hits[i].load(std::memory_order_relaxed);
+        if (!points[i].in_solid) {
+            coverage.outside_covered += tets > 0;
+            continue;
+        }
+        ++coverage.samples;
+        coverage.in_none += tets == 0;
+        coverage.in_one += tets == 1;
+        coverage.in_several += tets > 1;
+    }
+}
+
+void set_shares(Coverage& coverage)
+{
+    const auto samples = static_cast<double>(coverage.samples);
+    auto share = [&](std::uint64_t count) { return static_cast<double>(count) / samples; };
+    auto binomial_error = [&](double p) { return std::sqrt(p * (1 - p) / samples); };
+    coverage.covered_share = share(coverage.in_one + coverage.in_several);
+    coverage.overlap_share = share(coverage.in_several);
+    coverage.outside_share = share(coverage.outside_covered);
+    coverage.standard_error = binomial_error(coverage.covered_share);
+    coverage.overlap_standard_error = binomial_error(coverage.overlap_share);
+}
+
+void require_solid(const TriangleMesh& surface)
+{
+    const double volume = signed_volume(surface.points, surface.triangles);
+    if (volume > 0)
+        return;
+    std::ostringstream message;
+    message << "coverage: the surface encloses a volume of " << volume
+            << ", which has to be positive: is it open, flat, or oriented inward?";
+    throw GeometryError(message.str());
+}
+
+} // namespace
+
+Coverage estimate_coverage(const TriangleMesh& surface, const TetMesh& tets,
+                           const CoverageOptions& options, Interrupter* interrupter)
+{
+    if (options.samples == 0)
+        return {};
+    require_solid(surface);
+    const StageProgress progress(interrupter, "Coverage");
+    const Scene scene = make_scene(surface, tets, options.samples);
+    const CounterRandom random(options.seed);
+    // Only a solid that fills next to nothing of the cells it passes through comes near this.
+    constexpr std::uint64_t kMostDrawsPerSample = 1000, kFewestMostDraws = 1U << 22;
+    const std::uint64_t most_draws =
+        std::max(kFewestMostDraws, kMostDrawsPerSample * options.samples);
+    Coverage coverage;
+    std::uint64_t drawn = 0;
+    while (coverage.samples < options.samples && drawn < most_draws) {
+        progress.stop_if_interrupted(static_cast<int>(
+            100.0 * static_cast<double>(coverage.samples) / static_cast<double>(options.samples)));
+        const std::vector<Point> points =
+            draw_batch(scene, random, drawn, options.samples - coverage.samples);
+        drawn += points.size();
+        add_batch(scene, points, coverage);
+    }
+    if (coverage.samples == 0)
+        throw GeometryError("coverage: none of " + std::to_string(drawn) +
+                            " points near the surface lies inside it: the solid is too thin for "
+                            "float32 coordinates");
+    set_shares(coverage);
+    return coverage;
+}
+
+} // namespace vdb_shell

@@ -1,2 +1,91 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/prism_shell.h"
+
+#include "core/parallel.h"
+
+#include <CGAL/Exact_rational.h>
+
+#include <cassert>
+#include <cmath>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+/// Whether the pillar is longer than `length`, without any rounding, nor by the measure that
+/// PrismShell::length gives to callers.
+bool is_longer(const Vec3s& outer, const Vec3s& inner, double length)
+{
+    // Double arithmetic is off by a few units in the last place at most; only a tie needs more.
+    constexpr double kSlack = 1e-14;
+    const double measured = (Vec3d(inner) - Vec3d(outer)).length();
+    if (measured > length)
+        return true;
+    if (measured < length * (1 - kSlack))
+        return false;
+    CGAL::Exact_rational squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const CGAL::Exact_rational extent =
+            CGAL::Exact_rational(inner[axis]) - CGAL::Exact_rational(outer[axis]);
+        squared += extent * extent;
+    }
+    return squared > CGAL::Exact_rational(length) * CGAL::Exact_rational(length);
+}
+
+/// Moves the component that is farthest beyond `target` (seen from `outer`) one float32 back.
+void step_back(const Vec3s& outer, const Vec3d& target, Vec3s& inner)
+{
+    int worst = -1;
+    double worst_excess = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (inner[axis] == outer[axis])
+            continue;
+        const double excess =
+            std::abs(double(inner[axis]) - outer[axis]) - std::abs(target[axis] - outer[axis]);
+        if (worst < 0 || excess > worst_excess) {
+            worst = axis;
+            worst_excess = excess;
+        }
+    }
+    assert(worst >= 0);
+    inner[worst] = std::nextafter(inner[worst], outer[worst]);
+}
+
+Vec3s end_of_pillar(const Vec3s& outer, const Vec3d& inward, double length)
+{
+    const Vec3d target = Vec3d(outer) + length * inward;
+    Vec3s inner(target);
+    // After one step per axis every component is rounded towards the outer point; then only the
+    // last bit of the direction's own norm can be left, so this ends within a few steps.
+    while (inner != outer && is_longer(outer, inner, length))
+        step_back(outer, target, inner);
+    // The bits of the outer point even where the sum turned -0 into 0.
+    return inner == outer ? outer : inner;
+}
+
+} // namespace
+
+PrismShell extrude(const TriangleMesh& mesh, const Directions& directions,
+                   const LineLengths& lengths)
+{
+    const std::size_t vertices = mesh.points.size();
+    assert(directions.inward.size() == vertices);
+    assert(lengths.length.size() == vertices && lengths.reason.size() == vertices);
+    PrismShell shell{mesh.points, mesh.points, mesh.triangles, lengths.reason};
+    for_each_index(vertices, [&](std::size_t v) {
+        assert(std::isfinite(lengths.length[v]) && lengths.length[v] >= 0);
+        shell.inner[v] = end_of_pillar(mesh.points[v], directions.inward[v], lengths.length[v]);
+    });
+    return shell;
+}
+
+TriangleMesh inner_surface(const PrismShell& shell)
+{
+    return {shell.inner, shell.triangles};
+}
+
+} // namespace vdb_shell

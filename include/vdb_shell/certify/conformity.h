@@ -10,16 +10,20 @@ namespace vdb_shell
 {
 
 /// Whether the tets fit together face to face and their free faces are exactly the two surfaces.
+/// Counts are of faces (triangles for `missing_triangles`); the lists name each offender once.
 struct Conformity {
-    /// Faces of three or more tets, by one of those tets.
+    /// Faces of three or more tets, by the first of those tets.
     Defect<std::uint32_t> crowded_faces;
-    /// Faces shared by two tets that lie on the same side by their corner order, by tet.
+    /// Faces whose two sides are the same by corner order, by the first tet: two tets on one side
+    /// of their common face, or a tet on the wrong side of a surface triangle.
     Defect<std::uint32_t> misoriented_faces;
     /// Free faces that are neither an outer nor an inner triangle of the shell, by tet: where two
-    /// prisms disagree on a diagonal.
+    /// prisms disagree on a diagonal, or the surface is open.
     Defect<std::uint32_t> stray_faces;
-    /// Outer or inner triangles that no tet has as a face, by triangle. (An inner triangle with a
-    /// pinned corner is not expected where pins have collapsed it onto the outer one.)
+    /// Outer and inner triangles that no tet has as a free face, by triangle: each triangle with
+    /// one un-pinned corner or more has to appear once as its outer corners and once as its inner
+    /// corners (a pinned corner is both). A triangle with three pinned corners has no prism and is
+    /// not expected; a tet there would leave stray faces.
     Defect<std::uint32_t> missing_triangles;
 
     bool conforming() const
@@ -30,7 +34,8 @@ struct Conformity {
     }
 };
 
-/// Combinatorial: looks at indices only, so it holds for inverted tets too.
+/// Combinatorial: looks at indices only (and at which vertices of the shell are pinned), so it
+/// holds for inverted tets too. Precondition: corners of tets are indices into tets.points.
 Conformity check_conformity(const PrismShell& shell, const TetMesh& tets);
 
 } // namespace vdb_shell

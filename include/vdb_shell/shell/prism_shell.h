@@ -24,11 +24,16 @@ struct PrismShell {
     }
 };
 
-/// inner = outer + length * inward, rounded to float32 so that no pillar is longer than asked.
+/// inner = outer + length * inward in double, rounded to the nearest float32 point, then stepped
+/// back by single floats while the pillar is longer than asked: neither its exact length nor
+/// PrismShell::length() exceeds `lengths.length`. Pinned are the vertices of length 0, those
+/// without a direction, and those whose length is lost in the rounding.
+/// Precondition: one entry per vertex in all lists; lengths finite and not negative.
 PrismShell extrude(const TriangleMesh& mesh, const Directions& directions,
                    const LineLengths& lengths);
 
-/// The inner surface as a mesh, oriented like the outer one.
+/// The inner surface as a mesh, vertex for vertex and oriented like the outer one. Where all three
+/// corners of a triangle are pinned it coincides with the outer triangle.
 TriangleMesh inner_surface(const PrismShell& shell);
 
 } // namespace vdb_shell

@@ -35,8 +35,10 @@ struct PrismSplit {
 };
 
 struct TetMesh {
-    std::vector<openvdb::Vec3s>
-        points; ///< all outer vertices, then the inner vertex of each un-pinned one
+    /// The outer vertices, then the inner vertex of each un-pinned one, both in the order of the
+    /// surface. Every point is a corner of some tet: a vertex that is pinned together with all
+    /// its neighbours has no tets, and no point here. Without such vertices, points[v] is outer[v].
+    std::vector<openvdb::Vec3s> points;
     std::vector<openvdb::Vec4I> tets; ///< det(b-a, c-a, d-a) > 0 when the tet is not inverted
     std::vector<std::uint32_t> prism; ///< per tet: the triangle above it
     std::vector<std::uint32_t> source_vertex; ///< per point: the surface vertex it belongs to
@@ -48,8 +50,11 @@ struct TetMesh {
 /// proof of convergence; the other rules cannot fail).
 PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options);
 
-/// The tets in order of their prisms: three a prism, less one for each pinned corner (its pillar's
-/// tet). Precondition: `split` is consistent, as split_prisms gives it.
+/// The tets in order of their prisms, in each from the outer to the inner triangle: three a prism,
+/// less one for each pinned corner (its pillar's tet). The tets that are left meet face to face
+/// (docs/theory), and their points are those of the shell bit for bit.
+/// Precondition: `split` is consistent, as split_prisms gives it; every vertex is in a triangle, or
+/// has no point in the result.
 TetMesh make_tets(const PrismShell& shell, const PrismSplit& split);
 
 } // namespace vdb_shell

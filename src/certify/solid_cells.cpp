@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/solid_cells.h"
+
+#include "core/exact.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3s;
+
+std::array<Vec3s, 3> corners_of(const TriangleMesh& surface, std::size_t triangle)
+{
+    const openvdb::Vec3I& t = surface.triangles[triangle];
+    return {surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]};
+}
+
+std::vector<std::vector<std::uint32_t>> cells_by_triangle(const CellGrid& grid,
+                                                          const TriangleMesh& surface, double span)
+{
+    std::vector<std::vector<std::uint32_t>> cells(surface.triangles.size());
+    for_each_index(cells.size(), [&](std::size_t t) {
+        const std::array<Vec3s, 3> p = corners_of(surface, t);
+        using openvdb::math::maxComponent;
+        using openvdb::math::minComponent;
+        const CellRange range = grid.overlapped(minComponent(minComponent(p[0], p[1]), p[2]),
+                                                maxComponent(maxComponent(p[0], p[1]), p[2]));
+        visit_cells(grid, range, HalfSpaces::of_triangle(p, span),
+                    [&](std::uint32_t cell) { cells[t].push_back(cell); });
+    });
+    return cells;
+}
+
+/// A vertical line meets a triangle only in cells that the triangle meets, so the columns of those
+/// cells are all that matter.
+void list_columns(const CellGrid& grid, std::vector<std::vector<std::uint32_t>> cells,
+                  SolidCells& result)
+{
+    result.column_offset.assign(grid.columns() + 1, 0);
+    for_each_index(cells.size(), [&](std::size_t t) {
+        std::vector<std::uint32_t>& columns = cells[t];
+        for (std::uint32_t& cell : columns)
+            cell = grid.column_of(cell);
+        std::sort(columns.begin(), columns.end());
+        columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    });
+    for (const std::vector<std::uint32_t>& columns : cells)
+        for (const std::uint32_t column : columns)
+            ++result.column_offset[column + 1];
+    for (std::size_t c = 0; c < grid.columns(); ++c)
+        result.column_offset[c + 1] += result.column_offset[c];
+    result.column_triangle.resize(result.column_offset.back());
+    std::vector<std::uint32_t> next(result.column_offset.begin(), result.column_offset.end() - 1);
+    for (std::size_t t = 0; t < cells.size(); ++t)
+        for (const std::uint32_t column : cells[t])
+            result.column_triangle[next[column]++] = static_cast<std::uint32_t>(t);
+}
+
+} // namespace
+
+SolidCells classify_cells(const CellGrid& grid, const TriangleMesh& surface)
+{
+    double span = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        span += double(grid.planes[axis].back()) - grid.planes[axis].front();
+    SolidCells result;
+    result.kind.assign(grid.cells(), CellKind::outside);
+    std::vector<std::vector<std::uint32_t>> cells = cells_by_triangle(grid, surface, span);
+    for (const std::vector<std::uint32_t>& of_triangle : cells)
+        for (const std::uint32_t cell : of_triangle)
+            result.kind[cell] = CellKind::surface;
+    list_columns(grid, std::move(cells), result);
+    for_each_index(grid.columns(), [&](std::size_t column) {
+        // No surface passes between neighbours that it does not touch: one exact test for each run.
+        bool known = false, inside = false;
+        for (std::uint32_t k = 0; k < grid.count(2); ++k) {
+            const auto cell = static_cast<std::uint32_t>(column * grid.count(2) + k);
+            if (result.kind[cell] == CellKind::surface) {
+                known = false;
+                continue;
+            }
+            if (!known) {
+                const Vec3s middle = grid.point_in(cell, openvdb::Vec3d(0.5));
+                inside = inside_solid(result, surface, static_cast<std::uint32_t>(column), middle);
+                known = true;
+            }
+            if (inside)
+                result.kind[cell] = CellKind::inside;
+        }
+    });
+    return result;
+}
+
+bool inside_solid(const SolidCells& cells, const TriangleMesh& surface, std::uint32_t column,
+                  const Vec3s& point)
+{
+    int winding = 0;
+    bool on_surface = false;
+    for (std::uint32_t i = cells.column_offset[column]; i < cells.column_offset[column + 1]; ++i) {
+        const std::array<Vec3s, 3> p = corners_of(surface, cells.column_triangle[i]);
+        const bool beside = (p[0][0] < point[0] && p[1][0] < point[0] && p[2][0] < point[0]) ||
+                            (p[0][0] > point[0] && p[1][0] > point[0] && p[2][0] > point[0]) ||
+                            (p[0][1] < point[1] && p[1][1] < point[1] && p[2][1] < point[1]) ||
+                            (p[0][1] > point[1] && p[1][1] > point[1] && p[2][1] > point[1]);
+        const bool below = p[0][2] < point[2] && p[1][2] < point[2] && p[2][2] < point[2];
+        if (!beside && !below)
+            winding += exact::crossing_above(point, p[0], p[1], p[2], on_surface);
+    }
+    return winding != 0 && !on_surface;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace vdb_shell
+{
+
+/// Random numbers by counter: number k depends on the seed and on k only, so threads may draw in
+/// any order. The standard library's distributions differ between implementations; these do not.
+/// Mixing function: Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014.
+class CounterRandom
+{
+public:
+    explicit CounterRandom(std::uint64_t seed) : key_(mix(seed + kStep)) {}
+
+    std::uint64_t bits(std::uint64_t counter) const { return mix(key_ + counter * kStep); }
+
+    /// Uniform in [0, 1), a multiple of 2^-53.
+    double unit(std::uint64_t counter) const
+    {
+        return static_cast<double>(bits(counter) >> 11) * 0x1p-53;
+    }
+
+    /// Uniform in [0, count). Precondition: 0 < count < 2^32, for which the bias is below 2^-21.
+    std::uint64_t below(std::uint64_t counter, std::uint64_t count) const
+    {
+        return static_cast<std::uint64_t>(unit(counter) * static_cast<double>(count));
+    }
+
+private:
+    static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15; ///< odd; 2^64 / golden ratio
+
+    static std::uint64_t mix(std::uint64_t z)
+    {
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+        return z ^ (z >> 31);
+    }
+
+    std::uint64_t key_;
+};
+
+} // namespace vdb_shell
