@@ -1,2 +1,124 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/cross_section.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "core/atomic_file.h"
+#include "write/cut_picture.h"
+#include "write/plane_cut.h"
+
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <string>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec2d;
+
+constexpr int kSmallestWidth = 16, kLargestWidth = 16384;
+constexpr double kMargin = 0.03; ///< of the longer side, on each side
+
+void require_valid(const CrossSectionOptions& options)
+{
+    if (options.width_pixels < kSmallestWidth || options.width_pixels > kLargestWidth)
+        throw InvalidOption("cross-section: width " + std::to_string(options.width_pixels) +
+                            " pixels is not in [" + std::to_string(kSmallestWidth) + ", " +
+                            std::to_string(kLargestWidth) + "]");
+    if (!(options.position >= 0.0 && options.position <= 1.0))
+        throw InvalidOption("cross-section: position " + std::to_string(options.position) +
+                            " is not in [0, 1]");
+}
+
+/// The picture's frame: world units to pixels, y downwards.
+struct Frame {
+    Vec2d low{0.0, 0.0};
+    double scale = 1.0, margin = 0.0;
+    int width = 0, height = 0;
+
+    Vec2d place(const Vec2d& p) const
+    {
+        return {(p[0] - low[0]) * scale + margin, height - margin - (p[1] - low[1]) * scale};
+    }
+};
+
+Frame frame_of(const Bounds& bounds, const CutPlane& plane, int longer_pixels)
+{
+    Frame frame;
+    frame.low = {bounds.low[plane.right], bounds.low[plane.up]};
+    const double wide = bounds.high[plane.right] - frame.low[0];
+    const double tall = bounds.high[plane.up] - frame.low[1];
+    const double longer = std::max(wide, tall);
+    frame.margin = kMargin * longer_pixels;
+    const double room = longer_pixels - 2.0 * frame.margin;
+    frame.scale = longer > 0.0 ? room / longer : 1.0;
+    const auto pixels = [&](double side) {
+        const double size = std::round(side * frame.scale + 2.0 * frame.margin);
+        return std::clamp(int(size), kSmallestWidth, longer_pixels);
+    };
+    frame.width = pixels(wide);
+    frame.height = pixels(tall);
+    return frame;
+}
+
+void to_pixels(CutDrawing& drawing, const Frame& frame)
+{
+    for (CutPolygon& polygon : drawing.tets)
+        for (Vec2d& corner : polygon.corner)
+            corner = frame.place(corner);
+    for (auto* outline : {&drawing.outer, &drawing.inner})
+        for (CutSegment& segment : *outline)
+            segment = {frame.place(segment.from), frame.place(segment.to)};
+    drawing.width = frame.width;
+    drawing.height = frame.height;
+}
+
+/// The picture as the bytes of a PNG file.
+std::string encode_png(const std::vector<std::uint8_t>& rgb, int width, int height)
+{
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = png_uint_32(width);
+    image.height = png_uint_32(height);
+    image.format = PNG_FORMAT_RGB;
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+    std::string bytes(size, '\0');
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr)) {
+        const std::string why = image.message;
+        png_image_free(&image);
+        throw WriteError("the picture cannot be encoded: " + why);
+    }
+    bytes.resize(size);
+    return bytes;
+}
+
+} // namespace
+
+void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,
+                         const TetMesh& tets, const CrossSectionOptions& options)
+{
+    require_valid(options);
+    if (shell.outer.empty())
+        throw InvalidOption("cross-section: the shell has no vertices");
+    require_writable(path);
+    const Bounds surface = bounds_of(shell.outer), below = bounds_of(shell.inner);
+    const CutPlane plane = cut_plane(options, surface);
+    // Inverted prisms may stick out of the surface and are to be seen.
+    const Bounds all{openvdb::math::minComponent(surface.low, below.low),
+                     openvdb::math::maxComponent(surface.high, below.high)};
+    CutDrawing drawing;
+    drawing.tets = cut_tets(tets, plane);
+    drawing.outer = cut_surface(shell.outer, shell.triangles, plane);
+    drawing.inner = cut_surface(shell.inner, shell.triangles, plane);
+    to_pixels(drawing, frame_of(all, plane, options.width_pixels));
+    const std::string png = encode_png(draw_cut(drawing), drawing.width, drawing.height);
+    write_stream_atomically(
+        path, [&](std::ostream& out) { out.write(png.data(), std::streamsize(png.size())); });
+}
+
+} // namespace vdb_shell

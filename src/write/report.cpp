@@ -1,2 +1,170 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <openvdb/Types.h>
+
+#include <limits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using nlohmann::ordered_json;
+
+double degrees(double radians)
+{
+    return radians * 180.0 / openvdb::math::pi<double>();
+}
+
+ordered_json spread_json(const Spread& spread, double (*convert)(double) = nullptr)
+{
+    const auto in_unit = [&](double value) { return convert ? convert(value) : value; };
+    return {{"min", in_unit(spread.min)},       {"p5", in_unit(spread.p5)},
+            {"median", in_unit(spread.median)}, {"p95", in_unit(spread.p95)},
+            {"max", in_unit(spread.max)},       {"mean", in_unit(spread.mean)}};
+}
+
+template <typename Element> ordered_json defect_json(const Defect<Element>& defect)
+{
+    return {{"count", defect.count}, {"first", defect.first}};
+}
+
+ordered_json read_json(const ReadReport& read)
+{
+    return {{"format", read.format},
+            {"file_vertices", read.file_vertices},
+            {"file_faces", read.file_faces},
+            {"polygons_triangulated", read.polygons_triangulated},
+            {"welded_vertices", read.welded_vertices},
+            {"unused_vertices", read.unused_vertices},
+            {"skipped_faces", read.skipped_faces}};
+}
+
+ordered_json mesh_json(const MeshCheck& mesh)
+{
+    ordered_json components = ordered_json::array();
+    for (const Component& part : mesh.components)
+        components.push_back({{"triangles", part.triangles},
+                              {"first_triangle", part.first_triangle},
+                              {"volume", part.volume},
+                              {"closed", part.closed},
+                              {"euler", part.euler},
+                              {"nesting_depth", part.nesting_depth},
+                              {"inside_out", part.inside_out}});
+    return {{"points", mesh.points},
+            {"triangles", mesh.triangles},
+            {"volume", mesh.volume},
+            {"closed", mesh.closed()},
+            {"manifold", mesh.manifold()},
+            {"boundary_edges", mesh.boundary_edges.count},
+            {"non_manifold_edges", mesh.non_manifold_edges.count},
+            {"non_manifold_vertices", mesh.non_manifold_vertices.count},
+            {"inconsistent_edges", mesh.inconsistent_edges.count},
+            {"degenerate_triangles", mesh.degenerate_triangles.count},
+            {"duplicate_triangles", mesh.duplicate_triangles.count},
+            {"self_intersections", mesh.self_intersections.count},
+            {"first_self_intersections", mesh.self_intersections.first},
+            {"components", components}};
+}
+
+ordered_json field_json(const FieldReport& field)
+{
+    return {{"voxel_size", field.voxel_size},
+            {"active_voxels", field.active_voxels},
+            {"memory_bytes", field.memory_bytes},
+            {"interior_depth", field.interior_depth},
+            {"smooth",
+             {{"mean_drift", field.smooth.mean_drift}, {"max_drift", field.smooth.max_drift}}}};
+}
+
+ordered_json lines_json(const LineReport& lines)
+{
+    ordered_json stops;
+    for (int reason = 0; reason < kStopReasonCount; ++reason)
+        stops[name_of(StopReason(reason))] = lines.stops[std::size_t(reason)];
+    return {{"min_visibility", lines.min_visibility},
+            {"blind_vertices", lines.blind_vertices},
+            {"stuck_vertices", lines.stuck_vertices},
+            {"steps", lines.steps},
+            {"stop_reasons", stops},
+            {"length", spread_json(lines.length)},
+            {"length_voxels", spread_json(lines.length_voxels)}};
+}
+
+ordered_json tets_json(const ShellReport& report)
+{
+    return {{"tets", report.signs.tets},
+            {"inverted", report.signs.inverted.count},
+            {"first_inverted", report.signs.inverted.first},
+            {"flat", report.signs.flat.count},
+            {"first_flat", report.signs.flat.first}};
+}
+
+ordered_json conformity_json(const Conformity& conformity)
+{
+    return {{"conforming", conformity.conforming()},
+            {"crowded_faces", defect_json(conformity.crowded_faces)},
+            {"misoriented_faces", defect_json(conformity.misoriented_faces)},
+            {"stray_faces", defect_json(conformity.stray_faces)},
+            {"missing_triangles", defect_json(conformity.missing_triangles)}};
+}
+
+ordered_json quality_json(const QualityReport& quality)
+{
+    return {{"mean_ratio", spread_json(quality.mean_ratio)},
+            {"min_dihedral_degrees", spread_json(quality.min_dihedral_radians, degrees)},
+            {"max_dihedral_degrees", spread_json(quality.max_dihedral_radians, degrees)},
+            {"aspect", spread_json(quality.aspect)}};
+}
+
+ordered_json coverage_json(const Coverage& coverage)
+{
+    return {{"samples", coverage.samples},
+            {"in_none", coverage.in_none},
+            {"in_one", coverage.in_one},
+            {"in_several", coverage.in_several},
+            {"outside_covered", coverage.outside_covered},
+            {"covered_share", coverage.covered_share},
+            {"overlap_share", coverage.overlap_share},
+            {"standard_error", coverage.standard_error}};
+}
+
+ordered_json costs_json(const std::vector<StageCost>& stages)
+{
+    ordered_json costs = ordered_json::array();
+    for (const StageCost& cost : stages)
+        costs.push_back({{"stage", cost.stage},
+                         {"seconds", cost.seconds},
+                         {"peak_memory_bytes", cost.peak_memory_bytes}});
+    return costs;
+}
+
+} // namespace
+
+std::string report_json(const ShellReport& report, bool with_costs)
+{
+    ordered_json json;
+    json["source"] = report.source;
+    json["read"] = report.read ? read_json(*report.read) : ordered_json();
+    json["mesh"] = mesh_json(report.mesh);
+    json["field"] = field_json(report.field);
+    json["lines"] = lines_json(report.lines);
+    json["prisms"] = {{"prisms", report.prisms},
+                      {"pinned_vertices", report.pinned_vertices},
+                      {"ripples", report.ripples}};
+    json["tets"] = tets_json(report);
+    json["conformity"] = conformity_json(report.conformity);
+    json["quality"] = quality_json(report.quality);
+    json["volume"] = {
+        {"solid", report.solid_volume}, {"shell", report.shell_volume}, {"fill", report.fill}};
+    json["coverage"] = coverage_json(report.coverage);
+    if (with_costs)
+        json["stages"] = costs_json(report.stages);
+    // A file name may hold bytes that are no UTF-8.
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+} // namespace vdb_shell

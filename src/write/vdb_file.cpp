@@ -1,2 +1,213 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/vdb_file.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "core/atomic_file.h"
+#include "write/point_grids.h"
+#include "write/vdb_header.h"
+#include "write/vdb_metadata.h"
+
+#include <openvdb/io/File.h>
+#include <openvdb/points/PointDataGrid.h>
+
+namespace vdb_shell
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using openvdb::FloatGrid;
+using openvdb::GridBase;
+
+constexpr const char* kSurfaceGrid = "surface";
+constexpr const char* kDepthGrid = "depth";
+
+/// Shares the voxels, so that name and metadata can be set without touching the caller's grid.
+FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name)
+{
+    if (!grid)
+        throw InvalidOption(std::string("the shell cannot be written as .vdb: grid \"") + name +
+                            "\" is missing");
+    const FloatGrid::Ptr copy = openvdb::ConstPtrCast<FloatGrid>(grid)->copy();
+    copy->setName(name);
+    copy->setCreator(creator_name());
+    // Half floats would not read back bit for bit.
+    copy->setSaveFloatAsHalf(false);
+    return copy;
+}
+
+void write_grids(const fs::path& path, const openvdb::GridPtrVec& grids,
+                 const openvdb::MetaMap& metadata)
+{
+    openvdb::io::File file(path.string());
+    // What Houdini writes.
+    file.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+    file.write(grids, metadata);
+    file.close();
+}
+
+/// Opens a file whose outer structure has been checked.
+void open_file(openvdb::io::File& file)
+{
+    // Delayed loading would keep the file mapped, and faults late where it is damaged.
+    file.open(/*delayLoad=*/false);
+}
+
+std::string list_of_grids(openvdb::io::File& file)
+{
+    std::string list;
+    for (const GridBase::Ptr& grid : *file.readAllGridMetadata())
+        list += (list.empty() ? "\"" : ", \"") + grid->getName() + "\" (" + grid->valueType() +
+                (grid->saveFloatAsHalf() ? " as half" : "") + ")";
+    return list.empty() ? "no grids" : list;
+}
+
+template <typename Grid>
+typename Grid::Ptr read_grid(openvdb::io::File& file, const std::string& where, const char* name)
+{
+    if (!file.hasGrid(name))
+        throw ReadError(where + ": grid \"" + name + "\" is missing");
+    const GridBase::Ptr grid = file.readGrid(name);
+    const auto typed = openvdb::gridPtrCast<Grid>(grid);
+    if (!typed)
+        throw ReadError(where + ": grid \"" + name + "\" has type " + grid->type() + ", expected " +
+                        Grid::gridType());
+    return typed;
+}
+
+PointGrids read_points_of(openvdb::io::File& file, const std::string& where)
+{
+    using openvdb::points::PointDataGrid;
+    return {read_grid<PointDataGrid>(file, where, kPointsGrid),
+            read_grid<PointDataGrid>(file, where, kPrismsGrid),
+            read_grid<PointDataGrid>(file, where, kTetsGrid)};
+}
+
+/// Runs `read`, turning what OpenVDB and the allocator throw at damaged data into ReadError.
+template <typename Read> auto guarded(const fs::path& path, const Read& read)
+{
+    openvdb::initialize();
+    try {
+        require_whole_vdb(path);
+        return read();
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw ReadError(path.string() + ": cannot be read: " + error.what());
+    }
+}
+
+/// The point grids of another file must be those of this shell.
+void require_same_shell(const ShellInfo& main, const fs::path& points)
+{
+    const ShellInfo beside = read_shell_info(points);
+    if (beside.checksum != main.checksum)
+        throw ReadError(points.string() + ": its points are those of another shell: checksum " +
+                        beside.checksum + ", expected " + main.checksum);
+}
+
+PointGrids find_points(openvdb::io::File& main, const ShellInfo& info, const fs::path& path)
+{
+    if (info.points_at == path)
+        return read_points_of(main, path.string());
+    return guarded(info.points_at, [&] {
+        require_same_shell(info, info.points_at);
+        openvdb::io::File file(info.points_at.string());
+        open_file(file);
+        return read_points_of(file, info.points_at.string());
+    });
+}
+
+} // namespace
+
+void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWriteOptions& options)
+{
+    openvdb::initialize();
+    require_consistent(file.shell, file.split, file.tets);
+    const bool beside = options.points == PointPlacement::beside;
+    const openvdb::MetaMap metadata = shell_metadata(path, file, options.points);
+    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid),
+                                named_copy(file.depth, kDepthGrid)};
+    volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
+    const PointGrids made = make_point_grids(file.shell, file.split, file.tets);
+    const openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
+    for (const GridBase::Ptr& grid : volumes)
+        add_volume_metadata(*grid, metadata);
+    for (const GridBase::Ptr& grid : points)
+        add_points_metadata(*grid, metadata);
+
+    write_atomically(path, [&](const fs::path& temporary) {
+        if (!beside)
+            volumes.insert(volumes.end(), points.begin(), points.end());
+        write_grids(temporary, volumes, metadata);
+        // Inside the other, so that neither file is renamed before both are on disk.
+        if (beside)
+            write_atomically(points_file_of(path), [&](const fs::path& temporary_points) {
+                write_grids(temporary_points, points, metadata);
+            });
+    });
+}
+
+ShellInfo read_shell_info(const fs::path& path)
+{
+    return guarded(path, [&] {
+        openvdb::io::File file(path.string());
+        open_file(file);
+        return info_from_metadata(*file.getMetadata(), path);
+    });
+}
+
+ShellFile read_shell_vdb(const fs::path& path)
+{
+    return guarded(path, [&] {
+        const ShellInfo info = read_shell_info(path);
+        openvdb::io::File file(path.string());
+        open_file(file);
+        ShellFile result;
+        result.surface = read_grid<FloatGrid>(file, path.string(), kSurfaceGrid);
+        result.depth = read_grid<FloatGrid>(file, path.string(), kDepthGrid);
+        const ShellCounts counts{info.vertices, info.points, info.prisms, info.tets};
+        read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
+                         result.shell, result.split, result.tets);
+        result.split.ripples = std::size_t(info.ripples);
+        result.parameters_json = info.parameters_json;
+        result.report_json = info.report_json;
+        const std::string found = checksum_of(result.shell, result.split, result.tets);
+        if (found != info.checksum)
+            throw ReadError(path.string() + ": the shell's arrays have checksum " + found +
+                            ", the file says " + info.checksum);
+        return result;
+    });
+}
+
+FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
+{
+    return guarded(path, [&] {
+        openvdb::io::File file(path.string());
+        open_file(file);
+        std::string chosen = name;
+        if (name.empty()) {
+            int found = 0;
+            for (const GridBase::Ptr& grid : *file.readAllGridMetadata())
+                if (grid->isType<FloatGrid>()) {
+                    chosen = grid->getName();
+                    ++found;
+                }
+            if (found != 1)
+                throw ReadError(path.string() + ": has " + std::to_string(found) +
+                                " float grids, expected one or a name; it has " +
+                                list_of_grids(file));
+        } else if (!file.hasGrid(name)) {
+            throw ReadError(path.string() + ": has no grid \"" + name + "\"; it has " +
+                            list_of_grids(file));
+        }
+        const auto grid = openvdb::gridPtrCast<FloatGrid>(file.readGrid(chosen));
+        if (!grid)
+            throw ReadError(path.string() + ": grid \"" + chosen +
+                            "\" is not a float grid; the file has " + list_of_grids(file));
+        return grid;
+    });
+}
+
+} // namespace vdb_shell

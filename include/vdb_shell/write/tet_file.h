@@ -14,10 +14,11 @@ namespace vdb_shell
 const std::vector<std::string>& tet_file_extensions();
 
 /// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name
-/// writes both), Medit (.mesh), Gmsh 4.1 (.msh). Coordinates are the float32 values exactly:
-/// binary, or nine significant digits and more. Data beside them, where the format has a place: per
-/// point source vertex and layer, per tet its prism. Files appear whole or not at all. Throws
-/// WriteError, InvalidOption.
+/// writes both), Medit (.mesh), Gmsh 4.1 (.msh). Coordinates are the float32 values exactly,
+/// whether a program reads them into floats or doubles. Data beside them, where the format has a
+/// place (docs/file_format.md): per point source vertex and layer, per tet its prism. Files appear
+/// whole or not at all; same bytes for the same tets, in any locale. Throws InvalidOption for an
+/// unknown extension, WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets);
 
 } // namespace vdb_shell

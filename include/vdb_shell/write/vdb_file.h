@@ -6,9 +6,10 @@
 
 #include <openvdb/openvdb.h>
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -37,13 +38,31 @@ struct VdbWriteOptions {
     PointPlacement points = PointPlacement::same_file;
 };
 
+/// What a shell's .vdb says about itself, without its grids.
+struct ShellInfo {
+    int schema = 0;
+    std::int64_t vertices = 0, points = 0, prisms = 0, tets = 0;
+    std::int64_t ripples = 0;        ///< PrismSplit::ripples
+    std::string creator;             ///< program and version that wrote it
+    std::string orientation;         ///< how triangles and tets are oriented, in words
+    std::string checksum;            ///< of the shell's arrays: 16 hexadecimal digits
+    std::vector<std::string> grids;  ///< names of all grids, those beside the file included
+    std::filesystem::path points_at; ///< the file that has the point grids
+    std::string parameters_json;
+    std::string report_json;
+};
+
 /// Float grid "depth" over the voxels whose centres lie in a tet: 0 on the outer surface, 1 on the
 /// inner one, linear in each tet; where tets overlap, the one of smallest index. Class fog volume,
-/// background 0. Same bits for any number of threads. Throws Cancelled.
+/// background 0. Same bits for any number of threads. Throws InvalidOption for a voxel size that is
+/// not positive and finite or too small for 32-bit voxel coordinates, Cancelled.
 openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
                                          Interrupter* interrupter = nullptr);
 
-/// Writes grids and metadata as docs/file_format.md says. Throws WriteError.
+/// Writes grids and metadata as docs/file_format.md says; `file` is not changed. The file (with
+/// PointPlacement::beside both files) appears whole or not at all. Same bytes for the same input,
+/// but for OpenVDB's random UUID (bytes 21 to 56). Throws InvalidOption when a grid is missing or
+/// shell, split and tets do not fit together as make_tets leaves them; WriteError.
 void write_shell_vdb(const std::filesystem::path& path, const ShellFile& file,
                      const VdbWriteOptions& options = {});
 
@@ -51,8 +70,15 @@ void write_shell_vdb(const std::filesystem::path& path, const ShellFile& file,
 /// ReadError with file, grid, attribute and index for anything that is missing or out of range.
 ShellFile read_shell_vdb(const std::filesystem::path& path);
 
+/// The metadata alone, in no time. Throws ReadError as read_shell_vdb does.
+ShellInfo read_shell_info(const std::filesystem::path& path);
+
+/// NAME.points.vdb for NAME.vdb: where PointPlacement::beside puts the point grids.
+std::filesystem::path points_file_of(const std::filesystem::path& path);
+
 /// A float grid of a .vdb, for painted thickness: by name, or the only float grid when `name` is
-/// empty. Throws ReadError naming the grids that the file has.
+/// empty. A grid saved with half floats is a float grid. Throws ReadError naming the grids that the
+/// file has, with their types.
 openvdb::FloatGrid::Ptr read_float_grid(const std::filesystem::path& path, const std::string& name);
 
 } // namespace vdb_shell

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/write/vdb_file.h"
+
+#include "core/parallel.h"
+#include "core/stage_progress.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <tuple>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Coord;
+using openvdb::Vec3d;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+constexpr int kLeafBits = 3, kLeafSize = 1 << kLeafBits;
+/// Barycentric slack: a centre on a face must not fall between its two tets by rounding.
+constexpr double kSlack = 1e-9;
+constexpr double kLargestCoordinate = double(1 << 30);
+
+/// An affine function of index space, value at the tet's first corner and slope.
+struct Affine {
+    double value = 0;
+    Vec3d slope{0.0};
+};
+
+/// A tet in index space: barycentric coordinates as functions of place.
+struct IndexTet {
+    Vec3d origin{0.0};
+    std::array<Affine, 4> barycentric;
+    Affine depth;
+    Coord low, high; ///< voxel centres inside lie between, inclusive
+    bool flat = false;
+};
+
+IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size)
+{
+    IndexTet tet;
+    std::array<Vec3d, 4> corner;
+    Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
+    for (std::size_t i = 0; i < 4; ++i) {
+        corner[i] = Vec3d(mesh.points[mesh.tets[t][int(i)]]) / voxel_size;
+        low = openvdb::math::minComponent(low, corner[i]);
+        high = openvdb::math::maxComponent(high, corner[i]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        tet.low[axis] = int(std::ceil(low[axis]));
+        tet.high[axis] = int(std::floor(high[axis]));
+    }
+    tet.origin = corner[0];
+    const Vec3d b = corner[1] - corner[0], c = corner[2] - corner[0], d = corner[3] - corner[0];
+    const double det = b.dot(c.cross(d));
+    tet.flat = det == 0.0;
+    if (tet.flat)
+        return tet;
+    const std::array<Vec3d, 3> slopes{c.cross(d) / det, d.cross(b) / det, b.cross(c) / det};
+    tet.barycentric[0] = {1.0, -(slopes[0] + slopes[1] + slopes[2])};
+    for (const Vec3d& slope : slopes)
+        tet.flat = tet.flat || !std::isfinite(slope.lengthSqr());
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (i > 0)
+            tet.barycentric[i] = {0.0, slopes[i - 1]};
+        const double layer = mesh.layer[mesh.tets[t][int(i)]];
+        tet.depth.value += layer * tet.barycentric[i].value;
+        tet.depth.slope += layer * tet.barycentric[i].slope;
+    }
+    return tet;
+}
+
+/// Which voxels of the column over (x, y) are inside; false when none is.
+bool column_interval(const IndexTet& tet, int x, int y, int& first, int& last)
+{
+    double low = tet.low.z(), high = tet.high.z();
+    const double dx = x - tet.origin[0], dy = y - tet.origin[1];
+    for (const Affine& weight : tet.barycentric) {
+        const double at_origin =
+            weight.value + weight.slope[0] * dx + weight.slope[1] * dy + kSlack;
+        const double slope = weight.slope[2];
+        if (slope > 0.0)
+            low = std::max(low, tet.origin[2] - at_origin / slope);
+        else if (slope < 0.0)
+            high = std::min(high, tet.origin[2] - at_origin / slope);
+        else if (at_origin < 0.0)
+            return false;
+    }
+    if (!(low <= high))
+        return false;
+    first = int(std::ceil(low));
+    last = int(std::floor(high));
+    return first <= last;
+}
+
+/// A column of leaves under construction, by the z of their origins.
+using LeafColumn = std::map<int, std::unique_ptr<Leaf>>;
+
+void fill_voxel(LeafColumn& column, const IndexTet& tet, const Coord& at)
+{
+    const int z = at.z() & ~(kLeafSize - 1);
+    std::unique_ptr<Leaf>& leaf = column[z];
+    if (!leaf)
+        leaf = std::make_unique<Leaf>(at, 0.0f, false);
+    const openvdb::Index offset = Leaf::coordToOffset(at);
+    // Tets come in ascending order: the smallest index has been here first.
+    if (leaf->isValueOn(offset))
+        return;
+    const double depth = tet.depth.value + tet.depth.slope.dot(at.asVec3d() - tet.origin);
+    leaf->setValueOn(offset, float(std::clamp(depth, 0.0, 1.0)));
+}
+
+void fill_column(LeafColumn& column, const IndexTet& tet, int leaf_x, int leaf_y)
+{
+    const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
+    const int y_end = std::min(tet.high.y(), leaf_y + kLeafSize - 1);
+    for (int x = std::max(tet.low.x(), leaf_x); x <= x_end; ++x)
+        for (int y = std::max(tet.low.y(), leaf_y); y <= y_end; ++y) {
+            int first = 0, last = -1;
+            if (!column_interval(tet, x, y, first, last))
+                continue;
+            for (int z = first; z <= last; ++z)
+                fill_voxel(column, tet, Coord(x, y, z));
+        }
+}
+
+/// One tet in one column of leaves; sorted by column, then tet.
+struct Job {
+    std::int32_t x, y; ///< leaf coordinates
+    std::uint32_t tet;
+    bool same_column(const Job& other) const { return x == other.x && y == other.y; }
+    bool operator<(const Job& other) const
+    {
+        return std::tie(x, y, tet) < std::tie(other.x, other.y, other.tet);
+    }
+};
+
+std::vector<Job> make_jobs(const std::vector<IndexTet>& tets)
+{
+    std::vector<Job> jobs;
+    for (std::size_t t = 0; t < tets.size(); ++t) {
+        const IndexTet& tet = tets[t];
+        if (tet.flat || tet.low.z() > tet.high.z())
+            continue;
+        for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
+            for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
+                if (tet.low.x() <= tet.high.x() && tet.low.y() <= tet.high.y())
+                    jobs.push_back({x, y, std::uint32_t(t)});
+    }
+    tbb::parallel_sort(jobs.begin(), jobs.end());
+    return jobs;
+}
+
+/// Where each column's jobs begin, and the end of all.
+std::vector<std::size_t> column_starts(const std::vector<Job>& jobs)
+{
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 0; i < jobs.size(); ++i)
+        if (i == 0 || !jobs[i].same_column(jobs[i - 1]))
+            starts.push_back(i);
+    starts.push_back(jobs.size());
+    return starts;
+}
+
+void require_voxels_in_range(const TetMesh& mesh, double voxel_size)
+{
+    if (!(voxel_size > 0.0) || !std::isfinite(voxel_size))
+        throw InvalidOption("depth grid: voxel size " + std::to_string(voxel_size) +
+                            " is not positive and finite");
+    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(mesh.points[i][axis] / voxel_size) < kLargestCoordinate))
+                throw InvalidOption("depth grid: point " + std::to_string(i) + ", coordinate " +
+                                    std::to_string(mesh.points[i][axis]) +
+                                    ": too far from the origin for voxel size " +
+                                    std::to_string(voxel_size));
+}
+
+openvdb::FloatGrid::Ptr empty_depth_grid(double voxel_size)
+{
+    const auto grid = openvdb::FloatGrid::create(0.0f);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
+    grid->setName("depth");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    return grid;
+}
+
+} // namespace
+
+openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
+                                         Interrupter* interrupter)
+{
+    require_voxels_in_range(tets, voxel_size);
+    const StageProgress progress(interrupter, "Shell depth");
+    const auto grid = empty_depth_grid(voxel_size);
+    std::vector<IndexTet> placed(tets.tets.size());
+    for_each_index(placed.size(),
+                   [&](std::size_t t) { placed[t] = index_tet(tets, t, voxel_size); });
+    const std::vector<Job> jobs = make_jobs(placed);
+    const std::vector<std::size_t> starts = column_starts(jobs);
+    const std::size_t columns = starts.size() - 1;
+    std::vector<LeafColumn> filled(columns);
+
+    constexpr std::size_t kBatches = 20;
+    for (std::size_t batch = 0; batch < kBatches; ++batch) {
+        progress.stop_if_interrupted(int(100 * batch / kBatches));
+        const std::size_t begin = columns * batch / kBatches;
+        const std::size_t end = columns * (batch + 1) / kBatches;
+        for_each_index(
+            end - begin,
+            [&](std::size_t i) {
+                const std::size_t column = begin + i;
+                for (std::size_t j = starts[column]; j < starts[column + 1]; ++j)
+                    fill_column(filled[column], placed[jobs[j].tet], jobs[j].x * kLeafSize,
+                                jobs[j].y * kLeafSize);
+            },
+            1);
+        for (std::size_t column = begin; column < end; ++column)
+            for (auto& [z, leaf] : filled[column])
+                grid->tree().addLeaf(leaf.release());
+    }
+    return grid;
+}
+
+} // namespace vdb_shell

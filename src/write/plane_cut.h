@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/write/cross_section.h"
+
+#include <openvdb/Types.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// A plane across an axis, and the two axes that become right and up in the picture.
+struct CutPlane {
+    int normal = 2, right = 0, up = 1;
+    double offset = 0; ///< coordinate along the normal
+};
+CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds);
+
+/// A tet's convex section: three or four corners, in order around it.
+struct CutPolygon {
+    std::array<openvdb::Vec2d, 4> corner;
+    int corners = 3;
+    std::uint32_t prism = 0;
+};
+
+struct CutSegment {
+    openvdb::Vec2d from, to; ///< the solid lies to the left
+};
+
+/// Corners on the plane count as above it, so every section is a proper polygon; a tet edge meets
+/// the plane in the very same point for all tets around it.
+std::vector<CutPolygon> cut_tets(const TetMesh& tets, const CutPlane& plane);
+std::vector<CutSegment> cut_surface(const std::vector<openvdb::Vec3s>& points,
+                                    const std::vector<openvdb::Vec3I>& triangles,
+                                    const CutPlane& plane);
+
+} // namespace vdb_shell

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/shell/tessellate.h"
+
+#include <openvdb/points/PointDataGrid.h>
+
+#include <cstdint>
+#include <string>
+
+namespace vdb_shell
+{
+
+inline constexpr const char* kPointsGrid = "shell_points";
+inline constexpr const char* kPrismsGrid = "shell_prisms";
+inline constexpr const char* kTetsGrid = "shell_tets";
+
+/// Numbers of elements of a shell; OpenVDB and Houdini index with int32.
+struct ShellCounts {
+    std::int64_t vertices = 0, points = 0, prisms = 0, tets = 0;
+};
+ShellCounts counts_of(const PrismShell& shell, const TetMesh& tets);
+
+/// The shell as three grids of points; the order of points inside a grid means nothing, ids are
+/// explicit. Precondition: require_consistent.
+struct PointGrids {
+    openvdb::points::PointDataGrid::Ptr points, prisms, tets;
+};
+PointGrids make_point_grids(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets);
+
+/// Fills everything but split.ripples. Throws ReadError, its message opened by `name`, unless every
+/// id is there once, in range, and the redundant parts agree.
+void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const std::string& name,
+                      PrismShell& shell, PrismSplit& split, TetMesh& tets);
+
+/// Throws InvalidOption unless the arrays fit together as make_tets leaves them and every
+/// coordinate is finite: what is refused here could not be read back.
+void require_consistent(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets);
+
+/// FNV-1a over all arrays of the shell, as 16 hexadecimal digits: tells a damaged file, and points
+/// that belong to another file.
+std::string checksum_of(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets);
+
+} // namespace vdb_shell

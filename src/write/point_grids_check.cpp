@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/core/error.h"
+
+#include "write/point_grids.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3s;
+
+[[noreturn]] void refuse(const std::string& what)
+{
+    throw InvalidOption("the shell cannot be written as .vdb: " + what);
+}
+
+void require(bool holds, const char* what, std::size_t index)
+{
+    if (!holds)
+        refuse(std::string(what) + " (index " + std::to_string(index) + ")");
+}
+
+void require_size(std::size_t found, std::size_t expected, const char* what)
+{
+    if (found != expected)
+        refuse(std::string(what) + " has " + std::to_string(found) + " entries, expected " +
+               std::to_string(expected));
+}
+
+void require_finite(const std::vector<Vec3s>& points, const char* what)
+{
+    for (std::size_t i = 0; i < points.size(); ++i)
+        require(std::isfinite(points[i][0]) && std::isfinite(points[i][1]) &&
+                    std::isfinite(points[i][2]),
+                what, i);
+}
+
+bool is_permutation(const std::array<std::uint8_t, 3>& order)
+{
+    unsigned seen = 0;
+    for (const std::uint8_t corner : order)
+        seen |= corner < 3 ? 1u << corner : 0u;
+    return seen == 7u;
+}
+
+void require_sizes(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+{
+    require_size(shell.inner.size(), shell.outer.size(), "inner");
+    require_size(shell.stop.size(), shell.outer.size(), "stop");
+    require_size(split.order.size(), shell.triangles.size(), "split.order");
+    require_size(tets.source_vertex.size(), tets.points.size(), "source_vertex");
+    require_size(tets.layer.size(), tets.points.size(), "layer");
+    require_size(tets.prism.size(), tets.tets.size(), "tets.prism");
+    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+    for (const std::size_t count : {tets.points.size(), tets.tets.size(), shell.triangles.size()})
+        require(count <= kMost, "more elements than int32 can number", count);
+}
+
+/// Points are all outer vertices, then the inner vertices of the others than the pinned ones.
+void require_points(const PrismShell& shell, const TetMesh& tets)
+{
+    std::size_t point = 0;
+    const auto expect = [&](std::size_t vertex, int layer, const Vec3s& position) {
+        require(point < tets.points.size(), "the tets lack a point of the shell", point);
+        require(tets.source_vertex[point] == vertex && tets.layer[point] == layer &&
+                    tets.points[point] == position,
+                "a point of the tets is not the shell's", point);
+        ++point;
+    };
+    for (std::size_t v = 0; v < shell.outer.size(); ++v)
+        expect(v, 0, shell.outer[v]);
+    for (std::size_t v = 0; v < shell.outer.size(); ++v)
+        if (!shell.pinned(v))
+            expect(v, 1, shell.inner[v]);
+    require_size(tets.points.size(), point, "the tets' list of points");
+}
+
+class Fnv1a
+{
+public:
+    template <typename T> void add(const std::vector<T>& values)
+    {
+        const std::uint64_t count = values.size();
+        add_bytes(&count, sizeof count);
+        add_bytes(values.data(), values.size() * sizeof(T));
+    }
+    std::string hex() const
+    {
+        static constexpr char kDigits[] = "0123456789abcdef";
+        std::string text(16, '0');
+        for (std::size_t i = 0; i < 16; ++i)
+            text[i] = kDigits[(hash_ >> (60 - 4 * i)) & 15u];
+        return text;
+    }
+
+private:
+    void add_bytes(const void* data, std::size_t size)
+    {
+        const auto* bytes = static_cast<const unsigned char*>(data);
+        for (std::size_t i = 0; i < size; ++i)
+            hash_ = (hash_ ^ bytes[i]) * 1099511628211ull;
+    }
+    std::uint64_t hash_ = 14695981039346656037ull;
+};
+
+} // namespace
+
+void require_consistent(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+{
+    require_sizes(shell, split, tets);
+    require_finite(shell.outer, "an outer coordinate is not finite");
+    require_finite(shell.inner, "an inner coordinate is not finite");
+    for (std::size_t p = 0; p < shell.triangles.size(); ++p) {
+        for (int corner = 0; corner < 3; ++corner)
+            require(shell.triangles[p][corner] < shell.outer.size(),
+                    "a triangle's vertex is out of range", p);
+        require(is_permutation(split.order[p]), "a split order is no permutation of 0, 1, 2", p);
+    }
+    for (std::size_t v = 0; v < shell.stop.size(); ++v)
+        require(int(shell.stop[v]) < kStopReasonCount, "a stop reason is out of range", v);
+    require_points(shell, tets);
+    for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+        for (int corner = 0; corner < 4; ++corner)
+            require(tets.tets[t][corner] < tets.points.size(), "a tet's point is out of range", t);
+        require(tets.prism[t] < shell.triangles.size(), "a tet's prism is out of range", t);
+    }
+}
+
+std::string checksum_of(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+{
+    Fnv1a hash;
+    hash.add(shell.outer);
+    hash.add(shell.inner);
+    hash.add(shell.triangles);
+    hash.add(shell.stop);
+    hash.add(split.order);
+    hash.add(tets.tets);
+    hash.add(tets.prism);
+    return hash.hex();
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/core/error.h"
+
+#include "write/point_grids.h"
+
+#include <openvdb/points/AttributeArray.h>
+
+#include <array>
+#include <cstring>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+using openvdb::points::AttributeArray;
+using openvdb::points::AttributeHandle;
+using openvdb::points::PointDataGrid;
+using Leaf = openvdb::points::PointDataTree::LeafNodeType;
+
+/// Reads the rows of one grid, keyed by their `id`.
+class Reader
+{
+public:
+    Reader(const PointDataGrid& grid, std::int64_t count, const std::string& file)
+        : grid_(grid), count_(std::size_t(count)),
+          where_(file + ": grid \"" + grid.getName() + "\"")
+    {
+        // Counted before anything is allocated: the metadata may claim any number.
+        std::uint64_t rows = 0;
+        for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+            rows += array<std::int32_t>(*leaf, "id", 1).size();
+        if (rows != count_)
+            fail("holds " + std::to_string(rows) + " points, the metadata says " +
+                 std::to_string(count_));
+        std::vector<bool> seen(count_, false);
+        for_each_row<std::int32_t>("id", 1, [&](std::size_t id, openvdb::Index, std::int32_t) {
+            if (seen[id])
+                fail("attribute \"id\": " + std::to_string(id) + " appears twice");
+            seen[id] = true;
+        });
+    }
+
+    /// set(id, element, value) for every row; ids are in range.
+    template <typename T, typename Set>
+    void for_each_row(const std::string& name, openvdb::Index stride, const Set& set) const
+    {
+        for (auto leaf = grid_.tree().cbeginLeaf(); leaf; ++leaf) {
+            const AttributeArray& ids = array<std::int32_t>(*leaf, "id", 1);
+            const AttributeArray& values = array<T>(*leaf, name, stride);
+            if (values.size() != ids.size())
+                fail("attribute \"" + name + "\" has " + std::to_string(values.size()) +
+                     " rows where \"id\" has " + std::to_string(ids.size()));
+            const AttributeHandle<std::int32_t> id(ids);
+            const AttributeHandle<T> value(values);
+            for (openvdb::Index row = 0; row < ids.size(); ++row) {
+                const std::size_t index = in_range(id.get(row), count_, "id", row);
+                for (openvdb::Index element = 0; element < stride; ++element)
+                    set(index, element, value.get(row, element));
+            }
+        }
+    }
+
+    /// The value as an index below `limit`, or ReadError.
+    std::uint32_t in_range(std::int64_t value, std::size_t limit, const char* attribute,
+                           std::size_t row) const
+    {
+        if (value < 0 || std::uint64_t(value) >= limit)
+            fail(std::string("attribute \"") + attribute + "\" of " + std::to_string(row) +
+                 ": value " + std::to_string(value) + " is not in [0, " + std::to_string(limit) +
+                 ")");
+        return std::uint32_t(value);
+    }
+
+    template <typename Set>
+    void indices(const char* name, openvdb::Index stride, std::size_t limit, const Set& set) const
+    {
+        for_each_row<std::int32_t>(name, stride,
+                                   [&](std::size_t id, openvdb::Index element, std::int32_t value) {
+                                       set(id, element, in_range(value, limit, name, id));
+                                   });
+    }
+
+    void positions(const char* name, std::vector<Vec3s>& out) const
+    {
+        out.resize(count_);
+        for_each_row<Vec3s>(name, 1, [&](std::size_t id, openvdb::Index, const Vec3s& value) {
+            if (!std::isfinite(value[0]) || !std::isfinite(value[1]) || !std::isfinite(value[2]))
+                fail(std::string("attribute \"") + name + "\" of " + std::to_string(id) +
+                     " is not finite");
+            out[id] = value;
+        });
+    }
+
+    [[noreturn]] void fail(const std::string& what) const { throw ReadError(where_ + ": " + what); }
+
+private:
+    template <typename T>
+    const AttributeArray& array(const Leaf& leaf, const std::string& name,
+                                openvdb::Index stride) const
+    {
+        const AttributeArray* found = leaf.attributeSet().getConst(name);
+        if (!found)
+            fail("attribute \"" + name + "\" is missing");
+        if (!found->hasValueType<T>())
+            fail("attribute \"" + name + "\" has type " + found->type().first + ", expected " +
+                 openvdb::typeNameAsString<T>());
+        if (found->stride() != stride || !found->hasConstantStride())
+            fail("attribute \"" + name + "\" has stride " + std::to_string(found->stride()) +
+                 ", expected " + std::to_string(stride));
+        return *found;
+    }
+
+    const PointDataGrid& grid_;
+    std::size_t count_;
+    std::string where_;
+};
+
+bool same_bits(const Vec3s& a, const Vec3s& b)
+{
+    return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
+}
+
+/// Points, and from them the two ends of every pillar.
+void read_points(const Reader& reader, const ShellCounts& counts, PrismShell& shell, TetMesh& tets)
+{
+    const auto vertices = std::size_t(counts.vertices), points = std::size_t(counts.points);
+    reader.positions("rest", tets.points);
+    tets.source_vertex.resize(points);
+    tets.layer.resize(points);
+    reader.indices("source_vertex", 1, vertices, [&](std::size_t id, auto, std::uint32_t value) {
+        tets.source_vertex[id] = value;
+    });
+    reader.indices("layer", 1, 2, [&](std::size_t id, auto, std::uint32_t value) {
+        tets.layer[id] = std::uint8_t(value);
+    });
+    std::vector<Vec3s> opposite;
+    reader.positions("opposite", opposite);
+    std::vector<std::uint32_t> stop(points);
+    reader.indices("stop_reason", 1, kStopReasonCount,
+                   [&](std::size_t id, auto, std::uint32_t value) { stop[id] = value; });
+
+    shell.outer.assign(tets.points.begin(), tets.points.begin() + counts.vertices);
+    shell.inner.assign(opposite.begin(), opposite.begin() + counts.vertices);
+    shell.stop.resize(vertices);
+    for (std::size_t id = 0; id < points; ++id) {
+        const std::uint32_t vertex = tets.source_vertex[id];
+        const bool outer = id < vertices;
+        if (tets.layer[id] != (outer ? 0 : 1) || (outer && vertex != id))
+            reader.fail("point " + std::to_string(id) + ": layer " +
+                        std::to_string(tets.layer[id]) + " of vertex " + std::to_string(vertex) +
+                        " does not belong at this id");
+        if (outer)
+            shell.stop[id] = StopReason(stop[id]);
+        else if (!same_bits(tets.points[id], shell.inner[vertex]))
+            reader.fail("point " + std::to_string(id) +
+                        ": \"rest\" is not \"opposite\" of the outer point " +
+                        std::to_string(vertex));
+    }
+}
+
+std::vector<std::array<std::uint32_t, 6>>
+read_prisms(const Reader& reader, const ShellCounts& counts, PrismShell& shell, PrismSplit& split)
+{
+    const auto prisms = std::size_t(counts.prisms);
+    std::vector<std::array<std::uint32_t, 6>> corners(prisms);
+    reader.indices(
+        "prism_pts", 6, std::size_t(counts.points),
+        [&](std::size_t id, openvdb::Index i, std::uint32_t value) { corners[id][i] = value; });
+    split.order.resize(prisms);
+    reader.indices("split_order", 3, 3, [&](std::size_t id, openvdb::Index i, std::uint32_t value) {
+        split.order[id][i] = std::uint8_t(value);
+    });
+    shell.triangles.resize(prisms);
+    for (std::size_t p = 0; p < prisms; ++p)
+        for (int corner = 0; corner < 3; ++corner)
+            shell.triangles[p][corner] = corners[p][std::size_t(corner)];
+    return corners;
+}
+
+/// The lower corners of each prism must stand under its upper ones.
+void require_pillars(const Reader& reader, const PrismShell& shell, const TetMesh& tets,
+                     const std::vector<std::array<std::uint32_t, 6>>& corners)
+{
+    for (std::size_t p = 0; p < corners.size(); ++p)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t above = corners[p][corner], below = corners[p][corner + 3];
+            const bool outer = above < shell.outer.size();
+            if (!outer || tets.source_vertex[below] != above ||
+                (below == above) != shell.pinned(above))
+                reader.fail("attribute \"prism_pts\" of " + std::to_string(p) + ": point " +
+                            std::to_string(below) + " is not below point " + std::to_string(above));
+        }
+}
+
+void read_tets(const Reader& reader, const ShellCounts& counts, TetMesh& tets)
+{
+    tets.tets.resize(std::size_t(counts.tets));
+    tets.prism.resize(std::size_t(counts.tets));
+    reader.indices("tet", 4, std::size_t(counts.points),
+                   [&](std::size_t id, openvdb::Index i, std::uint32_t value) {
+                       tets.tets[id][int(i)] = value;
+                   });
+    reader.indices("prism", 1, std::size_t(counts.prisms),
+                   [&](std::size_t id, auto, std::uint32_t value) { tets.prism[id] = value; });
+}
+
+} // namespace
+
+void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const std::string& name,
+                      PrismShell& shell, PrismSplit& split, TetMesh& tets)
+{
+    const Reader points(*grids.points, counts.points, name);
+    const Reader prisms(*grids.prisms, counts.prisms, name);
+    const Reader tet_rows(*grids.tets, counts.tets, name);
+    if (counts.vertices > counts.points)
+        points.fail("the metadata says " + std::to_string(counts.vertices) + " vertices but only " +
+                    std::to_string(counts.points) + " points");
+    read_points(points, counts, shell, tets);
+    const auto corners = read_prisms(prisms, counts, shell, split);
+    require_pillars(prisms, shell, tets, corners);
+    read_tets(tet_rows, counts, tets);
+    try {
+        require_consistent(shell, split, tets);
+    } catch (const InvalidOption& error) {
+        throw ReadError(name + ": the point grids do not fit together: " + error.what());
+    }
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/write/report.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <locale>
+#include <sstream>
+
+namespace vdb_shell
+{
+namespace
+{
+
+constexpr int kLabelWidth = 12;
+
+/// "label       text", one line.
+void line(std::ostringstream& out, const char* label, const std::string& text)
+{
+    out << std::left << std::setw(kLabelWidth) << label << text << '\n';
+}
+
+template <typename T> std::string number(T value, int digits = 4)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::setprecision(digits) << value;
+    return out.str();
+}
+
+std::string percent(double share)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::fixed << std::setprecision(2) << 100.0 * share << " %";
+    return out.str();
+}
+
+std::string spread(const Spread& values)
+{
+    return "min " + number(values.min) + ", median " + number(values.median) + ", max " +
+           number(values.max);
+}
+
+std::string mesh_lines(const MeshCheck& mesh)
+{
+    std::string text = number(mesh.points, 12) + " vertices, " + number(mesh.triangles, 12) +
+                       " triangles, " + number(mesh.components.size(), 12) +
+                       (mesh.components.size() == 1 ? " component" : " components");
+    text += mesh.closed() ? ", closed" : ", OPEN";
+    text += mesh.manifold() ? ", manifold" : ", NOT MANIFOLD";
+    if (!mesh.embedded())
+        text += ", " + number(mesh.self_intersections.count, 12) + " SELF-INTERSECTIONS";
+    return text;
+}
+
+void read_lines(std::ostringstream& out, const ReadReport& read)
+{
+    line(out, "read",
+         read.format + ": " + number(read.file_vertices, 12) + " vertices, " +
+             number(read.file_faces, 12) + " faces; " + number(read.polygons_triangulated, 12) +
+             " polygons triangulated, " + number(read.welded_vertices, 12) + " vertices welded, " +
+             number(read.unused_vertices, 12) + " unused, " +
+             number(read.skipped_faces.size(), 12) + " faces skipped");
+}
+
+std::string stop_text(const LineReport& lines)
+{
+    std::string text;
+    for (int reason = 0; reason < kStopReasonCount; ++reason)
+        if (const std::size_t count = lines.stops[std::size_t(reason)])
+            text += (text.empty() ? "" : ", ") + std::string(name_of(StopReason(reason))) + " " +
+                    number(count, 12);
+    return text.empty() ? "none stepped" : text;
+}
+
+std::string coverage_text(const Coverage& coverage)
+{
+    if (coverage.samples == 0)
+        return "not estimated";
+    return percent(coverage.covered_share) + " of the solid (+- " +
+           percent(coverage.standard_error) + "), more than once " +
+           percent(coverage.overlap_share) + "; " + number(coverage.samples, 12) +
+           " points: " + number(coverage.in_none, 12) + " in no tet, " +
+           number(coverage.in_several, 12) + " in two or more";
+}
+
+/// What is wrong with the shell; what was not looked at is not called right.
+std::string verdict(const ShellReport& report)
+{
+    std::string wrong;
+    const auto add = [&](std::size_t count, const char* what) {
+        if (count > 0)
+            wrong += (wrong.empty() ? "" : ", ") + number(count, 12) + " " + what;
+    };
+    add(report.signs.inverted.count, "inverted tets");
+    add(report.signs.flat.count, "flat tets");
+    if (!report.conformity.conforming())
+        wrong += wrong.empty() ? "tets do not conform" : ", tets do not conform";
+    add(report.coverage.in_several, "sample points covered more than once");
+    add(report.coverage.outside_covered, "sample points covered outside the solid");
+    if (!wrong.empty())
+        return "NOT VALID: " + wrong;
+    if (report.coverage.samples == 0)
+        return "tets positive and conforming; overlaps not looked for, not certified";
+    return "tets positive and conforming, no overlap seen among the sample points; not certified";
+}
+
+void cost_lines(std::ostringstream& out, const std::vector<StageCost>& stages)
+{
+    double total = 0.0;
+    std::uint64_t peak = 0;
+    std::string text;
+    for (const StageCost& cost : stages) {
+        total += cost.seconds;
+        peak = std::max(peak, cost.peak_memory_bytes);
+        text += (text.empty() ? "" : ", ") + cost.stage + " " + number(cost.seconds, 3);
+    }
+    line(out, "seconds", number(total, 3) + " (" + text + ")");
+    line(out, "memory", number(double(peak) / (1 << 20), 4) + " MiB at most");
+}
+
+} // namespace
+
+std::string report_text(const ShellReport& report)
+{
+    constexpr double kDegrees = 57.29577951308232;
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    line(out, "source", report.source);
+    if (report.read)
+        read_lines(out, *report.read);
+    line(out, "mesh", mesh_lines(report.mesh));
+    line(out, "field",
+         "voxel " + number(report.field.voxel_size) + ", " +
+             number(report.field.active_voxels, 12) + " active voxels, " +
+             number(double(report.field.memory_bytes) / (1 << 20)) + " MiB, depth " +
+             number(report.field.interior_depth));
+    line(out, "drift",
+         "zero crossing at the vertices: mean " + number(report.field.smooth.mean_drift) +
+             ", max " + number(report.field.smooth.max_drift));
+    line(out, "directions",
+         "smallest visibility " + number(report.lines.min_visibility) + ", " +
+             number(report.lines.blind_vertices, 12) + " blind vertices");
+    line(out, "lines",
+         number(report.lines.steps, 12) + " steps, " + number(report.lines.stuck_vertices, 12) +
+             " stuck vertices");
+    line(out, "stops", stop_text(report.lines));
+    line(out, "lengths", spread(report.lines.length));
+    line(out, "  in voxels", spread(report.lines.length_voxels));
+    line(out, "prisms",
+         number(report.prisms, 12) + ", " + number(report.pinned_vertices, 12) +
+             " pinned vertices, " + number(report.ripples, 12) + " ripples");
+    line(out, "tets",
+         number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
+             " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
+             (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+    line(out, "mean ratio", spread(report.quality.mean_ratio));
+    line(out, "dihedral",
+         "smallest " + number(kDegrees * report.quality.min_dihedral_radians.min) +
+             " degrees, largest " + number(kDegrees * report.quality.max_dihedral_radians.max));
+    line(out, "volume",
+         "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
+             ", fill " + percent(report.fill));
+    line(out, "coverage", coverage_text(report.coverage));
+    if (!report.stages.empty())
+        cost_lines(out, report.stages);
+    line(out, "verdict", verdict(report));
+    return out.str();
+}
+
+} // namespace vdb_shell

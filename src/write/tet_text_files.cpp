@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include "write/tet_formats.h"
+#include "write/text_out.h"
+
+namespace vdb_shell
+{
+namespace
+{
+
+void write_corners(TextOut& text, const openvdb::Vec4I& tet, std::uint32_t base)
+{
+    for (int corner = 0; corner < 4; ++corner)
+        text << ' ' << tet[corner] + base;
+}
+
+/// One named scalar per node or element, tags from 1.
+template <typename T>
+void write_gmsh_data(TextOut& text, const char* section, const char* name,
+                     const std::vector<T>& values)
+{
+    text << '$' << section << "\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << values.size() << '\n';
+    for (std::size_t i = 0; i < values.size(); ++i)
+        text << i + 1 << ' ' << unsigned(values[i]) << '\n';
+    text << "$End" << section << '\n';
+}
+
+void write_gmsh_entities(TextOut& text, const TetMesh& tets)
+{
+    const Bounds bounds = tets.points.empty() ? Bounds{} : bounds_of(tets.points);
+    text << "$Entities\n0 0 0 1\n1";
+    for (const openvdb::Vec3d& corner : {bounds.low, bounds.high})
+        for (int axis = 0; axis < 3; ++axis)
+            text << ' ' << corner[axis];
+    text << " 0 0\n$EndEntities\n";
+}
+
+} // namespace
+
+void write_tetgen_node(std::ostream& out, const TetMesh& tets)
+{
+    TextOut text(out);
+    text << "# index x y z source_vertex layer\n" << tets.points.size() << " 3 2 0\n";
+    for (std::size_t i = 0; i < tets.points.size(); ++i)
+        text << i << ' ' << tets.points[i] << ' ' << tets.source_vertex[i] << ' '
+             << int(tets.layer[i]) << '\n';
+}
+
+void write_tetgen_ele(std::ostream& out, const TetMesh& tets)
+{
+    TextOut text(out);
+    text << "# index a b c d prism\n" << tets.tets.size() << " 4 1\n";
+    for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+        text << t;
+        write_corners(text, tets.tets[t], 0);
+        text << ' ' << tets.prism[t] << '\n';
+    }
+}
+
+void write_medit(std::ostream& out, const TetMesh& tets)
+{
+    TextOut text(out);
+    // Version 2: coordinates are read as doubles.
+    text << "MeshVersionFormatted 2\nDimension 3\nVertices\n" << tets.points.size() << '\n';
+    for (std::size_t i = 0; i < tets.points.size(); ++i)
+        text << tets.points[i] << ' ' << int(tets.layer[i]) << '\n';
+    text << "Tetrahedra\n" << tets.tets.size() << '\n';
+    for (const openvdb::Vec4I& tet : tets.tets) {
+        for (int corner = 0; corner < 4; ++corner)
+            text << tet[corner] + 1u << ' ';
+        // One region: remeshers keep the borders between references, which prisms must not become.
+        text << "1\n";
+    }
+    text << "End\n";
+}
+
+void write_gmsh(std::ostream& out, const TetMesh& tets)
+{
+    TextOut text(out);
+    const std::size_t points = tets.points.size(), count = tets.tets.size();
+    text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    write_gmsh_entities(text, tets);
+    text << "$Nodes\n1 " << points << " 1 " << points << "\n3 1 0 " << points << '\n';
+    for (std::size_t i = 0; i < points; ++i)
+        text << i + 1 << '\n';
+    for (const openvdb::Vec3s& point : tets.points)
+        text << point << '\n';
+    constexpr int kFourNodeTet = 4;
+    text << "$EndNodes\n$Elements\n1 " << count << " 1 " << count << "\n3 1 " << kFourNodeTet << ' '
+         << count << '\n';
+    for (std::size_t t = 0; t < count; ++t) {
+        text << t + 1;
+        write_corners(text, tets.tets[t], 1);
+        text << '\n';
+    }
+    text << "$EndElements\n";
+    write_gmsh_data(text, "NodeData", "source_vertex", tets.source_vertex);
+    write_gmsh_data(text, "NodeData", "layer", tets.layer);
+    write_gmsh_data(text, "ElementData", "prism", tets.prism);
+}
+
+} // namespace vdb_shell

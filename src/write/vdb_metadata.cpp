@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "write/vdb_metadata.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "write/point_grids.h"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace vdb_shell
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using openvdb::Int32Metadata;
+using openvdb::StringMetadata;
+
+constexpr const char* kSchemaKey = "vdb_shell_schema";
+constexpr const char* kVerticesKey = "vdb_shell_vertices";
+constexpr const char* kPointsKey = "vdb_shell_points";
+constexpr const char* kPrismsKey = "vdb_shell_prisms";
+constexpr const char* kTetsKey = "vdb_shell_tets";
+constexpr const char* kRipplesKey = "vdb_shell_ripples";
+constexpr const char* kOrientationKey = "vdb_shell_orientation";
+constexpr const char* kChecksumKey = "vdb_shell_checksum";
+constexpr const char* kGridsKey = "vdb_shell_grids";
+constexpr const char* kPointsFileKey = "vdb_shell_points_file";
+constexpr const char* kParametersKey = "vdb_shell_parameters";
+constexpr const char* kReportKey = "vdb_shell_report";
+constexpr const char* kCreatorKey = "creator";
+
+constexpr const char* kOrientation =
+    "triangles counter-clockwise seen from outside; tets (a,b,c,d) with det(b-a,c-a,d-a) > 0 "
+    "unless inverted; layer 0 outer, 1 inner";
+constexpr const char* kGridNames = "surface depth shell_points shell_prisms shell_tets";
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what)
+{
+    throw ReadError(path.string() + ": " + what);
+}
+
+/// An entry by its exact type.
+template <typename T>
+const T& entry(const openvdb::MetaMap& metadata, const fs::path& path, const char* key)
+{
+    using Typed = openvdb::TypedMetadata<T>;
+    const openvdb::Metadata::ConstPtr found = metadata[key];
+    if (!found)
+        fail(path, std::string("metadata \"") + key + "\" is missing");
+    if (found->typeName() != Typed::staticTypeName())
+        fail(path, std::string("metadata \"") + key + "\" has type " + found->typeName() +
+                       ", expected " + Typed::staticTypeName());
+    return static_cast<const Typed&>(*found).value();
+}
+
+std::int64_t count_entry(const openvdb::MetaMap& metadata, const fs::path& path, const char* key)
+{
+    const std::int32_t count = entry<std::int32_t>(metadata, path, key);
+    if (count < 0)
+        fail(path, std::string("metadata \"") + key + "\" is " + std::to_string(count) +
+                       ", expected 0 or more");
+    return count;
+}
+
+int schema_of(const openvdb::MetaMap& metadata, const fs::path& path)
+{
+    if (!metadata[kSchemaKey])
+        fail(path, std::string("it holds no shell: metadata \"") + kSchemaKey + "\" is missing");
+    const int schema = entry<std::int32_t>(metadata, path, kSchemaKey);
+    if (schema < 1 || schema > kShellSchema)
+        fail(path, "its schema is " + std::to_string(schema) + ", schemas 1 to " +
+                       std::to_string(kShellSchema) + " can be read");
+    return schema;
+}
+
+/// The file with the points: this one, or one beside it, which may have been renamed together with
+/// it.
+fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
+{
+    const std::string& stated = entry<std::string>(metadata, path, kPointsFileKey);
+    if (stated.empty())
+        return path;
+    const fs::path renamed = points_file_of(path);
+    std::error_code ignored;
+    // A name from a file may not lead out of that file's folder.
+    const bool plain = fs::path(stated).filename() == fs::path(stated);
+    if (!plain)
+        fail(path, std::string("metadata \"") + kPointsFileKey + "\" is \"" + stated +
+                       "\", expected a file name without a folder");
+    const bool is_points_file = path.filename() == fs::path(stated);
+    if (is_points_file || fs::exists(renamed, ignored))
+        return is_points_file ? path : renamed;
+    return path.parent_path() / stated;
+}
+
+std::int32_t as_int32(std::size_t value)
+{
+    return std::int32_t(
+        std::min<std::size_t>(value, std::size_t(std::numeric_limits<std::int32_t>::max())));
+}
+
+} // namespace
+
+std::string creator_name()
+{
+    return std::string("vdb_shell ") + VDB_SHELL_VERSION;
+}
+
+fs::path points_file_of(const fs::path& path)
+{
+    return path.parent_path() / (path.stem().string() + ".points.vdb");
+}
+
+openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, PointPlacement points)
+{
+    openvdb::MetaMap map;
+    const ShellCounts counts = counts_of(file.shell, file.tets);
+    map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
+    map.insertMeta(kSchemaKey, Int32Metadata(kShellSchema));
+    map.insertMeta(kVerticesKey, Int32Metadata(std::int32_t(counts.vertices)));
+    map.insertMeta(kPointsKey, Int32Metadata(std::int32_t(counts.points)));
+    map.insertMeta(kPrismsKey, Int32Metadata(std::int32_t(counts.prisms)));
+    map.insertMeta(kTetsKey, Int32Metadata(std::int32_t(counts.tets)));
+    map.insertMeta(kRipplesKey, Int32Metadata(as_int32(file.split.ripples)));
+    map.insertMeta(kOrientationKey, StringMetadata(kOrientation));
+    map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.shell, file.split, file.tets)));
+    map.insertMeta(kGridsKey, StringMetadata(kGridNames));
+    map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
+                                                      ? points_file_of(path).filename().string()
+                                                      : std::string()));
+    map.insertMeta(kParametersKey, StringMetadata(file.parameters_json));
+    map.insertMeta(kReportKey, StringMetadata(file.report_json));
+    return map;
+}
+
+void add_volume_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
+{
+    grid.insertMeta(kSchemaKey, *file[kSchemaKey]);
+    // Houdini turns strings of JSON under names that begin with `dict_` into dictionaries.
+    grid.insertMeta("dict_vdb_shell_parameters", *file[kParametersKey]);
+    grid.insertMeta("dict_vdb_shell_report", *file[kReportKey]);
+}
+
+void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
+{
+    grid.setCreator(creator_name());
+    const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,     kPrismsKey,
+                                kTetsKey,   kRipplesKey,  kOrientationKey};
+    for (const char* key : kept)
+        grid.insertMeta(std::string("global:") + key, *file[key]);
+}
+
+ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& path)
+{
+    ShellInfo info;
+    info.schema = schema_of(metadata, path);
+    info.vertices = count_entry(metadata, path, kVerticesKey);
+    info.points = count_entry(metadata, path, kPointsKey);
+    info.prisms = count_entry(metadata, path, kPrismsKey);
+    info.tets = count_entry(metadata, path, kTetsKey);
+    info.ripples = count_entry(metadata, path, kRipplesKey);
+    info.creator = entry<std::string>(metadata, path, kCreatorKey);
+    info.orientation = entry<std::string>(metadata, path, kOrientationKey);
+    info.checksum = entry<std::string>(metadata, path, kChecksumKey);
+    std::istringstream names(entry<std::string>(metadata, path, kGridsKey));
+    for (std::string name; names >> name;)
+        info.grids.push_back(name);
+    info.points_at = points_place(metadata, path);
+    info.parameters_json = entry<std::string>(metadata, path, kParametersKey);
+    info.report_json = entry<std::string>(metadata, path, kReportKey);
+    return info;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "write/tet_formats.h"
+#include "write/text_out.h"
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace vdb_shell
+{
+namespace
+{
+
+constexpr std::uint8_t kVtkTetra = 10;
+
+const char* byte_order()
+{
+    const std::uint16_t one = 1;
+    unsigned char first = 0;
+    std::memcpy(&first, &one, 1);
+    return first == 1 ? "LittleEndian" : "BigEndian";
+}
+
+/// Base 64 of `size` bytes; padded to whole groups.
+std::string base64(const unsigned char* bytes, std::size_t size)
+{
+    static constexpr char kDigits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((size + 2) / 3 * 4);
+    for (std::size_t i = 0; i < size; i += 3) {
+        const std::size_t left = size - i;
+        const std::uint32_t group = (std::uint32_t(bytes[i]) << 16) |
+                                    (left > 1 ? std::uint32_t(bytes[i + 1]) << 8 : 0u) |
+                                    (left > 2 ? std::uint32_t(bytes[i + 2]) : 0u);
+        text += kDigits[group >> 18];
+        text += kDigits[(group >> 12) & 63u];
+        text += left > 1 ? kDigits[(group >> 6) & 63u] : '=';
+        text += left > 2 ? kDigits[group & 63u] : '=';
+    }
+    return text;
+}
+
+template <typename T>
+void write_array(TextOut& text, const char* type, const char* name, int components,
+                 const std::vector<T>& values)
+{
+    const std::uint64_t size = values.size() * sizeof(T);
+    text << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
+         << components << "\" format=\"binary\">\n";
+    // The length is a base-64 block of its own.
+    text << base64(reinterpret_cast<const unsigned char*>(&size), sizeof size)
+         << base64(reinterpret_cast<const unsigned char*>(values.data()), std::size_t(size))
+         << "\n</DataArray>\n";
+}
+
+void write_cells(TextOut& text, const TetMesh& tets)
+{
+    const std::size_t count = tets.tets.size();
+    std::vector<std::int64_t> corners(4 * count), ends(count);
+    for (std::size_t t = 0; t < count; ++t) {
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            corners[4 * t + corner] = tets.tets[t][int(corner)];
+        ends[t] = std::int64_t(4 * (t + 1));
+    }
+    text << "<Cells>\n";
+    write_array(text, "Int64", "connectivity", 1, corners);
+    write_array(text, "Int64", "offsets", 1, ends);
+    write_array(text, "UInt8", "types", 1, std::vector<std::uint8_t>(count, kVtkTetra));
+    text << "</Cells>\n";
+}
+
+} // namespace
+
+void write_vtu(std::ostream& out, const TetMesh& tets)
+{
+    static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
+    TextOut text(out);
+    text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+            "byte_order=\""
+         << byte_order() << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece "
+         << "NumberOfPoints=\"" << tets.points.size() << "\" NumberOfCells=\"" << tets.tets.size()
+         << "\">\n<PointData>\n";
+    write_array(text, "UInt32", "source_vertex", 1, tets.source_vertex);
+    write_array(text, "UInt8", "layer", 1, tets.layer);
+    text << "</PointData>\n<CellData>\n";
+    write_array(text, "UInt32", "prism", 1, tets.prism);
+    text << "</CellData>\n<Points>\n";
+    write_array(text, "Float32", "Points", 3, tets.points);
+    text << "</Points>\n";
+    write_cells(text, tets);
+    text << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+}
+
+} // namespace vdb_shell
