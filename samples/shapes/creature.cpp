@@ -18,7 +18,7 @@ namespace
 using openvdb::Coord;
 using openvdb::Vec3d;
 
-constexpr double kVoxelSize = 0.0125;
+constexpr double kVoxelSize = 0.016;
 constexpr double kBand = 3.0 * kVoxelSize;
 const Vec3d kLow(-0.95, -0.1, -1.65), kHigh(0.95, 2.0, 1.65);
 

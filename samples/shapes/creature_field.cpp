@@ -14,6 +14,11 @@ namespace
 
 using openvdb::Vec3d;
 
+// Parts within these distances of their middles. Further off, beyond the width of any seam, the
+// distance to that ball stands in for the part, to save time.
+constexpr double kLegReach = 0.5;
+constexpr double kHeadReach = 0.95;
+
 /// Union and difference that round the seam over a width of about k.
 double join(double a, double b, double k)
 {
@@ -61,6 +66,8 @@ double leg(const Vec3d& p, double side, bool front)
 {
     const double step = front ? 0.07 * side : -0.06 * side;
     const double z = (front ? 0.40 : -0.46) + step;
+    if (const double away = (p - Vec3d(0.3 * side, 0.3, z)).length(); away > 0.75)
+        return away - kLegReach;
     const Vec3d hip(0.25 * side, front ? 0.52 : 0.50, front ? 0.34 : -0.44);
     const Vec3d knee(0.33 * side, 0.30, z + (front ? -0.05 : 0.07));
     const Vec3d ankle(0.32 * side, 0.13, z);
@@ -99,7 +106,7 @@ double tail(const Vec3d& p)
 /// A thin sail along the back, scalloped between its four rays.
 double fin(const Vec3d& p)
 {
-    double d = ellipsoid(p, {0.005, 0.84, -0.14}, {0.036, 0.38, 0.54});
+    double d = ellipsoid(p, {0.005, 0.84, -0.14}, {0.046, 0.38, 0.54});
     struct Scallop {
         double y, z, radius;
     };
@@ -107,7 +114,7 @@ double fin(const Vec3d& p)
         {{1.25, 0.20, 0.13}, {1.34, -0.09, 0.15}, {1.27, -0.38, 0.14}, {1.10, -0.62, 0.13}}};
     for (const Scallop& s : kScallops) {
         const double dy = p[1] - s.y, dz = p[2] - s.z;
-        d = carve(d, std::sqrt(dy * dy + dz * dz) - s.radius, 0.03);
+        d = carve(d, std::sqrt(dy * dy + dz * dz) - s.radius, 0.05);
     }
     return d;
 }
@@ -127,34 +134,35 @@ double ear(const Vec3d& p, double side)
     return carve(leaf, hollow, 0.03);
 }
 
-/// Eye, and the two lids around it, which leave a fold on the ball.
+/// Bulging eyes, each with a heavy upper lid that leaves a fold on the ball.
 double eyes(double d, const Vec3d& p)
 {
     for (const double side : {-1.0, 1.0}) {
         const Vec3d centre(0.19 * side, 1.30, 1.03);
-        const double lids = (p - centre).length() - 0.118;
-        const Vec3d opening = Vec3d(0.45 * side, 0.12, 1.0).unit();
-        const Vec3d gap = p - centre - opening * 0.12;
-        d = join(d, lids, 0.05);
-        d = carve(d, ellipsoid(gap, {0, 0, 0}, {0.115, 0.072, 0.10}), 0.02);
-        d = join(d, (p - centre).length() - 0.098, 0.012);
+        const Vec3d up = Vec3d(-0.1 * side, 0.85, 0.1).unit();
+        const double from_ball = (p - centre).length();
+        d = join(d, from_ball - 0.115, 0.03);
+        d = join(d, carve(from_ball - 0.140, (p - centre).dot(up) - 0.035, 0.02), 0.03);
     }
     return d;
 }
 
 double head(const Vec3d& p)
 {
+    if (const double away = (p - Vec3d(0, 1.3, 0.9)).length(); away > 1.1)
+        return away - kHeadReach;
     double d = ellipsoid(p, {0, 1.22, 0.82}, {0.36, 0.30, 0.33});
     d = join(d, ellipsoid(p, {0, 1.10, 1.13}, {0.23, 0.155, 0.23}), 0.12);
+    d = join(d, ellipsoid(p, {0, 0.985, 1.07}, {0.185, 0.085, 0.22}), 0.08);
     for (const double side : {-1.0, 1.0}) {
         d = join(d, ellipsoid(p, {0.2 * side, 1.10, 0.96}, {0.15, 0.12, 0.15}), 0.08);
         d = join(d, ear(p, side), 0.05);
     }
     // A slit that rises towards the cheeks: the creature smiles.
-    const Vec3d mouth(p[0], p[1] - 1.035 - 0.9 * p[0] * p[0], p[2]);
-    d = carve(d, ellipsoid(mouth, {0, 0, 1.20}, {0.285, 0.028, 0.24}), 0.03);
+    const Vec3d mouth(p[0], p[1] - 1.06 - 0.9 * p[0] * p[0], p[2]);
+    d = carve(d, ellipsoid(mouth, {0, 0, 1.20}, {0.285, 0.036, 0.22}), 0.07);
     for (const double side : {-1.0, 1.0})
-        d = carve(d, ellipsoid(p, {0.075 * side, 1.185, 1.325}, {0.028, 0.022, 0.04}), 0.02);
+        d = carve(d, ellipsoid(p, {0.075 * side, 1.185, 1.325}, {0.034, 0.028, 0.05}), 0.03);
     return eyes(d, p);
 }
 
@@ -170,11 +178,11 @@ double folds(const Vec3d& p)
 {
     double depth = 0.0;
     const Vec3d neck = Vec3d(0.0, 0.76, 0.65);
-    for (const double at : {0.98, 1.07})
-        depth += 0.042 * bump((p.dot(neck) - at) / 0.042) * bump((p[1] - 0.86) / 0.42) *
+    for (const double at : {0.955, 1.08})
+        depth += 0.05 * bump((p.dot(neck) - at) / 0.075) * bump((p[1] - 0.86) / 0.42) *
                  bump((p[2] - 0.52) / 0.5);
-    for (const double at : {-0.74, -0.83, -0.92})
-        depth += 0.022 * bump((p[2] - at) / 0.04) * bump((p[1] - 0.5) / 0.35);
+    for (const double at : {-0.73, -0.85, -0.97})
+        depth += 0.028 * bump((p[2] - at) / 0.06) * bump((p[1] - 0.5) / 0.35);
     return depth;
 }
 

@@ -28,9 +28,9 @@ using Halfedge = OpenMesh::HalfedgeHandle;
 using Face = OpenMesh::FaceHandle;
 using Point = Mesh::Point;
 
-// An operation may turn no triangle by more than about 37 degrees from the skin's own normal, nor
+// An operation may turn no triangle by more than about 41 degrees from the skin's own normal, nor
 // make one thinner than this (1 = equilateral).
-constexpr double kSmallestFacing = 0.8;
+constexpr double kSmallestFacing = 0.75;
 constexpr double kSmallestShape = 0.25;
 
 Vec3d to_vec(const Point& p)
@@ -106,7 +106,7 @@ void measure(Remesher& r)
     r.normal.resize(r.mesh.n_vertices());
     for_each_vertex(r.mesh, [&](Vertex v) {
         const Vec3d p = to_vec(r.mesh.point(v));
-        const double k = std::max(curvature(r.field, p, 0.4 * r.options.shortest_edge), 1e-3);
+        const double k = std::max(curvature(r.field, p, 0.5 * r.options.shortest_edge), 1e-3);
         const double e = r.options.sagitta;
         r.target[v.idx()] = std::clamp(std::sqrt(std::max(6 * e / k - 3 * e * e, 0.0)),
                                        r.options.shortest_edge, r.options.longest_edge);
@@ -204,7 +204,8 @@ void collapse_short_edges(Remesher& r)
     r.mesh.garbage_collection();
 }
 
-void flip_for_valence(Remesher& r)
+/// Towards six edges a vertex, and away from bad triangles.
+void flip_edges(Remesher& r)
 {
     for (std::size_t i = 0; i < r.mesh.n_edges(); ++i) {
         const Edge e(static_cast<int>(i));
@@ -219,9 +220,13 @@ void flip_for_valence(Remesher& r)
         };
         const int before = excess(a, 0) + excess(b, 0) + excess(c, 0) + excess(d, 0);
         const int after = excess(a, -1) + excess(b, -1) + excess(c, 1) + excess(d, 1);
-        const auto at = [&](Vertex v) { return to_vec(r.mesh.point(v)); };
-        if (after < before && acceptable(r, {c, a, d}, {at(c), at(a), at(d)}) &&
-            acceptable(r, {d, b, c}, {at(d), at(b), at(c)}))
+        const auto good = [&](Vertex x, Vertex y, Vertex z) {
+            return acceptable(
+                r, {x, y, z},
+                {to_vec(r.mesh.point(x)), to_vec(r.mesh.point(y)), to_vec(r.mesh.point(z))});
+        };
+        const bool mend = !good(a, b, c) || !good(b, a, d);
+        if ((mend || after < before) && good(c, a, d) && good(d, b, c))
             r.mesh.flip(e);
     }
 }
@@ -297,11 +302,11 @@ PolygonMesh remesh(const PolygonMesh& triangles, const Field& field, const Remes
         split_long_edges(r);
         collapse_short_edges(r);
         measure(r);
-        flip_for_valence(r);
+        flip_edges(r);
         relax(r);
     }
     for (int i = 0; i < 4; ++i) {
-        flip_for_valence(r);
+        flip_edges(r);
         relax(r);
     }
     PolygonMesh result;

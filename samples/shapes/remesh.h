@@ -12,11 +12,11 @@ namespace vdb_shell::samples
 using Field = std::function<double(const openvdb::Vec3d&)>;
 
 struct RemeshOptions {
-    double shortest_edge = 0.02;
-    double longest_edge = 0.085;
+    double shortest_edge = 0.027;
+    double longest_edge = 0.1;
     /// Largest distance aimed at between an edge's middle and the surface.
-    double sagitta = 0.0016;
-    int rounds = 10;
+    double sagitta = 0.005;
+    int rounds = 8;
 };
 
 /// Rebuilds a closed triangle surface of the field's zero with edges as short as its curvature asks
