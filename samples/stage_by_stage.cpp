@@ -28,9 +28,7 @@ static void run(const char* mesh_file, const char* tet_file)
 
     const Directions directions = compute_directions(mesh, *level_set, {});
     LineLengths lines = line_step(mesh, *level_set, directions, {});
-    const Spread stepped = spread_of(lines.length);
-    std::cout << "lines: median " << stepped.median << ", longest " << stepped.max << '\n';
-
+    std::cout << "lines: median " << spread_of(lines.length).median << '\n';
     apply_limits(lines, vertex_limits(mesh, directions, Limit::adaptive));
     std::cout << "limits: median " << spread_of(lines.length).median << '\n';
 
