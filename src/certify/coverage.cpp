@@ -157,6 +157,8 @@ struct PointsByCell {
     std::vector<std::uint32_t> offset; ///< points of cell c stand at [offset[c], offset[c+1])
     std::vector<std::uint32_t> point;
     std::vector<Vec3s> position; ///< in the same order, so that a tet reads them in one go
+    /// From how many tets on another one would not change what is reported of the point.
+    std::vector<std::uint8_t> enough;
 };
 
 PointsByCell sort_by_cell(const std::vector<Point>& points, std::size_t cells)
@@ -169,16 +171,19 @@ PointsByCell sort_by_cell(const std::vector<Point>& points, std::size_t cells)
         sorted.offset[c + 1] += sorted.offset[c];
     sorted.point.resize(points.size());
     sorted.position.resize(points.size());
+    sorted.enough.resize(points.size());
     std::vector<std::uint32_t> next(sorted.offset.begin(), sorted.offset.end() - 1);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::uint32_t slot = next[points[i].cell]++;
         sorted.point[slot] = static_cast<std::uint32_t>(i);
         sorted.position[slot] = points[i].position;
+        sorted.enough[slot] = points[i].in_solid ? 2 : 1;
     }
     return sorted;
 }
 
-/// In how many tets each point lies. Integer increments: the order of the tets does not matter.
+/// In how many tets each point lies, as far as it matters. Integer increments, and no point that
+/// falls short of `enough` is skipped: the order of the tets does not change what is reported.
 std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
                                                    const std::vector<Point>& points)
 {
@@ -189,11 +194,14 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
         const FloatBox box = box_of(corners);
         visit_cells_of_tet(scene, tet, [&](std::uint32_t cell) {
             for (std::uint32_t i = sorted.offset[cell]; i < sorted.offset[cell + 1]; ++i) {
+                std::atomic<std::uint32_t>& count = hits[sorted.point[i]];
+                if (count.load(std::memory_order_relaxed) >= sorted.enough[i])
+                    continue;
                 const Vec3s& p = sorted.position[i];
                 const bool in_box = box.low[0] < p[0] && p[0] < box.high[0] && box.low[1] < p[1] &&
                                     p[1] < box.high[1] && box.low[2] < p[2] && p[2] < box.high[2];
                 if (in_box && strictly_inside(corners, scene.sign[tet], p))
-                    hits[sorted.point[i]].fetch_add(1, std::memory_order_relaxed);
+                    count.fetch_add(1, std::memory_order_relaxed);
             }
         });
     });
