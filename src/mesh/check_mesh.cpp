@@ -143,8 +143,8 @@ Defect<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
     return raised(duplicate);
 }
 
-Defect<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
-                                             const std::vector<char>& degenerate)
+std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
+                                                  const std::vector<char>& degenerate)
 {
     const std::vector<TrianglePair> pairs =
         overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles));
@@ -157,11 +157,27 @@ Defect<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
                       sorted_corners(a) != sorted_corners(b) &&
                       exact::triangles_touch(mesh.points, a, b);
     });
-    Defect<TrianglePair> defect;
+    std::vector<TrianglePair> found;
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (touching[i])
-            add_to(defect, pairs[i]);
-    return defect;
+            found.push_back(pairs[i]);
+    return found;
+}
+
+/// The pairs of different components to which the pairs of triangles belong, sorted.
+std::vector<std::array<std::uint32_t, 2>>
+crossing_components(const std::vector<TrianglePair>& pairs,
+                    const std::vector<std::uint32_t>& component_of)
+{
+    std::vector<std::array<std::uint32_t, 2>> crossing;
+    for (const TrianglePair& pair : pairs) {
+        const auto [low, high] = std::minmax(component_of[pair[0]], component_of[pair[1]]);
+        if (low != high)
+            crossing.push_back({low, high});
+    }
+    std::sort(crossing.begin(), crossing.end());
+    crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+    return crossing;
 }
 
 } // namespace
@@ -184,9 +200,13 @@ MeshCheck check_mesh(const TriangleMesh& mesh)
     const std::vector<char> degenerate = find_degenerate(mesh);
     check.degenerate_triangles = raised(degenerate);
     check.duplicate_triangles = find_duplicates(mesh);
-    check.self_intersections = find_self_intersections(mesh, degenerate);
+    const std::vector<TrianglePair> pairs = find_self_intersections(mesh, degenerate);
+    for (const TrianglePair& pair : pairs)
+        add_to(check.self_intersections, pair);
+    const std::vector<std::uint32_t> component_of =
+        component_of_triangles(uses, mesh.triangles.size());
     check.components =
-        describe_components(mesh, uses, component_of_triangles(uses, mesh.triangles.size()));
+        describe_components(mesh, uses, component_of, crossing_components(pairs, component_of));
     for (const Component& component : check.components)
         check.volume += component.volume;
     return check;

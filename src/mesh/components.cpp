@@ -129,21 +129,28 @@ bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Pie
     return inside;
 }
 
+/// Two pieces that do not cross have one answer for every corner, but for those on the surface.
+/// Where they cross or touch, the corners are asked in turn, at most kMostAsked triangles of them.
 bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Piece& outer,
-              const Piece& inner)
+              const Piece& inner, bool crossing)
 {
-    // A point on the other surface says nothing; the next corner may.
-    for (const std::uint32_t t : inner.triangles) {
+    constexpr std::size_t kMostAsked = 256;
+    const std::size_t stride = crossing ? inner.triangles.size() / kMostAsked + 1 : 1;
+    bool any_inside = false;
+    for (std::size_t i = 0; i < inner.triangles.size(); i += stride) {
         for (int corner = 0; corner < 3; ++corner) {
-            const openvdb::Vec3s& point = mesh.points[mesh.triangles[t][corner]];
+            const openvdb::Vec3s& point = mesh.points[mesh.triangles[inner.triangles[i]][corner]];
             bool on_surface = false;
             const bool inside =
                 contains(outer.box, point) && encloses(mesh, boxes, outer, point, on_surface);
-            if (!on_surface)
+            if (on_surface)
+                continue;
+            if (!crossing || !inside)
                 return inside;
+            any_inside = true;
         }
     }
-    return false;
+    return any_inside;
 }
 
 } // namespace
@@ -169,9 +176,10 @@ Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::siz
     return component;
 }
 
-std::vector<Component> describe_components(const TriangleMesh& mesh,
-                                           const std::vector<EdgeUse>& sorted_uses,
-                                           const Indices& component_of)
+std::vector<Component>
+describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+                    const Indices& component_of,
+                    const std::vector<std::array<std::uint32_t, 2>>& crossing)
 {
     std::vector<Indices> triangles = triangles_by_component(component_of);
     const std::size_t count = triangles.size();
@@ -190,13 +198,18 @@ std::vector<Component> describe_components(const TriangleMesh& mesh,
         const Box box = box_of(boxes, triangles[c]);
         pieces[c] = {std::move(triangles[c]), box, component.closed};
     });
+    auto cross = [&](std::size_t a, std::size_t b) {
+        const std::array<std::uint32_t, 2> pair{static_cast<std::uint32_t>(std::min(a, b)),
+                                                static_cast<std::uint32_t>(std::max(a, b))};
+        return std::binary_search(crossing.begin(), crossing.end(), pair);
+    };
     for_each_index(
         count,
         [&](std::size_t c) {
             int& depth = components[c].nesting_depth;
             for (std::size_t other = 0; other < count; ++other)
                 if (other != c && pieces[other].closed)
-                    depth += encloses(mesh, boxes, pieces[other], pieces[c]);
+                    depth += encloses(mesh, boxes, pieces[other], pieces[c], cross(c, other));
             const bool outer = depth % 2 == 0;
             const double volume = components[c].volume;
             components[c].inside_out =

@@ -15,9 +15,11 @@ namespace vdb_shell
 std::vector<std::uint32_t> component_of_triangles(const std::vector<EdgeUse>& sorted_uses,
                                                   std::size_t triangle_count);
 
-/// Everything that check_mesh says about the components.
-std::vector<Component> describe_components(const TriangleMesh& mesh,
-                                           const std::vector<EdgeUse>& sorted_uses,
-                                           const std::vector<std::uint32_t>& component_of);
+/// Everything that check_mesh says about the components. `crossing`: pairs of components that cross
+/// or touch, smaller first, sorted.
+std::vector<Component>
+describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+                    const std::vector<std::uint32_t>& component_of,
+                    const std::vector<std::array<std::uint32_t, 2>>& crossing);
 
 } // namespace vdb_shell

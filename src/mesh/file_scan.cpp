@@ -8,23 +8,33 @@
 namespace vdb_shell
 {
 
-bool make_simple(Corners& corners)
+std::size_t first_unique_corner(const Corners& corners)
+{
+    Corners sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    const auto once = [&](std::uint32_t corner) {
+        const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), corner);
+        return last - first == 1;
+    };
+    return static_cast<std::size_t>(std::find_if(corners.begin(), corners.end(), once) -
+                                    corners.begin());
+}
+
+bool tidy_polygon(Corners& corners)
 {
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     while (corners.size() > 1 && corners.front() == corners.back())
         corners.pop_back();
-    if (corners.size() < 3)
-        return false;
-    Corners sorted = corners;
-    std::sort(sorted.begin(), sorted.end());
-    return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    return corners.size() >= 3 && first_unique_corner(corners) < corners.size();
 }
 
 bool count_face(FileScan& scan, Corners& corners)
 {
     const std::size_t face = scan.file_faces++;
-    if (make_simple(corners))
+    if (tidy_polygon(corners)) {
+        scan.corners_passed_on += corners.size();
         return true;
+    }
     scan.skipped_faces.push_back(face);
     return false;
 }

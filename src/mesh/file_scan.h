@@ -25,6 +25,7 @@ struct FileScan {
     std::string stream;  ///< what that reader is given
     std::size_t file_vertices = 0;
     std::size_t file_faces = 0;
+    std::size_t corners_passed_on = 0;
     std::vector<openvdb::Vec3s> points;     ///< what OpenMesh must deliver, in this order
     std::vector<std::size_t> skipped_faces; ///< file faces that are not passed on, ascending
 
@@ -39,9 +40,12 @@ FileScan scan_stl(const std::string& name, std::string bytes);
 
 using Corners = std::vector<std::uint32_t>;
 
-/// Removes corners that repeat the corner before them. False when what is left is no polygon:
-/// fewer than three corners, or one that comes twice.
-bool make_simple(Corners& corners);
+/// Removes corners that repeat the corner before them. False when what is left is no polygon: fewer
+/// than three corners, or none that comes only once.
+bool tidy_polygon(Corners& corners);
+
+/// The position of the first corner that comes only once; corners.size() when there is none.
+std::size_t first_unique_corner(const Corners& corners);
 
 /// Counts one more face of the file; false, and the face is recorded as skipped, when it is not
 /// worth passing on.

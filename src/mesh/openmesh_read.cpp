@@ -3,7 +3,6 @@
 
 #include <OpenMesh/Core/IO/IOManager.hh>
 #include <OpenMesh/Core/IO/importer/BaseImporter.hh>
-#include <OpenMesh/Core/IO/reader/OBJReader.hh>
 #include <OpenMesh/Core/IO/reader/PLYReader.hh>
 #include <OpenMesh/Core/IO/reader/STLReader.hh>
 #include <OpenMesh/Core/System/omstream.hh>
@@ -150,6 +149,10 @@ PolygonSoup read_with_openmesh(const std::string& name, const FileScan& scan)
         refuse(name, "OpenMesh cannot read it");
     require_count(name, "vertices", soup.points.size(), scan.points.size());
     require_count(name, "faces", soup.faces.size(), scan.faces_passed_on());
+    std::size_t corners = 0;
+    for (const Corners& face : soup.faces)
+        corners += face.size();
+    require_count(name, "corners of faces", corners, scan.corners_passed_on);
     for (std::size_t v = 0; v < soup.points.size(); ++v)
         if (soup.points[v] != scan.points[v])
             refuse(name, "OpenMesh reads vertex " + std::to_string(v) + " as " +

@@ -87,7 +87,7 @@ void append_faces(PolygonSoup& soup, const FileScan& scan, ReadResult& result)
                scan.skipped_faces[next_not_passed_on] == file_face;
              ++next_not_passed_on, ++file_face)
             skipped.push_back(file_face);
-        if (make_simple(face)) {
+        if (tidy_polygon(face)) {
             result.report.polygons_triangulated += face.size() > 3;
             append_triangles(soup.points, face, result.mesh.triangles);
         } else {

@@ -8,14 +8,15 @@ namespace vdb_shell
 namespace
 {
 
-// OpenMesh's OBJ reader gives up on a texture coordinate beyond float range, reads no line
-// continuation, opens the material files that are named, and lets an index of 2^40 or a vertex of
-// two coordinates pass. It is given the lines of vertices and faces only.
+// OpenMesh's OBJ reader gives up on a texture coordinate beyond float range, takes corners that
+// come twice out of a face without a word, reads no line continuation, opens the material files
+// that are named, lets an index of 2^40 or a vertex of two coordinates pass, and goes by the
+// process's locale. The coordinates and corners are handed to its PLY reader, as text.
 
 struct ObjScan {
     const std::string& name;
     FileScan scan;
-    std::string faces;                 ///< the face lines of scan.stream, which come last
+    std::string vertices, faces;       ///< bodies of the stream
     std::vector<std::int64_t> largest; ///< 0-based, of each face
     std::vector<std::size_t> line_of_face;
     Corners corners; ///< of the face in hand
@@ -26,17 +27,15 @@ void add_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
     const std::size_t index = obj.scan.file_vertices++;
     const Place vertex{"vertex", index, line};
     openvdb::Vec3s point;
-    obj.scan.stream += 'v';
     for (int axis = 0; axis < 3; ++axis) {
         const std::string_view word = cut_word(rest);
         if (word.empty())
             refuse(obj.name, vertex.text() + " has " + std::to_string(axis) +
                                  " coordinates where 3 are needed");
         point[axis] = parse_coordinate(obj.name, vertex, word);
-        obj.scan.stream += ' ';
-        obj.scan.stream += word;
+        obj.vertices += word;
+        obj.vertices += axis < 2 ? ' ' : '\n';
     }
-    obj.scan.stream += '\n';
     obj.scan.points.push_back(point);
 }
 
@@ -65,9 +64,9 @@ void add_face(ObjScan& obj, std::string_view rest, std::size_t line)
     obj.line_of_face.push_back(line);
     if (!count_face(obj.scan, obj.corners))
         return;
-    obj.faces += 'f';
+    obj.faces += std::to_string(obj.corners.size());
     for (const std::uint32_t corner : obj.corners)
-        obj.faces += ' ' + std::to_string(corner + 1);
+        obj.faces += ' ' + std::to_string(corner);
     obj.faces += '\n';
 }
 
@@ -92,9 +91,9 @@ bool cut_continuation(std::string_view& line)
 
 FileScan scan_obj(const std::string& name, const std::string& bytes)
 {
-    ObjScan obj{name, {}, {}, {}, {}, {}};
+    ObjScan obj{name, {}, {}, {}, {}, {}, {}};
     obj.scan.format = "OBJ";
-    obj.scan.reader = "obj";
+    obj.scan.reader = "ply";
     Lines lines(bytes);
     std::string joined;
     for (std::string_view line; lines.next(line);) {
@@ -114,7 +113,9 @@ FileScan scan_obj(const std::string& name, const std::string& bytes)
             add_face(obj, line, number);
     }
     require_known_corners(obj);
-    obj.scan.stream += obj.faces;
+    obj.scan.stream =
+        plain_ply_header("ascii", "float", obj.scan.file_vertices, obj.scan.faces_passed_on()) +
+        obj.vertices + obj.faces;
     return std::move(obj.scan);
 }
 

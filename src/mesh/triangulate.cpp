@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/triangulate.h"
 
+#include "mesh/file_scan.h"
+
 #include <cmath>
 #include <cstddef>
 
@@ -54,15 +56,18 @@ bool is_convex(const std::vector<Vec2d>& flat)
 }
 
 /// Whether the corner at `k` of `left` can be cut off.
-bool is_ear(const std::vector<Vec2d>& flat, const std::vector<std::size_t>& left, std::size_t k)
+bool is_ear(const std::vector<Vec2d>& flat, const Polygon& polygon,
+            const std::vector<std::size_t>& left, std::size_t k)
 {
     const std::size_t n = left.size();
     const std::size_t before = left[(k + n - 1) % n], at = left[k], after = left[(k + 1) % n];
     const Vec2d &a = flat[before], &b = flat[at], &c = flat[after];
-    if (doubled_area(a, b, c) <= 0)
+    if (polygon[before] == polygon[after] || doubled_area(a, b, c) <= 0)
         return false;
     for (const std::size_t other : left) {
-        if (other == before || other == at || other == after)
+        // A corner that comes twice does not stand in the way of itself.
+        const std::uint32_t corner = polygon[other];
+        if (corner == polygon[before] || corner == polygon[at] || corner == polygon[after])
             continue;
         const Vec2d& p = flat[other];
         if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0)
@@ -82,7 +87,7 @@ bool cut_ears(const std::vector<Vec2d>& flat, const Polygon& polygon,
     while (left.size() > 2) {
         const std::size_t n = left.size();
         std::size_t k = 0;
-        while (k < n && !is_ear(flat, left, k))
+        while (k < n && !is_ear(flat, polygon, left, k))
             ++k;
         if (k == n) {
             triangles.resize(triangles_before);
@@ -105,8 +110,9 @@ void append_triangles(const std::vector<openvdb::Vec3s>& points, const Polygon& 
         if (!is_convex(flat) && cut_ears(flat, polygon, triangles))
             return;
     }
-    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
-        triangles.emplace_back(polygon[0], polygon[k], polygon[k + 1]);
+    const std::size_t n = polygon.size(), apex = first_unique_corner(polygon);
+    for (std::size_t k = apex + 1; k + 1 < apex + n; ++k)
+        triangles.emplace_back(polygon[apex], polygon[k % n], polygon[(k + 1) % n]);
 }
 
 } // namespace vdb_shell

@@ -28,8 +28,10 @@ struct Component {
     double volume = 0; ///< signed; meaningful when the component is closed
     bool closed = false;
     int euler = 0;
-    /// How many other closed components enclose this one. Even: an outer surface. Odd: a cavity,
-    /// which has to be oriented the other way round (its own signed volume is negative).
+    /// How many other closed components enclose this one (of those that it crosses or
+    /// touches: that hold all corners asked). Even: an
+    /// outer surface. Odd: a cavity, which has to be oriented the other way round (its own signed
+    /// volume is negative).
     int nesting_depth = 0;
     /// Closed, every edge run through as often one way as the other, but oriented against the
     /// nesting depth.
@@ -43,8 +45,8 @@ struct MeshCheck {
     Defect<Edge> inconsistent_edges; ///< two triangles that run through the edge the same way
     /// Incident triangles do not form one fan; the ends of non-manifold edges are among them.
     Defect<std::uint32_t> non_manifold_vertices;
-    Defect<std::uint32_t> degenerate_triangles;  ///< exactly zero area (exact arithmetic)
-    Defect<std::uint32_t> duplicate_triangles;   ///< same three points as an earlier triangle
+    Defect<std::uint32_t> degenerate_triangles; ///< exactly zero area (exact arithmetic)
+    Defect<std::uint32_t> duplicate_triangles;  ///< same three points as an earlier triangle
     Defect<TrianglePair> self_intersections; ///< touching other than in shared vertices and edges
     std::vector<Component> components;       ///< by first triangle
     double volume = 0;                       ///< sum of the signed volumes

@@ -12,23 +12,23 @@ namespace vdb_shell
 {
 
 struct ReadOptions {
-    /// Merge vertices of exactly equal float32 position (seams of OBJ files). Off, the vertices stay
-    /// as the file has them; but STL has no vertices to keep, so there equal positions are merged in
-    /// any case.
+    /// Merge vertices of exactly equal float32 position (seams of OBJ files). Off, the vertices
+    /// stay as the file has them; but STL has no vertices to keep, so there equal positions are
+    /// merged in any case.
     bool weld = true;
 };
 
 /// What a file said and what became of it. `file_*` is counted by a scan of the file of our own,
 /// independent of the reader, so that nothing can be lost silently.
 struct ReadReport {
-    std::string format;                     ///< "OBJ", "PLY (binary)", ...
-    std::size_t file_vertices = 0;          ///< vertices that the file declares or lists
-    std::size_t file_faces = 0;             ///< faces that the file declares or lists
-    std::size_t polygons_triangulated = 0;  ///< faces of more than three corners
-    std::size_t welded_vertices = 0;        ///< vertices merged into an equal one before them
-    std::size_t unused_vertices = 0;        ///< vertices of the file that no triangle uses; dropped
-    /// File faces left out, ascending: of their corners, repeats of the corner before them left
-    /// aside, fewer than three remain or one comes twice (by index, and by position when welded).
+    std::string format;                    ///< "OBJ", "PLY (binary)", ...
+    std::size_t file_vertices = 0;         ///< vertices that the file declares or lists
+    std::size_t file_faces = 0;            ///< faces that the file declares or lists
+    std::size_t polygons_triangulated = 0; ///< faces of more than three corners
+    std::size_t welded_vertices = 0;       ///< vertices merged into an equal one before them
+    std::size_t unused_vertices = 0;       ///< vertices of the file that no triangle uses; dropped
+    /// File faces left out, ascending: repeats of the corner before left aside, they have fewer
+    /// than three corners or none that comes only once (by index, and by position when welded).
     std::vector<std::size_t> skipped_faces;
 };
 
