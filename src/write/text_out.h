@@ -7,6 +7,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace vdb_shell
 {
@@ -27,6 +28,7 @@ public:
             flush();
         return *this;
     }
+    TextOut& operator<<(const char* text) { return *this << std::string_view(text); }
     TextOut& operator<<(char c) { return *this << std::string_view(&c, 1); }
     template <typename Number, typename = std::enable_if_t<std::is_arithmetic_v<Number>>>
     TextOut& operator<<(Number value)
