@@ -33,7 +33,10 @@ try {
                       {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     vdb_shell::ShellOptions options;
     options.level_set.resolution = 64;
-    options.line_step.thickness = 0.2; // world units; rho 0.9 alone would go deeper
+    // Every line 0.2 world units long: the inner surface is the octahedron shrunk to 0.8, and the
+    // shell fills 1 - 0.8^3 = 0.488 of the solid.
+    options.line_step.test = vdb_shell::StopTest::none;
+    options.line_step.thickness = 0.2;
 
     std::cout << "to the end:\n";
     Watcher patient(1'000'000'000);

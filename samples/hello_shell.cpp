@@ -18,7 +18,7 @@ int main(int argc, char** argv)
         const vdb_shell::TriangleMesh mesh = vdb_shell::read_mesh(argv[1]).mesh;
         vdb_shell::ShellOptions options; // the paper's settings, unless told otherwise
         options.level_set.resolution = 128;
-        const vdb_shell::ShellResult result = vdb_shell::build_shell(mesh, options, argv[1]);
+        const vdb_shell::ShellResult result = vdb_shell::build_shell(mesh, options);
         vdb_shell::write_tets(argv[2], result.tets);
         std::cout << vdb_shell::report_text(result.report);
     } catch (const std::exception& error) {
