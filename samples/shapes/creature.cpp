@@ -20,7 +20,7 @@ using openvdb::Vec3d;
 
 constexpr double kVoxelSize = 0.016;
 constexpr double kBand = 3.0 * kVoxelSize;
-const Vec3d kLow(-0.95, -0.1, -1.65), kHigh(0.95, 2.0, 1.65);
+const Vec3d lowest(-0.95, -0.1, -1.65), highest(0.95, 2.0, 1.65);
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
@@ -42,8 +42,8 @@ Leaf* sample_block(const Coord& origin, double& value_at_centre)
 
 openvdb::FloatGrid::Ptr sample_field()
 {
-    const Coord low = Coord::floor(kLow / kVoxelSize) & ~(Leaf::DIM - 1);
-    const Coord blocks = (Coord::ceil(kHigh / kVoxelSize) - low + Coord(Leaf::DIM - 1)) >>
+    const Coord low = Coord::floor(lowest / kVoxelSize) & ~(Leaf::DIM - 1);
+    const Coord blocks = (Coord::ceil(highest / kVoxelSize) - low + Coord(Leaf::DIM - 1)) >>
                          static_cast<std::size_t>(Leaf::LOG2DIM);
     const auto count = static_cast<std::size_t>(blocks[0]) * blocks[1] * blocks[2];
     const auto origin_of = [&](std::size_t i) {
@@ -55,7 +55,7 @@ openvdb::FloatGrid::Ptr sample_field()
     std::vector<double> centres(count, 0.0);
     for_each_index(count,
                    [&](std::size_t i) { leaves[i] = sample_block(origin_of(i), centres[i]); });
-    const auto grid = openvdb::createLevelSet<openvdb::FloatGrid>(kVoxelSize, 3.0F);
+    auto grid = openvdb::createLevelSet<openvdb::FloatGrid>(kVoxelSize, 3.0F);
     for (std::size_t i = 0; i < count; ++i) {
         if (leaves[i])
             grid->tree().addLeaf(leaves[i]);

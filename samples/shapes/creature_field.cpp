@@ -87,16 +87,16 @@ double tail(const Vec3d& p)
         Vec3d at;
         double radius;
     };
-    static const std::array<Knot, 7> kKnots{{{{0.00, 0.56, -0.60}, 0.20},
-                                             {{0.03, 0.47, -0.86}, 0.145},
-                                             {{0.10, 0.46, -1.10}, 0.105},
-                                             {{0.19, 0.55, -1.30}, 0.08},
-                                             {{0.26, 0.71, -1.41}, 0.066},
-                                             {{0.29, 0.89, -1.43}, 0.056},
-                                             {{0.27, 1.04, -1.37}, 0.048}}};
+    static const std::array<Knot, 7> knots{{{{0.00, 0.56, -0.60}, 0.20},
+                                            {{0.03, 0.47, -0.86}, 0.145},
+                                            {{0.10, 0.46, -1.10}, 0.105},
+                                            {{0.19, 0.55, -1.30}, 0.08},
+                                            {{0.26, 0.71, -1.41}, 0.066},
+                                            {{0.29, 0.89, -1.43}, 0.056},
+                                            {{0.27, 1.04, -1.37}, 0.048}}};
     double d = 1e3;
-    for (std::size_t i = 0; i + 1 < kKnots.size(); ++i)
-        d = join(d, limb(p, kKnots[i].at, kKnots[i + 1].at, kKnots[i].radius, kKnots[i + 1].radius),
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i)
+        d = join(d, limb(p, knots[i].at, knots[i + 1].at, knots[i].radius, knots[i + 1].radius),
                  0.04);
     // A leaf at the end: two blades.
     d = join(d, ellipsoid(p, {0.26, 1.16, -1.37}, {0.035, 0.14, 0.09}), 0.04);
@@ -110,9 +110,9 @@ double fin(const Vec3d& p)
     struct Scallop {
         double y, z, radius;
     };
-    static const std::array<Scallop, 4> kScallops{
+    static const std::array<Scallop, 4> scallops{
         {{1.25, 0.20, 0.13}, {1.34, -0.09, 0.15}, {1.27, -0.38, 0.14}, {1.10, -0.62, 0.13}}};
-    for (const Scallop& s : kScallops) {
+    for (const Scallop& s : scallops) {
         const double dy = p[1] - s.y, dz = p[2] - s.z;
         d = carve(d, std::sqrt(dy * dy + dz * dz) - s.radius, 0.05);
     }

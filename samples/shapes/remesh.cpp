@@ -3,6 +3,11 @@
 
 #include "core/parallel.h"
 
+// OpenMesh grows its arrays by default-made vectors, which GCC takes for a read of unset values; it
+// says so where they are inlined, at the end of the file.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 #include <algorithm>
