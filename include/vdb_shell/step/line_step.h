@@ -37,8 +37,12 @@ enum class StopReason : std::uint8_t {
     no_direction, ///< no usable direction at this vertex
     converged,    ///< bisection closed its interval
     iterations,   ///< bisection hit its iteration limit
+    prism,        ///< growth: a tet of a prism would not stay positive
+    inner_contact, ///< growth: the inner surface would touch itself
+    outer_contact, ///< growth: the inner surface would touch the outer one
+    pinned,        ///< growth: no valid length at all
 };
-inline constexpr int kStopReasonCount = 9;
+inline constexpr int kStopReasonCount = 13;
 
 /// Name for reports: "stop_test", "thickness", ...
 const char* name_of(StopReason reason);
