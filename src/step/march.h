@@ -140,7 +140,8 @@ template <typename Field> LineEnd step_one(Field& field, const Line& line, const
         return {0, 0, StopReason::thickness};
     switch (rules.test) {
     case StopTest::none:
-        return step_line_of(line);
+        return {line.max_length, 0,
+                std::isfinite(line.max_length) ? StopReason::thickness : StopReason::none};
     case StopTest::bisection:
         return bisect_line(field, line, rules);
     default:

@@ -98,8 +98,9 @@ TEST(LevelSet, KeepsItsAccuracyFarFromTheOrigin)
     const double voxel = grid->voxelSize()[0];
     for (auto value = grid->cbeginValueOn(); value; ++value) {
         const double r = (grid->indexToWorld(value.getCoord()) - Vec3d(350, -350, 350)).length();
-        if (r > 0.2)
-            EXPECT_NEAR(*value, r - 1, 0.1 * voxel);
+        if (r < 0.2)
+            continue;
+        EXPECT_NEAR(*value, r - 1, 0.1 * voxel);
     }
 }
 
@@ -190,7 +191,8 @@ TEST(LevelSet, StopsWhenItIsAskedTo)
     for (const int polls : {0, 1, 20}) {
         StopsAfter interrupter(polls);
         EXPECT_THROW(mesh_to_level_set(mesh, at_resolution(64), &interrupter), Cancelled);
-        EXPECT_EQ(interrupter.open, polls == 0 ? interrupter.open : 0);
+        // A stage that is refused before it starts has opened its frame and not yet closed it.
+        EXPECT_EQ(interrupter.open, polls == 0 ? 1 : 0);
     }
 }
 
