@@ -194,7 +194,7 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
     const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
     LatchedInterrupter latched(interrupter);
     openvdb::util::NullInterrupter& tool = latched;
-    const auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+    auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
         tool, *transform, mesh.points, mesh.triangles, {}, static_cast<float>(band.exterior),
         static_cast<float>(band.interior));
     if (latched.stopped())
