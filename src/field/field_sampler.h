@@ -55,10 +55,12 @@ public:
 
 private:
     // The point's cell has corners 0 and 1 on each axis; the stencil reaches from -1 to 2.
-    double value(int i, int j, int k) const
+    static std::size_t slot(int i, int j, int k)
     {
-        return values_[static_cast<std::size_t>((i + 1) * 16 + (j + 1) * 4 + k + 1)];
+        const int n = (i + 1) * 16 + (j + 1) * 4 + (k + 1);
+        return static_cast<std::size_t>(n);
     }
+    double value(int i, int j, int k) const { return values_[slot(i, j, k)]; }
 
     void fetch(const openvdb::Coord& base)
     {
@@ -72,7 +74,7 @@ private:
                         continue;
                     float read = 0;
                     in_band_ &= accessor_.probeValue(base.offsetBy(i, j, k), read);
-                    values_[static_cast<std::size_t>((i + 1) * 16 + (j + 1) * 4 + k + 1)] = read;
+                    values_[slot(i, j, k)] = read;
                 }
     }
 

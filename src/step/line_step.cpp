@@ -23,6 +23,9 @@ constexpr double kIntervalVoxels = 1.0 / 1024;
 // A line that is not inside after this many voxels never will be.
 constexpr double kEntryVoxels = 1.5;
 constexpr double kSmallestStepVoxels = 1e-3;
+// On a crease of the field the interpolated slope swings with the position in the cell (between
+// 0.65 and 0.87 on a box's diagonal). Along one cell diagonal every phase has been seen.
+constexpr double kPeriodVoxels = 1.7320508;
 // Vertices between two looks at the interrupter.
 constexpr std::size_t kBlock = 4096;
 
@@ -62,6 +65,7 @@ MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_se
     rules.step = options.step_voxels * voxel;
     rules.distance_threshold = options.distance_threshold_voxels * voxel;
     rules.reference = options.reference_voxels * voxel;
+    rules.period = kPeriodVoxels * voxel;
     rules.entry = kEntryVoxels * voxel;
     rules.search_depth = 0.5 * diagonal_of(bounds_of(mesh.points));
     rules.interval = kIntervalVoxels * voxel;

@@ -19,7 +19,8 @@ struct MarchRules {
     double rho = 0.9;
     double step = 0;
     double distance_threshold = 0;
-    double reference = 0;    ///< relative_normal's s0 is measured here, and its test starts here
+    double reference = 0;    ///< relative_normal measures s0 from here on...
+    double period = 0;       ///< ...over this distance, within which it stops only at slope zero
     double entry = 0;        ///< a line that is not inside by here has missed the solid
     double search_depth = 0; ///< bisection looks no deeper: half the diagonal
     double interval = 0;     ///< bisection has converged when its interval is this short
@@ -75,23 +76,28 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
     // Smoothing can leave a vertex outside the zero crossing: it has that much further to go in.
     const double entry = rules.entry + std::max(0.0, start.phi);
 
-    double least_slope = rules.rho;
-    if (rules.test == StopTest::relative_normal && rules.reference < line.max_length) {
-        const double reference_slope = sample_at(rules.reference).gradient.dot(outward);
-        if (!(reference_slope > 0))
-            return {0, 1, StopReason::stop_test};
-        least_slope = rules.rho * reference_slope;
-    }
+    const auto slope_of = [&](const auto& sample) { return sample.gradient.dot(outward); };
+
+    double reference_slope = 0;
+    if (rules.test == StopTest::relative_normal)
+        reference_slope = slope_of(sample_at(std::min(rules.reference, line.max_length)));
+    const auto relative_holds = [&](double e, double slope) {
+        if (e > rules.reference + rules.period)
+            return slope > rules.rho * std::max(0.0, reference_slope);
+        if (e >= rules.reference)
+            reference_slope = std::min(reference_slope, slope);
+        return slope > 0;
+    };
     const auto holds = [&](double e, const auto& sample) {
         switch (rules.test) {
         case StopTest::normal:
-            return sample.gradient.dot(outward) > rules.rho;
+            return slope_of(sample) > rules.rho;
         case StopTest::start_gradient:
             return sample.gradient.dot(start.gradient) > rules.rho;
         case StopTest::distance:
             return std::abs(e + sample.phi) < rules.distance_threshold;
         case StopTest::relative_normal:
-            return e <= rules.reference || sample.gradient.dot(outward) > least_slope;
+            return relative_holds(e, slope_of(sample));
         case StopTest::none:
         case StopTest::bisection:
             break;
@@ -126,12 +132,6 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
     return end;
 }
 
-inline LineEnd step_line_of(const Line& line)
-{
-    const bool bounded = std::isfinite(line.max_length);
-    return {line.max_length, 0, bounded ? StopReason::thickness : StopReason::none};
-}
-
 template <typename Field> LineEnd step_one(Field& field, const Line& line, const MarchRules& rules)
 {
     if (line.inward.lengthSqr() == 0)
@@ -140,7 +140,8 @@ template <typename Field> LineEnd step_one(Field& field, const Line& line, const
         return {0, 0, StopReason::thickness};
     switch (rules.test) {
     case StopTest::none:
-        return step_line_of(line);
+        return {line.max_length, 0,
+                std::isfinite(line.max_length) ? StopReason::thickness : StopReason::none};
     case StopTest::bisection:
         return bisect_line(field, line, rules);
     default:

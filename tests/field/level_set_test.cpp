@@ -1,2 +1,200 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/field/level_set.h"
+
+#include "support/shapes.h"
+#include "vdb_shell/core/error.h"
+
+#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <functional>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using ::testing::HasSubstr;
+
+LevelSetOptions at_resolution(int resolution)
+{
+    LevelSetOptions options;
+    options.resolution = resolution;
+    return options;
+}
+
+template <typename Error> std::string message_of(const std::function<void()>& call)
+{
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "nothing thrown";
+}
+
+struct StopsAfter : Interrupter {
+    explicit StopsAfter(int polls) : left(polls) {}
+    bool wasInterrupted(int) override { return --left < 0; }
+    void start(const char*) override { ++open; }
+    void end() override { --open; }
+    int left, open = 0;
+};
+
+TEST(LevelSet, GivesSignedDistancesThroughTheWholeInside)
+{
+    const Vec3d low(-0.5, -0.3, -0.2), high(0.5, 0.3, 0.2);
+    const auto grid = mesh_to_level_set(test::box(low, high), at_resolution(40));
+    const double voxel = grid->voxelSize()[0];
+    EXPECT_DOUBLE_EQ(voxel, 1.0 / 40);
+    std::size_t inside = 0;
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        const Vec3d p = grid->indexToWorld(value.getCoord());
+        const Vec3d to_low = low - p, to_high = p - high;
+        const Vec3d q = openvdb::math::maxComponent(to_low, to_high);
+        const double depth = std::max({q[0], q[1], q[2]});
+        if (depth >= 0)
+            continue;
+        ++inside;
+        EXPECT_NEAR(*value, depth, 0.1 * voxel) << p;
+    }
+    // 39 x 23 x 15 voxel centres lie strictly inside.
+    EXPECT_EQ(inside, 39u * 23u * 15u);
+}
+
+TEST(LevelSet, SaysWhatItIs)
+{
+    const auto grid = mesh_to_level_set(test::icosphere(1, 2), at_resolution(16));
+    EXPECT_EQ(grid->getName(), "surface");
+    EXPECT_EQ(grid->getGridClass(), openvdb::GRID_LEVEL_SET);
+    EXPECT_TRUE(grid->isInWorldSpace());
+    EXPECT_FLOAT_EQ(grid->background(), static_cast<float>(3 * grid->voxelSize()[0]));
+    // Voxel centres at whole multiples of the voxel size.
+    EXPECT_EQ(grid->indexToWorld(Vec3d(0.0)), Vec3d(0.0));
+}
+
+TEST(LevelSet, InteriorBandReachesTheDepthAskedForAndNotMuchDeeper)
+{
+    LevelSetOptions options = at_resolution(64);
+    const TriangleMesh mesh = test::icosphere(1, 3);
+    const double voxel = resolve_voxel_size(mesh, options);
+    options.interior_depth = 8 * voxel;
+    const auto grid = mesh_to_level_set(mesh, options);
+    double deepest = 0;
+    for (auto value = grid->cbeginValueOn(); value; ++value)
+        deepest = std::min(deepest, static_cast<double>(*value));
+    EXPECT_LE(deepest, -10 * voxel);
+    EXPECT_GE(deepest, -12 * voxel);
+}
+
+TEST(LevelSet, KeepsItsAccuracyFarFromTheOrigin)
+{
+    // 100 diagonals away: float32 leaves 3e-3 voxels.
+    const TriangleMesh mesh = test::translated(test::icosphere(1, 4), Vec3d(350, -350, 350));
+    const auto grid = mesh_to_level_set(mesh, at_resolution(32));
+    const double voxel = grid->voxelSize()[0];
+    for (auto value = grid->cbeginValueOn(); value; ++value) {
+        const double r = (grid->indexToWorld(value.getCoord()) - Vec3d(350, -350, 350)).length();
+        if (r < 0.2)
+            continue;
+        EXPECT_NEAR(*value, r - 1, 0.1 * voxel);
+    }
+}
+
+TEST(LevelSet, SameBitsForAnyNumberOfThreads)
+{
+    const TriangleMesh mesh = test::torus(1, 0.4, 40, 20);
+    const auto made_by = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return mesh_to_level_set(mesh, at_resolution(48));
+    };
+    const auto one = made_by(1);
+    for (const std::size_t threads : {2, 7}) {
+        const auto other = made_by(threads);
+        ASSERT_EQ(one->activeVoxelCount(), other->activeVoxelCount());
+        for (auto value = one->cbeginValueOn(); value; ++value)
+            ASSERT_EQ(*value, other->tree().getValue(value.getCoord()));
+    }
+}
+
+TEST(LevelSet, EstimateIsNotBelowTheGridAndGrowsAsTheVoxelsShrink)
+{
+    const TriangleMesh mesh = test::icosphere(1, 3);
+    const LevelSetOptions options = at_resolution(64);
+    const double voxel = resolve_voxel_size(mesh, options);
+    const auto grid = mesh_to_level_set(mesh, options);
+    const double estimate = estimate_level_set_bytes(mesh, voxel, options);
+    EXPECT_GT(estimate, static_cast<double>(grid->memUsage()));
+    EXPECT_GT(estimate_level_set_bytes(mesh, voxel / 32, options), 8000 * estimate / 32);
+}
+
+TEST(LevelSet, RefusesWhatCannotFitInMemoryBeforeItTries)
+{
+    LevelSetOptions options;
+    options.voxel_size = 2e-5;
+    const TriangleMesh mesh = test::icosphere(1, 2);
+    EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(mesh, options); }),
+                HasSubstr("over the limit of"));
+    options.voxel_size = 0.05;
+    options.max_memory_gib = 1e-3;
+    EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(mesh, options); }),
+                HasSubstr("over the limit of 0.001 GiB"));
+}
+
+TEST(LevelSet, RefusesVoxelsThatDoNotFitTheObject)
+{
+    LevelSetOptions options;
+    const TriangleMesh mesh = test::box(Vec3d(0.0), Vec3d(1.0));
+    options.voxel_size = 1.5;
+    const auto make = [&] { mesh_to_level_set(mesh, options); };
+    EXPECT_THAT(message_of<GeometryError>(make),
+                HasSubstr("voxel larger than the object: voxel size 1.5, longest side 1"));
+    options.voxel_size = 1e-6;
+    EXPECT_THAT(message_of<GeometryError>(make), HasSubstr("voxel size 1e-06 is below"));
+
+    // A plate between two layers of voxel centres.
+    options.voxel_size = 0.1;
+    const TriangleMesh plate = test::box(Vec3d(0, 0, 0.01), Vec3d(1, 1, 0.09));
+    EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(plate, options); }),
+                HasSubstr("no voxel centre lies inside"));
+
+    options.voxel_size = 0.01;
+    const TriangleMesh far = test::translated(mesh, Vec3d(1e6, 0, 0));
+    EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(far, options); }),
+                HasSubstr("too small for coordinates up to"));
+}
+
+TEST(LevelSet, RefusesOptionsOutOfRange)
+{
+    const TriangleMesh mesh = test::box(Vec3d(0.0), Vec3d(1.0));
+    const auto refused = [&](const std::function<void(LevelSetOptions&)>& change) {
+        LevelSetOptions options;
+        change(options);
+        return message_of<InvalidOption>([&] { mesh_to_level_set(mesh, options); });
+    };
+    EXPECT_THAT(refused([](auto& o) { o.voxel_size = -0.1; }), HasSubstr("voxel_size is -0.1"));
+    EXPECT_THAT(refused([](auto& o) { o.voxel_size = NAN; }), HasSubstr("voxel_size is nan"));
+    EXPECT_THAT(refused([](auto& o) { o.resolution = 0; }), HasSubstr("resolution is 0"));
+    EXPECT_THAT(refused([](auto& o) { o.exterior_voxels = 1; }), HasSubstr("exterior_voxels is 1"));
+    EXPECT_THAT(refused([](auto& o) { o.interior_depth = 0; }), HasSubstr("interior_depth is 0"));
+    EXPECT_THAT(refused([](auto& o) { o.max_memory_gib = -2; }), HasSubstr("max_memory_gib is -2"));
+    EXPECT_THAT(message_of<GeometryError>([] { mesh_to_level_set({}, {}); }),
+                HasSubstr("0 points and 0 triangles"));
+}
+
+TEST(LevelSet, StopsWhenItIsAskedTo)
+{
+    const TriangleMesh mesh = test::icosphere(1, 3);
+    for (const int polls : {0, 1, 20}) {
+        StopsAfter interrupter(polls);
+        EXPECT_THROW(mesh_to_level_set(mesh, at_resolution(64), &interrupter), Cancelled);
+        // A stage that is refused before it starts has opened its frame and not yet closed it.
+        EXPECT_EQ(interrupter.open, polls == 0 ? 1 : 0);
+    }
+}
+
+} // namespace
+} // namespace vdb_shell

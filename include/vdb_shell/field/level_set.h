@@ -16,10 +16,11 @@ struct LevelSetOptions {
     std::optional<double> voxel_size;
     /// Voxels along the longest side of the bounding box (the paper: 256).
     int resolution = 256;
-    /// Width of the band outside the surface.
+    /// Width of the band outside the surface, at least 3: the stencil of line stepping at a vertex.
     double exterior_voxels = 3.0;
     /// Depth of the band inside, in world units. Unset: half the diagonal of the bounding box, as
-    /// deep as any line can go (the paper, section 3).
+    /// deep as any line can go (the paper, section 3). The grid gets 3 voxels more than this, what
+    /// the stencil of line stepping reads around a point of that depth.
     std::optional<double> interior_depth;
     /// Refuse a grid that is estimated to need more than this. Unset: what the machine has free.
     std::optional<double> max_memory_gib;

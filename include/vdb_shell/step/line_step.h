@@ -17,13 +17,13 @@ namespace vdb_shell
 /// When a line stops. g(q) is the gradient of the field at q: central differences of the grid,
 /// interpolated trilinearly and not normalised, as the paper's authors compute it; n = -inward.
 enum class StopTest {
-    none,            ///< never by the field: only thickness and limits bound the line
+    none,            ///< never by the field, which is not read: thickness or infinity, then limits
     normal,          ///< eq. 10: go on while g(q) . n > rho
     start_gradient,  ///< eq. 7: go on while g(q) . g(p) > rho
     distance,        ///< eq. 8: go on while |e + phi(q)| < distance_threshold_voxels
     bisection,       ///< eq. 1 by bisection on e = -phi(q): the paper's baseline
-    relative_normal, ///< go on while g(q) . n > rho * s0, s0 taken where the stencil is clear of
-                     ///< the start
+    relative_normal, ///< go on while g(q) . n > rho * s0, where s0 is the smallest slope g . n over
+                     ///< one cell diagonal from reference_voxels on; up to there while g . n > 0
 };
 
 /// Why a line ended where it did.
@@ -56,7 +56,9 @@ struct LineStepOptions {
     /// Eq. 8's threshold; also bisection's, on |e + phi|.
     double distance_threshold_voxels = 1.0;
     int bisection_iterations = 1000;
-    /// relative_normal measures its reference slope s0 at this distance from the start.
+    /// relative_normal measures its reference slope s0 from this distance on, where the stencil is
+    /// clear of the start, over sqrt(3) voxels: on a crease of the field the interpolated slope
+    /// swings with the position in the cell, and s0 has to be its low.
     double reference_voxels = 1.5;
     /// Largest length of any line, world units (epsilon_user of eq. 1). Unset: no such bound.
     std::optional<double> thickness;
@@ -71,9 +73,11 @@ struct LineLengths {
 
 /// Steps from every vertex inward along its direction, in parallel over VDB samplers.
 /// `thickness_grid` (may be null): a float grid of largest lengths, sampled at each vertex; a
-/// negative or non-finite sample throws GeometryError with the vertex. Throws InvalidOption when an
-/// option is out of its range, Cancelled. Guarantee: length <= thickness and <= the sampled
-/// thickness; same bits for any number of threads. Cost: O(V N), eq. 12.
+/// negative or non-finite sample throws GeometryError with the vertex. The first look at the field
+/// is one step from the vertex. Throws InvalidOption when an option is out of its range,
+/// GeometryError when the level set's voxels are not uniform, Cancelled. Guarantee: length <=
+/// thickness and <= the sampled thickness; same bits for any number of threads. Cost: O(V N),
+/// eq. 12.
 LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                       const Directions& directions, const LineStepOptions& options,
                       const openvdb::FloatGrid* thickness_grid = nullptr,
