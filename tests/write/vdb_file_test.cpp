@@ -139,7 +139,8 @@ TEST(VdbFile, PutsPointsBesideOnRequest)
     write_shell_vdb(folder / "a.vdb", file, {PointPlacement::beside});
     openvdb::io::File volumes((folder / "a.vdb").string());
     volumes.open(false);
-    for (const openvdb::GridBase::Ptr& grid : *volumes.readAllGridMetadata())
+    const openvdb::GridPtrVecPtr grids = volumes.readAllGridMetadata();
+    for (const openvdb::GridBase::Ptr& grid : *grids)
         EXPECT_FALSE(grid->isType<PointDataGrid>()) << grid->getName();
     volumes.close();
     EXPECT_EQ(read_shell_info(folder / "a.vdb").points_at, folder / "a.points.vdb");
