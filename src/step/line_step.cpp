@@ -117,6 +117,14 @@ const char* name_of(StopReason reason)
         return "converged";
     case StopReason::iterations:
         return "iterations";
+    case StopReason::prism:
+        return "prism";
+    case StopReason::inner_contact:
+        return "inner_contact";
+    case StopReason::outer_contact:
+        return "outer_contact";
+    case StopReason::pinned:
+        return "pinned";
     }
     assert(false && "a stop reason without a name");
     return "";

@@ -57,7 +57,8 @@ void open_file(openvdb::io::File& file)
 std::string list_of_grids(openvdb::io::File& file)
 {
     std::string list;
-    for (const GridBase::Ptr& grid : *file.readAllGridMetadata())
+    const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
+    for (const GridBase::Ptr& grid : *grids)
         list += (list.empty() ? "\"" : ", \"") + grid->getName() + "\" (" + grid->valueType() +
                 (grid->saveFloatAsHalf() ? " as half" : "") + ")";
     return list.empty() ? "no grids" : list;
@@ -189,7 +190,8 @@ FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
         std::string chosen = name;
         if (name.empty()) {
             int found = 0;
-            for (const GridBase::Ptr& grid : *file.readAllGridMetadata())
+            const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
+            for (const GridBase::Ptr& grid : *grids)
                 if (grid->isType<FloatGrid>()) {
                     chosen = grid->getName();
                     ++found;
