@@ -2,6 +2,7 @@
 #include "vdb_shell/field/level_set.h"
 
 #include "core/stage_progress.h"
+#include "field/cavities.h"
 #include "field/latched_interrupter.h"
 #include "vdb_shell/core/error.h"
 
@@ -32,6 +33,8 @@ constexpr double kStencilVoxels = 3.0;
 constexpr double kSmallestExteriorVoxels = 3.0;
 // OpenVDB's maps refuse a determinant under 3e-15.
 constexpr double kSmallestVoxel = 1.5e-5;
+// With fewer voxels along its longest side an object has no field to speak of.
+constexpr double kFewestVoxels = 8.0;
 // Points are float32 in index space too while distances are computed: up to here they resolve a
 // quarter of a voxel. (Index coordinates end only at 2^31.)
 constexpr double kLargestIndex = 4194304.0;
@@ -118,6 +121,41 @@ void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions&
                             " GiB; enlarge the voxels or bound the interior depth");
 }
 
+openvdb::FloatGrid::Ptr convert(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
+                                const BandVoxels& band, Interrupter* interrupter)
+{
+    LatchedInterrupter latched(interrupter);
+    openvdb::util::NullInterrupter& tool = latched;
+    auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+        tool, transform, mesh.points, mesh.triangles, {}, static_cast<float>(band.exterior),
+        static_cast<float>(band.interior));
+    if (latched.stopped())
+        throw Cancelled();
+    return grid;
+}
+
+/// OpenVDB's flood fill takes everything inside the outermost surface for solid, so what stands
+/// inside a cavity's surface is converted on its own and taken out, or put back.
+openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
+                                       const openvdb::math::Transform& transform,
+                                       const BandVoxels& band, Interrupter* interrupter)
+{
+    const std::vector<TriangleMesh> parts = split_by_nesting(mesh);
+    const auto grid = convert(parts.front(), transform, band, interrupter);
+    constexpr double kAllOfIt = std::numeric_limits<float>::max();
+    for (std::size_t depth = 1; depth < parts.size(); ++depth) {
+        const bool is_cavity = depth % 2 == 1;
+        const BandVoxels part_band = is_cavity ? BandVoxels{band.interior, kAllOfIt}
+                                               : BandVoxels{band.exterior, band.interior};
+        const auto part = convert(parts[depth], transform, part_band, interrupter);
+        if (is_cavity)
+            subtract_cavity(*grid, *part);
+        else
+            add_solid(*grid, *part);
+    }
+    return grid;
+}
+
 bool has_inside(const openvdb::FloatGrid& grid)
 {
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
@@ -145,7 +183,8 @@ double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& optio
     if (!(std::isfinite(size) && size > 0))
         fail<GeometryError>("the mesh's longest side is ", size,
                             ", must be positive and finite to derive a voxel size from");
-    return size / options.resolution;
+    // Objects of less than a few millimetres get fewer voxels than asked for, rather than none.
+    return std::max(size / options.resolution, std::min(kSmallestVoxel, size / kFewestVoxels));
 }
 
 double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
@@ -192,13 +231,7 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
     // Voxel centres at whole multiples of the voxel size, wherever the mesh stands: grids of
     // different objects of a scene then fit voxel on voxel.
     const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-    LatchedInterrupter latched(interrupter);
-    openvdb::util::NullInterrupter& tool = latched;
-    auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
-        tool, *transform, mesh.points, mesh.triangles, {}, static_cast<float>(band.exterior),
-        static_cast<float>(band.interior));
-    if (latched.stopped())
-        throw Cancelled();
+    const auto grid = convert_nested(mesh, *transform, band, interrupter);
     if (!has_inside(*grid))
         fail<GeometryError>(
             "voxel larger than the object: no voxel centre lies inside, voxel size ", voxel,
