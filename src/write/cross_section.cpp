@@ -112,7 +112,7 @@ void write_cross_section(const std::filesystem::path& path, const PrismShell& sh
     const Bounds all{openvdb::math::minComponent(surface.low, below.low),
                      openvdb::math::maxComponent(surface.high, below.high)};
     CutDrawing drawing;
-    drawing.tets = cut_tets(tets, plane);
+    drawing.tets = cut_tets(tets, prism_tints(shell.triangles), plane);
     drawing.outer = cut_surface(shell.outer, shell.triangles, plane);
     drawing.inner = cut_surface(shell.inner, shell.triangles, plane);
     to_pixels(drawing, frame_of(all, plane, options.width_pixels));

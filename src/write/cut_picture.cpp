@@ -27,15 +27,9 @@ constexpr float kLeastRed = 0.6f;
 const Vec3f kBackground(1.0f, 1.0f, 1.0f), kVoid(0.90f, 0.90f, 0.90f),
     kOverlap(0.88f, 0.07f, 0.07f);
 const Vec3f kEdge(0.16f, 0.20f, 0.26f), kOuter(0.07f, 0.09f, 0.13f), kInner(0.05f, 0.25f, 0.60f);
-const std::array<Vec3f, 6> kTints{Vec3f(0.62f, 0.79f, 0.90f), Vec3f(0.98f, 0.87f, 0.62f),
-                                  Vec3f(0.70f, 0.87f, 0.72f), Vec3f(0.86f, 0.80f, 0.92f),
-                                  Vec3f(0.96f, 0.78f, 0.70f), Vec3f(0.78f, 0.88f, 0.88f)};
-
-std::uint8_t tint_of(std::uint32_t prism)
-{
-    // Neighbours in the list are often neighbours in space: a golden-ratio hash keeps them apart.
-    return std::uint8_t(((prism * 2654435769u) >> 16) % kTints.size());
-}
+const std::array<Vec3f, kTintCount> kTints{Vec3f(0.62f, 0.79f, 0.90f), Vec3f(0.98f, 0.87f, 0.62f),
+                                           Vec3f(0.70f, 0.87f, 0.72f), Vec3f(0.86f, 0.80f, 0.92f),
+                                           Vec3f(0.96f, 0.78f, 0.70f), Vec3f(0.78f, 0.88f, 0.88f)};
 
 struct Sample {
     std::uint16_t tets = 0;
@@ -110,7 +104,7 @@ void fill_polygon(Band& band, const CutPolygon& polygon)
         for (int x = band.column(left); x < band.column(right); ++x) {
             Sample& sample = band.at(x, row);
             sample.tets = std::uint16_t(std::min(sample.tets + 1, 65535));
-            sample.tint = tint_of(polygon.prism);
+            sample.tint = polygon.tint;
         }
     }
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "write/plane_cut.h"
 
+#include "mesh/topology.h"
+
+#include <algorithm>
 #include <utility>
 
 namespace vdb_shell
@@ -41,7 +44,6 @@ CutPolygon cut_tet(const TetMesh& mesh, std::size_t t, const CutPlane& plane)
             below[belows++] = point;
     }
     CutPolygon polygon;
-    polygon.prism = mesh.prism[t];
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
         return crossing(mesh.points, a, b, plane);
     };
@@ -73,11 +75,40 @@ CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds)
     return plane;
 }
 
-std::vector<CutPolygon> cut_tets(const TetMesh& tets, const CutPlane& plane)
+std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangles)
+{
+    std::vector<std::vector<std::uint32_t>> neighbours(triangles.size());
+    const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
+    for (std::size_t i = 0; i + 1 < uses.size(); ++i)
+        if (uses[i].edge == uses[i + 1].edge) {
+            neighbours[uses[i].triangle].push_back(uses[i + 1].triangle);
+            neighbours[uses[i + 1].triangle].push_back(uses[i].triangle);
+        }
+    std::vector<std::uint8_t> tints(triangles.size(), kTintCount);
+    for (std::uint32_t p = 0; p < triangles.size(); ++p) {
+        unsigned taken = 0;
+        for (const std::uint32_t neighbour : neighbours[p])
+            taken |= 1u << tints[neighbour];
+        // A hash picks where to start, or two tints would do most of the surface.
+        const std::uint32_t start = (p * 2654435769u) >> 16;
+        for (std::uint32_t step = 0; step < kTintCount && tints[p] == kTintCount; ++step) {
+            const auto tint = std::uint8_t((start + step) % kTintCount);
+            if ((taken & (1u << tint)) == 0)
+                tints[p] = tint;
+        }
+        // More neighbours than tints: only around an edge of many triangles.
+        tints[p] = std::min<std::uint8_t>(tints[p], kTintCount - 1);
+    }
+    return tints;
+}
+
+std::vector<CutPolygon> cut_tets(const TetMesh& tets, const std::vector<std::uint8_t>& tints,
+                                 const CutPlane& plane)
 {
     std::vector<CutPolygon> polygons;
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
-        const CutPolygon polygon = cut_tet(tets, t, plane);
+        CutPolygon polygon = cut_tet(tets, t, plane);
+        polygon.tint = tints[tets.prism[t]];
         if (polygon.corners > 0)
             polygons.push_back(polygon);
     }

@@ -24,16 +24,22 @@ CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds);
 struct CutPolygon {
     std::array<openvdb::Vec2d, 4> corner;
     int corners = 3;
-    std::uint32_t prism = 0;
+    std::uint8_t tint = 0;
 };
 
 struct CutSegment {
     openvdb::Vec2d from, to; ///< the solid lies to the left
 };
 
+inline constexpr std::uint8_t kTintCount = 6;
+
+/// A tint per prism, never that of a prism across an edge; greedy, in the order of the prisms.
+std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangles);
+
 /// Corners on the plane count as above it, so every section is a proper polygon; a tet edge meets
 /// the plane in the very same point for all tets around it.
-std::vector<CutPolygon> cut_tets(const TetMesh& tets, const CutPlane& plane);
+std::vector<CutPolygon> cut_tets(const TetMesh& tets, const std::vector<std::uint8_t>& tints,
+                                 const CutPlane& plane);
 std::vector<CutSegment> cut_surface(const std::vector<openvdb::Vec3s>& points,
                                     const std::vector<openvdb::Vec3I>& triangles,
                                     const CutPlane& plane);

@@ -147,49 +147,41 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
     return Vec3s(sum / double(count));
 }
 
-PointDataGrid::Ptr make_points(const PrismShell& shell, const TetMesh& tets)
+PointDataGrid::Ptr make_points(const PrismShell& shell, const ShellPoints& points)
 {
-    Builder builder(kPointsGrid, tets.points);
-    const std::size_t count = tets.points.size();
-    const auto vertex = [&](std::size_t i) { return tets.source_vertex[i]; };
+    Builder builder(kPointsGrid, points.position);
+    const std::size_t count = points.position.size();
+    const auto vertex = [&](std::size_t i) { return points.vertex[i]; };
     const auto is_pinned = [&](std::size_t i) { return shell.pinned(vertex(i)); };
     const auto outer_normals = layer_normals(shell.outer, shell.triangles);
     const auto inner_normals = layer_normals(shell.inner, shell.triangles);
     builder.add_integer("id", [](std::size_t i) { return i; });
-    builder.add_integer("layer", [&](std::size_t i) { return tets.layer[i]; });
+    builder.add_integer("tet_point", [&](std::size_t i) { return points.tet_point[i]; });
+    builder.add_integer("layer", [&](std::size_t i) { return points.layer[i]; });
     builder.add_integer("source_vertex", vertex);
     builder.add_integer("stop_reason",
                         [&](std::size_t i) { return std::int32_t(shell.stop[vertex(i)]); });
     builder.add_integer("pinned", is_pinned);
-    builder.add<Vec3s>("rest", 1, [&](std::size_t i, openvdb::Index) { return tets.points[i]; });
+    builder.add<Vec3s>("rest", 1,
+                       [&](std::size_t i, openvdb::Index) { return points.position[i]; });
     builder.add<Vec3s>("opposite", 1, [&](std::size_t i, openvdb::Index) {
-        return tets.layer[i] == 0 ? shell.inner[vertex(i)] : shell.outer[vertex(i)];
+        return points.layer[i] == 0 ? shell.inner[vertex(i)] : shell.outer[vertex(i)];
     });
     builder.add<Vec3s>("N", 1, [&](std::size_t i, openvdb::Index) {
-        return (tets.layer[i] == 0 ? outer_normals : inner_normals)[vertex(i)];
+        return (points.layer[i] == 0 ? outer_normals : inner_normals)[vertex(i)];
     });
     builder.add<float>("thickness", 1, [&](std::size_t i, openvdb::Index) {
         return float(shell.length(vertex(i)));
     });
-    builder.add_group("outer", count, [&](std::size_t i) { return tets.layer[i] == 0; });
-    builder.add_group("inner", count, [&](std::size_t i) { return tets.layer[i] == 1; });
+    builder.add_group("outer", count, [&](std::size_t i) { return points.layer[i] == 0; });
+    builder.add_group("inner", count, [&](std::size_t i) { return points.layer[i] == 1; });
     builder.add_group("pinned", count, is_pinned);
     return builder.take();
 }
 
-/// Per surface vertex, the id of the point below it; its own where it is pinned.
-std::vector<std::uint32_t> inner_ids(const PrismShell& shell, const TetMesh& tets)
-{
-    std::vector<std::uint32_t> ids(shell.outer.size());
-    for (std::size_t point = 0; point < tets.points.size(); ++point)
-        ids[tets.source_vertex[point]] = std::uint32_t(point); // inner points come last
-    return ids;
-}
-
 PointDataGrid::Ptr make_prisms(const PrismShell& shell, const PrismSplit& split,
-                               const TetMesh& tets)
+                               const ShellPoints& points)
 {
-    const std::vector<std::uint32_t> below = inner_ids(shell, tets);
     std::vector<Vec3s> centres(shell.triangles.size());
     for (std::size_t p = 0; p < centres.size(); ++p) {
         const Vec3I t = shell.triangles[p];
@@ -200,7 +192,7 @@ PointDataGrid::Ptr make_prisms(const PrismShell& shell, const PrismSplit& split,
     builder.add_integer("id", [](std::size_t p) { return p; });
     builder.add_tuple("prism_pts", 6, [&](std::size_t p, openvdb::Index i) {
         const Vec3I t = shell.triangles[p];
-        return std::int32_t(i < 3 ? t[int(i)] : below[t[int(i) - 3]]);
+        return std::int32_t(i < 3 ? t[int(i)] : points.inner_id[t[int(i) - 3]]);
     });
     builder.add_tuple("split_order", 3, [&](std::size_t p, openvdb::Index i) {
         return std::int32_t(split.order[p][i]);
@@ -208,7 +200,7 @@ PointDataGrid::Ptr make_prisms(const PrismShell& shell, const PrismSplit& split,
     return builder.take();
 }
 
-PointDataGrid::Ptr make_tet_points(const TetMesh& tets)
+PointDataGrid::Ptr make_tet_points(const TetMesh& tets, const ShellPoints& points)
 {
     std::vector<Vec3s> centres(tets.tets.size());
     for (std::size_t t = 0; t < centres.size(); ++t)
@@ -216,7 +208,7 @@ PointDataGrid::Ptr make_tet_points(const TetMesh& tets)
     Builder builder(kTetsGrid, centres);
     builder.add_integer("id", [](std::size_t t) { return t; });
     builder.add_tuple("tet", 4, [&](std::size_t t, openvdb::Index i) {
-        return std::int32_t(tets.tets[t][int(i)]);
+        return std::int32_t(points.id_of_tet_point[tets.tets[t][int(i)]]);
     });
     builder.add_integer("prism", [&](std::size_t t) { return tets.prism[t]; });
     return builder.take();
@@ -224,15 +216,46 @@ PointDataGrid::Ptr make_tet_points(const TetMesh& tets)
 
 } // namespace
 
+ShellPoints number_points(const PrismShell& shell, const TetMesh& tets)
+{
+    ShellPoints points;
+    points.position = shell.outer;
+    points.layer.assign(shell.outer.size(), 0);
+    for (std::uint32_t v = 0; v < shell.outer.size(); ++v)
+        points.vertex.push_back(v);
+    points.inner_id = points.vertex;
+    for (std::uint32_t v = 0; v < shell.outer.size(); ++v) {
+        if (shell.pinned(v))
+            continue;
+        points.inner_id[v] = std::uint32_t(points.position.size());
+        points.position.push_back(shell.inner[v]);
+        points.vertex.push_back(v);
+        points.layer.push_back(1);
+    }
+    points.tet_point.assign(points.position.size(), ShellPoints::kUnused);
+    for (std::size_t i = 0; i < tets.points.size(); ++i) {
+        const std::uint32_t v = tets.source_vertex[i];
+        points.id_of_tet_point.push_back(tets.layer[i] == 0 ? v : points.inner_id[v]);
+        points.tet_point[points.id_of_tet_point.back()] = std::int32_t(i);
+    }
+    return points;
+}
+
 ShellCounts counts_of(const PrismShell& shell, const TetMesh& tets)
 {
-    return {std::int64_t(shell.outer.size()), std::int64_t(tets.points.size()),
+    std::int64_t pillars = 0;
+    for (std::size_t v = 0; v < shell.outer.size(); ++v)
+        pillars += shell.pinned(v) ? 0 : 1;
+    const auto vertices = std::int64_t(shell.outer.size());
+    return {vertices, vertices + pillars, std::int64_t(tets.points.size()),
             std::int64_t(shell.triangles.size()), std::int64_t(tets.tets.size())};
 }
 
 PointGrids make_point_grids(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
 {
-    return {make_points(shell, tets), make_prisms(shell, split, tets), make_tet_points(tets)};
+    const ShellPoints points = number_points(shell, tets);
+    return {make_points(shell, points), make_prisms(shell, split, points),
+            make_tet_points(tets, points)};
 }
 
 } // namespace vdb_shell

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -17,9 +18,23 @@ inline constexpr const char* kTetsGrid = "shell_tets";
 
 /// Numbers of elements of a shell; OpenVDB and Houdini index with int32.
 struct ShellCounts {
-    std::int64_t vertices = 0, points = 0, prisms = 0, tets = 0;
+    std::int64_t vertices = 0, points = 0, tet_points = 0, prisms = 0, tets = 0;
 };
 ShellCounts counts_of(const PrismShell& shell, const TetMesh& tets);
+
+/// The points of the file by id: all outer vertices, then the inner vertices of those that are not
+/// pinned. The tets number their points otherwise: they leave out what no tet uses.
+struct ShellPoints {
+    static constexpr std::int32_t kUnused = -1;
+    std::vector<openvdb::Vec3s> position;
+    std::vector<std::uint32_t> vertex;
+    std::vector<std::uint8_t> layer;
+    std::vector<std::uint32_t> inner_id; ///< per vertex; the vertex itself where it is pinned
+    std::vector<std::int32_t> tet_point; ///< per id: index into TetMesh::points, or kUnused
+    std::vector<std::uint32_t> id_of_tet_point;
+};
+/// Precondition: require_consistent.
+ShellPoints number_points(const PrismShell& shell, const TetMesh& tets);
 
 /// The shell as three grids of points; the order of points inside a grid means nothing, ids are
 /// explicit. Precondition: require_consistent.

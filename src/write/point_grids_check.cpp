@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace vdb_shell
@@ -57,27 +58,28 @@ void require_sizes(const PrismShell& shell, const PrismSplit& split, const TetMe
     require_size(tets.layer.size(), tets.points.size(), "layer");
     require_size(tets.prism.size(), tets.tets.size(), "tets.prism");
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-    for (const std::size_t count : {tets.points.size(), tets.tets.size(), shell.triangles.size()})
+    for (const std::size_t count :
+         {2 * shell.outer.size(), tets.tets.size(), shell.triangles.size()})
         require(count <= kMost, "more elements than int32 can number", count);
 }
 
-/// Points are all outer vertices, then the inner vertices of the others than the pinned ones.
+/// Every point of the tets is an end of a pillar, and no end is there twice.
 void require_points(const PrismShell& shell, const TetMesh& tets)
 {
-    std::size_t point = 0;
-    const auto expect = [&](std::size_t vertex, int layer, const Vec3s& position) {
-        require(point < tets.points.size(), "the tets lack a point of the shell", point);
-        require(tets.source_vertex[point] == vertex && tets.layer[point] == layer &&
-                    tets.points[point] == position,
-                "a point of the tets is not the shell's", point);
-        ++point;
-    };
-    for (std::size_t v = 0; v < shell.outer.size(); ++v)
-        expect(v, 0, shell.outer[v]);
-    for (std::size_t v = 0; v < shell.outer.size(); ++v)
-        if (!shell.pinned(v))
-            expect(v, 1, shell.inner[v]);
-    require_size(tets.points.size(), point, "the tets' list of points");
+    std::array<std::vector<bool>, 2> seen;
+    for (std::vector<bool>& layer : seen)
+        layer.assign(shell.outer.size(), false);
+    for (std::size_t i = 0; i < tets.points.size(); ++i) {
+        const std::uint32_t v = tets.source_vertex[i];
+        const std::size_t layer = tets.layer[i];
+        require(v < shell.outer.size() && layer < 2 && !(layer == 1 && shell.pinned(v)),
+                "a point of the tets belongs to no end of a pillar", i);
+        const Vec3s& end = layer == 0 ? shell.outer[v] : shell.inner[v];
+        require(std::memcmp(end.asPointer(), tets.points[i].asPointer(), 3 * sizeof(float)) == 0,
+                "a point of the tets is not where its pillar ends", i);
+        require(!seen[layer][v], "a point of the tets is there twice", i);
+        seen[layer][v] = true;
+    }
 }
 
 class Fnv1a
@@ -139,6 +141,8 @@ std::string checksum_of(const PrismShell& shell, const PrismSplit& split, const 
     hash.add(shell.triangles);
     hash.add(shell.stop);
     hash.add(split.order);
+    hash.add(tets.source_vertex);
+    hash.add(tets.layer);
     hash.add(tets.tets);
     hash.add(tets.prism);
     return hash.hex();

@@ -6,6 +6,7 @@
 #include <openvdb/points/AttributeArray.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 
 namespace vdb_shell
@@ -123,42 +124,85 @@ bool same_bits(const Vec3s& a, const Vec3s& b)
     return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
 }
 
-/// Points, and from them the two ends of every pillar.
-void read_points(const Reader& reader, const ShellCounts& counts, PrismShell& shell, TetMesh& tets)
-{
-    const auto vertices = std::size_t(counts.vertices), points = std::size_t(counts.points);
-    reader.positions("rest", tets.points);
-    tets.source_vertex.resize(points);
-    tets.layer.resize(points);
-    reader.indices("source_vertex", 1, vertices, [&](std::size_t id, auto, std::uint32_t value) {
-        tets.source_vertex[id] = value;
-    });
-    reader.indices("layer", 1, 2, [&](std::size_t id, auto, std::uint32_t value) {
-        tets.layer[id] = std::uint8_t(value);
-    });
-    std::vector<Vec3s> opposite;
-    reader.positions("opposite", opposite);
-    std::vector<std::uint32_t> stop(points);
-    reader.indices("stop_reason", 1, kStopReasonCount,
-                   [&](std::size_t id, auto, std::uint32_t value) { stop[id] = value; });
+/// The points by id, as the file has them.
+struct Rows {
+    std::vector<Vec3s> rest, opposite;
+    std::vector<std::uint32_t> vertex, layer, stop;
+    std::vector<std::uint32_t> tet_point; ///< index + 1 into TetMesh::points; 0: none
+};
 
-    shell.outer.assign(tets.points.begin(), tets.points.begin() + counts.vertices);
-    shell.inner.assign(opposite.begin(), opposite.begin() + counts.vertices);
+Rows read_rows(const Reader& reader, const ShellCounts& counts)
+{
+    Rows rows;
+    reader.positions("rest", rows.rest);
+    reader.positions("opposite", rows.opposite);
+    const auto read = [&](const char* name, std::size_t limit, std::vector<std::uint32_t>& into) {
+        into.resize(std::size_t(counts.points));
+        reader.indices(name, 1, limit, [&](std::size_t id, openvdb::Index, std::uint32_t value) {
+            into[id] = value;
+        });
+    };
+    read("source_vertex", std::size_t(counts.vertices), rows.vertex);
+    read("layer", 2, rows.layer);
+    read("stop_reason", kStopReasonCount, rows.stop);
+    rows.tet_point.resize(std::size_t(counts.points));
+    const auto limit = std::size_t(counts.tet_points) + 1;
+    reader.for_each_row<std::int32_t>(
+        "tet_point", 1, [&](std::size_t id, openvdb::Index, std::int32_t value) {
+            rows.tet_point[id] = reader.in_range(std::int64_t(value) + 1, limit, "tet_point", id);
+        });
+    return rows;
+}
+
+/// The two ends of every pillar.
+void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& counts,
+                  PrismShell& shell)
+{
+    const auto vertices = std::size_t(counts.vertices);
+    shell.outer.assign(rows.rest.begin(), rows.rest.begin() + counts.vertices);
+    shell.inner.assign(rows.opposite.begin(), rows.opposite.begin() + counts.vertices);
     shell.stop.resize(vertices);
-    for (std::size_t id = 0; id < points; ++id) {
-        const std::uint32_t vertex = tets.source_vertex[id];
+    for (std::size_t id = 0; id < rows.rest.size(); ++id) {
+        const std::uint32_t vertex = rows.vertex[id];
         const bool outer = id < vertices;
-        if (tets.layer[id] != (outer ? 0 : 1) || (outer && vertex != id))
+        if (rows.layer[id] != (outer ? 0u : 1u) || (outer && vertex != id))
             reader.fail("point " + std::to_string(id) + ": layer " +
-                        std::to_string(tets.layer[id]) + " of vertex " + std::to_string(vertex) +
+                        std::to_string(rows.layer[id]) + " of vertex " + std::to_string(vertex) +
                         " does not belong at this id");
         if (outer)
-            shell.stop[id] = StopReason(stop[id]);
-        else if (!same_bits(tets.points[id], shell.inner[vertex]))
+            shell.stop[id] = StopReason(rows.stop[id]);
+        else if (!same_bits(rows.rest[id], shell.inner[vertex]))
             reader.fail("point " + std::to_string(id) +
                         ": \"rest\" is not \"opposite\" of the outer point " +
                         std::to_string(vertex));
     }
+}
+
+/// The tets' own list of points.
+void read_tet_points(const Reader& reader, const Rows& rows, const ShellCounts& counts,
+                     TetMesh& tets)
+{
+    const auto count = std::size_t(counts.tet_points);
+    tets.points.resize(count);
+    tets.source_vertex.resize(count);
+    tets.layer.resize(count);
+    std::size_t found = 0;
+    std::vector<bool> seen(count, false);
+    for (std::size_t id = 0; id < rows.rest.size(); ++id) {
+        if (rows.tet_point[id] == 0)
+            continue;
+        const std::size_t point = rows.tet_point[id] - 1;
+        if (seen[point])
+            reader.fail("attribute \"tet_point\": " + std::to_string(point) + " appears twice");
+        seen[point] = true;
+        tets.points[point] = rows.rest[id];
+        tets.source_vertex[point] = rows.vertex[id];
+        tets.layer[point] = std::uint8_t(rows.layer[id]);
+        ++found;
+    }
+    if (found != count)
+        reader.fail("attribute \"tet_point\" names " + std::to_string(found) +
+                    " points, the metadata says " + std::to_string(count));
 }
 
 std::vector<std::array<std::uint32_t, 6>>
@@ -181,27 +225,29 @@ read_prisms(const Reader& reader, const ShellCounts& counts, PrismShell& shell, 
 }
 
 /// The lower corners of each prism must stand under its upper ones.
-void require_pillars(const Reader& reader, const PrismShell& shell, const TetMesh& tets,
+void require_pillars(const Reader& reader, const PrismShell& shell, const Rows& rows,
                      const std::vector<std::array<std::uint32_t, 6>>& corners)
 {
     for (std::size_t p = 0; p < corners.size(); ++p)
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint32_t above = corners[p][corner], below = corners[p][corner + 3];
             const bool outer = above < shell.outer.size();
-            if (!outer || tets.source_vertex[below] != above ||
-                (below == above) != shell.pinned(above))
+            if (!outer || rows.vertex[below] != above || (below == above) != shell.pinned(above))
                 reader.fail("attribute \"prism_pts\" of " + std::to_string(p) + ": point " +
                             std::to_string(below) + " is not below point " + std::to_string(above));
         }
 }
 
-void read_tets(const Reader& reader, const ShellCounts& counts, TetMesh& tets)
+void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts, TetMesh& tets)
 {
     tets.tets.resize(std::size_t(counts.tets));
     tets.prism.resize(std::size_t(counts.tets));
     reader.indices("tet", 4, std::size_t(counts.points),
                    [&](std::size_t id, openvdb::Index i, std::uint32_t value) {
-                       tets.tets[id][int(i)] = value;
+                       if (rows.tet_point[value] == 0)
+                           reader.fail("attribute \"tet\" of " + std::to_string(id) + ": point " +
+                                       std::to_string(value) + " has no \"tet_point\"");
+                       tets.tets[id][int(i)] = rows.tet_point[value] - 1;
                    });
     reader.indices("prism", 1, std::size_t(counts.prisms),
                    [&](std::size_t id, auto, std::uint32_t value) { tets.prism[id] = value; });
@@ -215,13 +261,18 @@ void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const 
     const Reader points(*grids.points, counts.points, name);
     const Reader prisms(*grids.prisms, counts.prisms, name);
     const Reader tet_rows(*grids.tets, counts.tets, name);
+    if (counts.tet_points > counts.points)
+        points.fail("the metadata says " + std::to_string(counts.tet_points) +
+                    " points of tets but only " + std::to_string(counts.points) + " points");
     if (counts.vertices > counts.points)
         points.fail("the metadata says " + std::to_string(counts.vertices) + " vertices but only " +
                     std::to_string(counts.points) + " points");
-    read_points(points, counts, shell, tets);
+    const Rows rows = read_rows(points, counts);
+    read_pillars(points, rows, counts, shell);
+    read_tet_points(points, rows, counts, tets);
     const auto corners = read_prisms(prisms, counts, shell, split);
-    require_pillars(prisms, shell, tets, corners);
-    read_tets(tet_rows, counts, tets);
+    require_pillars(prisms, shell, rows, corners);
+    read_tets(tet_rows, rows, counts, tets);
     try {
         require_consistent(shell, split, tets);
     } catch (const InvalidOption& error) {

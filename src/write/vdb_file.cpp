@@ -168,7 +168,8 @@ ShellFile read_shell_vdb(const fs::path& path)
         ShellFile result;
         result.surface = read_grid<FloatGrid>(file, path.string(), kSurfaceGrid);
         result.depth = read_grid<FloatGrid>(file, path.string(), kDepthGrid);
-        const ShellCounts counts{info.vertices, info.points, info.prisms, info.tets};
+        const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
+                                 info.tets};
         read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
                          result.shell, result.split, result.tets);
         result.split.ripples = std::size_t(info.ripples);

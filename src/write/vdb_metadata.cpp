@@ -21,6 +21,7 @@ using openvdb::StringMetadata;
 constexpr const char* kSchemaKey = "vdb_shell_schema";
 constexpr const char* kVerticesKey = "vdb_shell_vertices";
 constexpr const char* kPointsKey = "vdb_shell_points";
+constexpr const char* kTetPointsKey = "vdb_shell_tet_points";
 constexpr const char* kPrismsKey = "vdb_shell_prisms";
 constexpr const char* kTetsKey = "vdb_shell_tets";
 constexpr const char* kRipplesKey = "vdb_shell_ripples";
@@ -122,6 +123,7 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     map.insertMeta(kSchemaKey, Int32Metadata(kShellSchema));
     map.insertMeta(kVerticesKey, Int32Metadata(std::int32_t(counts.vertices)));
     map.insertMeta(kPointsKey, Int32Metadata(std::int32_t(counts.points)));
+    map.insertMeta(kTetPointsKey, Int32Metadata(std::int32_t(counts.tet_points)));
     map.insertMeta(kPrismsKey, Int32Metadata(std::int32_t(counts.prisms)));
     map.insertMeta(kTetsKey, Int32Metadata(std::int32_t(counts.tets)));
     map.insertMeta(kRipplesKey, Int32Metadata(as_int32(file.split.ripples)));
@@ -147,8 +149,8 @@ void add_volume_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 {
     grid.setCreator(creator_name());
-    const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,     kPrismsKey,
-                                kTetsKey,   kRipplesKey,  kOrientationKey};
+    const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,  kTetPointsKey,
+                                kPrismsKey, kTetsKey,     kRipplesKey, kOrientationKey};
     for (const char* key : kept)
         grid.insertMeta(std::string("global:") + key, *file[key]);
 }
@@ -159,6 +161,7 @@ ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& p
     info.schema = schema_of(metadata, path);
     info.vertices = count_entry(metadata, path, kVerticesKey);
     info.points = count_entry(metadata, path, kPointsKey);
+    info.tet_points = count_entry(metadata, path, kTetPointsKey);
     info.prisms = count_entry(metadata, path, kPrismsKey);
     info.tets = count_entry(metadata, path, kTetsKey);
     info.ripples = count_entry(metadata, path, kRipplesKey);

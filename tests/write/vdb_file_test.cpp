@@ -98,6 +98,32 @@ TEST(VdbFile, ReadsBackAShellWithoutTets)
     expect_same_shell(read_shell_vdb(folder / "shell.vdb"), file);
 }
 
+TEST(VdbFile, ReadsBackTetsThatLeavePointsOut)
+{
+    const TemporaryFolder folder;
+    // All around vertex 0 is pinned: no tet has it as a corner.
+    const TriangleMesh surface = test::icosphere(1.0, 1);
+    std::set<std::uint32_t> pinned;
+    for (const openvdb::Vec3I& t : surface.triangles)
+        if (t[0] == 0 || t[1] == 0 || t[2] == 0)
+            pinned.insert({t[0], t[1], t[2]});
+    HandMade made = hand_made_shell(surface, 0.6, pinned);
+    TetMesh& tets = made.tets;
+    tets.points.erase(tets.points.begin());
+    tets.source_vertex.erase(tets.source_vertex.begin());
+    tets.layer.erase(tets.layer.begin());
+    for (openvdb::Vec4I& tet : tets.tets)
+        for (int corner = 0; corner < 4; ++corner) {
+            ASSERT_NE(tet[corner], 0u);
+            --tet[corner];
+        }
+    const ShellFile file = hand_made_file(made, 0.2);
+    write_shell_vdb(folder / "shell.vdb", file);
+    expect_same_shell(read_shell_vdb(folder / "shell.vdb"), file);
+    const ShellInfo info = read_shell_info(folder / "shell.vdb");
+    EXPECT_EQ(info.points, info.tet_points + 1);
+}
+
 TEST(VdbFile, WritesWhatWasReadToTheSameBytes)
 {
     const TemporaryFolder folder;

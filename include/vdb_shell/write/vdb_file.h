@@ -41,7 +41,9 @@ struct VdbWriteOptions {
 /// What a shell's .vdb says about itself, without its grids.
 struct ShellInfo {
     int schema = 0;
-    std::int64_t vertices = 0, points = 0, prisms = 0, tets = 0;
+    std::int64_t vertices = 0; ///< of the surface
+    std::int64_t points = 0;   ///< vertices and the lower ends of all pillars that have a length
+    std::int64_t tet_points = 0, prisms = 0, tets = 0;
     std::int64_t ripples = 0;        ///< PrismSplit::ripples
     std::string creator;             ///< program and version that wrote it
     std::string orientation;         ///< how triangles and tets are oriented, in words
