@@ -24,12 +24,13 @@ constexpr float kEdgeStrength = 0.55f;
 /// A pixel with any overlap in it shows at least this much red.
 constexpr float kLeastRed = 0.6f;
 
-const Vec3f kBackground(1.0f, 1.0f, 1.0f), kVoid(0.90f, 0.90f, 0.90f),
-    kOverlap(0.88f, 0.07f, 0.07f);
-const Vec3f kEdge(0.16f, 0.20f, 0.26f), kOuter(0.07f, 0.09f, 0.13f), kInner(0.05f, 0.25f, 0.60f);
-const std::array<Vec3f, kTintCount> kTints{Vec3f(0.62f, 0.79f, 0.90f), Vec3f(0.98f, 0.87f, 0.62f),
-                                           Vec3f(0.70f, 0.87f, 0.72f), Vec3f(0.86f, 0.80f, 0.92f),
-                                           Vec3f(0.96f, 0.78f, 0.70f), Vec3f(0.78f, 0.88f, 0.88f)};
+const Vec3f background_colour(1.0f, 1.0f, 1.0f), void_colour(0.90f, 0.90f, 0.90f),
+    overlap_colour(0.88f, 0.07f, 0.07f);
+const Vec3f edge_colour(0.16f, 0.20f, 0.26f), outer_colour(0.07f, 0.09f, 0.13f),
+    inner_colour(0.05f, 0.25f, 0.60f);
+const std::array<Vec3f, kTintCount> tint_colours{
+    Vec3f(0.62f, 0.79f, 0.90f), Vec3f(0.98f, 0.87f, 0.62f), Vec3f(0.70f, 0.87f, 0.72f),
+    Vec3f(0.86f, 0.80f, 0.92f), Vec3f(0.96f, 0.78f, 0.70f), Vec3f(0.78f, 0.88f, 0.88f)};
 
 struct Sample {
     std::uint16_t tets = 0;
@@ -193,14 +194,14 @@ Vec3f blend(const Vec3f& under, const Vec3f& over, float opacity)
 
 Vec3f colour_of(const Sample& sample)
 {
-    Vec3f colour = sample.inside ? kVoid : kBackground;
+    Vec3f colour = sample.inside ? void_colour : background_colour;
     if (sample.tets == 1)
-        colour = kTints[sample.tint];
+        colour = tint_colours[sample.tint];
     else if (sample.tets > 1)
-        colour = kOverlap;
-    colour = blend(colour, kEdge, sample.edge);
-    colour = blend(colour, kInner, sample.inner);
-    return blend(colour, kOuter, sample.outer);
+        colour = overlap_colour;
+    colour = blend(colour, edge_colour, sample.edge);
+    colour = blend(colour, inner_colour, sample.inner);
+    return blend(colour, outer_colour, sample.outer);
 }
 
 void write_pixel(Band& band, int x, int y, std::uint8_t* rgb)
@@ -217,7 +218,7 @@ void write_pixel(Band& band, int x, int y, std::uint8_t* rgb)
     Vec3f colour = sum / kCount;
     const float red = float(overlaps) / kCount;
     if (overlaps > 0 && red < kLeastRed)
-        colour = blend(colour, kOverlap, (kLeastRed - red) / (1.0f - red));
+        colour = blend(colour, overlap_colour, (kLeastRed - red) / (1.0f - red));
     for (int channel = 0; channel < 3; ++channel)
         rgb[channel] = std::uint8_t(std::lround(255.0f * std::clamp(colour[channel], 0.0f, 1.0f)));
 }

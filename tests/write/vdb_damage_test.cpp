@@ -194,7 +194,7 @@ TEST_F(VdbDamage, IdsOutOfRangeOrTwice)
     expect_complaint({"shell_prisms", "\"prism_pts\"", "166"});
     restore();
     spoil<std::int32_t>("shell_points", "stop_reason", 0, kStopReasonCount);
-    expect_complaint({"shell_points", "\"stop_reason\"", "9"});
+    expect_complaint({"shell_points", "\"stop_reason\"", std::to_string(kStopReasonCount)});
     restore();
     rewrite([](openvdb::GridPtrVec& grids, openvdb::MetaMap&) {
         for (const openvdb::GridBase::Ptr& one : grids)
