@@ -81,6 +81,9 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
         r.split = split_prisms(r.shell, options.split);
         r.tets = make_tets(r.shell, r.split);
     });
+    clock.run("certificate", [&] {
+        r.report.certificate = certify_shell(r.shell, r.split, PrismTest::twelve_tets, interrupter);
+    });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
         r.report.coverage = estimate_coverage(r.surface, r.tets, options.coverage, interrupter);

@@ -43,7 +43,7 @@ struct ShellResult {
 };
 
 /// The whole job on a mesh in memory: check, level set, smooth, directions, line stepping, limits,
-/// prisms, tets, figures. `name` is what messages and the report call the mesh. `thickness_grid` as
+/// prisms, tets, certificate, figures. `name` is what messages and the report call the mesh. `thickness_grid` as
 /// in line_step. Throws what the stages throw. Same result for any number of threads (costs in the
 /// report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,

@@ -3,6 +3,7 @@
 
 // The names that option values have on the command line and in JSON: one table an enum.
 
+#include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/limits.h"
@@ -51,6 +52,13 @@ inline const NameTable<SplitRule>& names(SplitRule)
                                             {"length-descending", SplitRule::length_descending},
                                             {"length-ascending", SplitRule::length_ascending},
                                             {"ripple", SplitRule::ripple}};
+    return table;
+}
+
+inline const NameTable<PrismTest>& names(PrismTest)
+{
+    static const NameTable<PrismTest> table{{"twelve-tets", PrismTest::twelve_tets},
+                                            {"chosen-tets", PrismTest::chosen_tets}};
     return table;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/report.h"
 
+#include "certify/certificate_findings.h"
+#include "core/option_names.h"
+
 #include <nlohmann/json.hpp>
 
 #include <openvdb/Types.h>
@@ -132,6 +135,16 @@ ordered_json coverage_json(const Coverage& coverage)
             {"standard_error", coverage.standard_error}};
 }
 
+ordered_json certificate_json(const Certificate& certificate)
+{
+    ordered_json json{{"test", name_in_table(certificate.test)},
+                      {"certified", certificate.certified()},
+                      {"locally_valid", certificate.locally_valid()}};
+    for_each_kind(certificate,
+                  [&](const char* name, const auto& defect) { json[name] = defect_json(defect); });
+    return json;
+}
+
 ordered_json costs_json(const std::vector<StageCost>& stages)
 {
     ordered_json costs = ordered_json::array();
@@ -161,6 +174,8 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["volume"] = {
         {"solid", report.solid_volume}, {"shell", report.shell_volume}, {"fill", report.fill}};
     json["coverage"] = coverage_json(report.coverage);
+    json["certificate"] =
+        report.certificate ? certificate_json(*report.certificate) : ordered_json();
     if (with_costs)
         json["stages"] = costs_json(report.stages);
     // A file name may hold bytes that are no UTF-8.

@@ -84,6 +84,19 @@ std::string coverage_text(const Coverage& coverage)
            number(coverage.in_several, 12) + " in two or more";
 }
 
+std::string certificate_text(const Certificate& certificate)
+{
+    if (certificate.certified())
+        return std::string("yes (") +
+               (certificate.test == PrismTest::twelve_tets ? "12 tets" : "the 3 chosen tets") +
+               " of each prism positive, surfaces embedded and disjoint)";
+    std::string text = certificate.locally_valid() ? "NO, only locally valid: " : "NO: ";
+    const std::vector<std::string> failures = certificate.failures();
+    for (std::size_t i = 0; i < failures.size(); ++i)
+        text += (i ? ", " : "") + failures[i];
+    return text;
+}
+
 /// What is wrong with the shell; what was not looked at is not called right.
 std::string verdict(const ShellReport& report)
 {
@@ -100,6 +113,8 @@ std::string verdict(const ShellReport& report)
     add(report.coverage.outside_covered, "sample points covered outside the solid");
     if (!wrong.empty())
         return "NOT VALID: " + wrong;
+    if (report.certificate && report.certificate->certified())
+        return "no tet inverted, none overlapping: proven";
     if (report.coverage.samples == 0)
         return "tets positive and conforming; overlaps not looked for, not certified";
     return "tets positive and conforming, no overlap seen among the sample points; not certified";
@@ -162,6 +177,8 @@ std::string report_text(const ShellReport& report)
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
              ", fill " + percent(report.fill));
     line(out, "coverage", coverage_text(report.coverage));
+    if (report.certificate)
+        line(out, "certified", certificate_text(*report.certificate));
     if (!report.stages.empty())
         cost_lines(out, report.stages);
     line(out, "verdict", verdict(report));

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/verify_file.h"
 
+#include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/mesh/check_mesh.h"
+
+#include "core/option_names.h"
 
 #include <nlohmann/json.hpp>
 #include <openvdb/tools/Interpolation.h>
@@ -82,6 +85,30 @@ Verification verify_signs(const ShellFile& file, const json& report)
                 "; flat: " + compare(double(found.flat.count), flat)};
 }
 
+/// What a file without a certificate is held to is nothing, but the findings are told all the same.
+Verification verify_certificate(const ShellFile& file, const json& report, Interrupter* interrupter)
+{
+    const json claim =
+        report.is_object() ? report.value("certificate", json::object()) : json::object();
+    const bool twelve = claim.is_object() && claim.contains("test") &&
+                        claim.at("test") == name_in_table(PrismTest::twelve_tets);
+    const PrismTest test = twelve ? PrismTest::twelve_tets : PrismTest::chosen_tets;
+    const Certificate found = certify_shell(file.shell, file.split, test, interrupter);
+    auto agrees = [&](const char* what, bool value) {
+        return !claim.is_object() || !claim.contains(what) || claim.at(what) == value;
+    };
+    const bool claims = claim.is_object() && claim.value("certified", json()) == true;
+    std::string detail = std::string(found.certified() ? "certified" : "not certified") +
+                         " by the test " + name_in_table(test) + ", the file says " +
+                         (claims ? "certified" : "not certified");
+    for (const std::string& failure : found.failures())
+        detail += "; " + failure;
+    return {"certificate is as stated",
+            agrees("certified", found.certified()) &&
+                agrees("locally_valid", found.locally_valid()),
+            detail};
+}
+
 Verification verify_volume(const ShellFile& file, const json& report)
 {
     const double found = tet_volume(file.tets), claimed = stated(report, "/volume/shell");
@@ -118,6 +145,7 @@ std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* inter
             verify_tets(file),
             verify_conformity(file),
             verify_signs(file, report),
+            verify_certificate(file, report, interrupter),
             verify_volume(file, report),
             verify_level_set(file, report),
             {"depth grid is that of the tets",

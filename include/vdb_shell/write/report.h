@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/quality.h"
@@ -59,6 +60,7 @@ struct ShellReport {
     double shell_volume = 0; ///< sum of signed tet volumes
     double fill = 0;         ///< shell_volume / solid_volume
     Coverage coverage;
+    std::optional<Certificate> certificate; ///< nothing when it was not asked for
     std::vector<StageCost> stages;
 };
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/certify/certificate.h"
+
+#include <vector>
+
+namespace vdb_shell
+{
+
+template <typename Element> void add_to(Defect<Element>& defect, const Element& element)
+{
+    if (defect.count++ < Defect<Element>::kFirstShown)
+        defect.first.push_back(element);
+}
+
+/// The indices of the flags that are raised.
+inline Defect<std::uint32_t> raised(const std::vector<char>& flags)
+{
+    Defect<std::uint32_t> defect;
+    for (std::uint32_t i = 0; i < flags.size(); ++i)
+        if (flags[i])
+            add_to(defect, i);
+    return defect;
+}
+
+/// visit(name, defect) for each kind of failure. The names are those of messages and of JSON.
+template <typename Visit> void for_each_kind(const Certificate& c, const Visit& visit)
+{
+    visit("bad_prisms", c.bad_prisms);
+    visit("non_conforming_edges", c.non_conforming_edges);
+    visit("cyclic_prisms", c.cyclic_prisms);
+    visit("outer_contacts", c.outer_contacts);
+    visit("inner_folds", c.inner_folds);
+    visit("inner_contacts", c.inner_contacts);
+    visit("inner_through_outer", c.inner_through_outer);
+    visit("inside_out_components", c.inside_out_components);
+    visit("nested_wrongly", c.nested_wrongly);
+    visit("open_edges", c.open_edges);
+    visit("split_vertices", c.split_vertices);
+}
+
+} // namespace vdb_shell

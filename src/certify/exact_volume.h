@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell::exact
+{
+
+/// Sign (-1, 0, 1) of the volume enclosed by the chosen triangles, which close up: always right.
+int volume_sign(const std::vector<openvdb::Vec3s>& points,
+                const std::vector<openvdb::Vec3I>& triangles,
+                const std::vector<std::uint32_t>& chosen);
+
+} // namespace vdb_shell::exact

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/prism_checks.h"
+
+#include "certify/certificate_findings.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+
+#include <array>
+#include <numeric>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using Order = std::array<std::uint8_t, 3>;
+
+bool is_permutation(const Order& order)
+{
+    unsigned seen = 0;
+    for (const std::uint8_t corner : order)
+        seen |= corner < 3 ? 1U << corner : 0U;
+    return seen == 7U;
+}
+
+bool comes_before(const Order& order, std::uint8_t corner, std::uint8_t other)
+{
+    for (const std::uint8_t entry : order) {
+        if (entry == corner)
+            return true;
+        if (entry == other)
+            return false;
+    }
+    return false;
+}
+
+/// Each tet of each split holds one whole pillar and one end of either other pillar: four of the
+/// pillar, twelve of the prism. One determinant gives the sign of all.
+class Prism
+{
+public:
+    Prism(const PrismShell& shell, const openvdb::Vec3I& triangle)
+    {
+        for (std::size_t i = 0; i < 3; ++i)
+            pillar_[i] = {&shell.outer[triangle[int(i)]], &shell.inner[triangle[int(i)]]};
+    }
+    /// The tet of pillar `i`; the next and the previous pillar's inner end where asked.
+    bool positive(std::size_t i, bool next_inner, bool previous_inner) const
+    {
+        return exact::orient3d(*pillar_[i][0], *pillar_[i][1],
+                               *pillar_[(i + 2) % 3][previous_inner],
+                               *pillar_[(i + 1) % 3][next_inner]) > 0;
+    }
+    bool all_positive(std::size_t i) const
+    {
+        return positive(i, false, false) && positive(i, true, false) && positive(i, false, true) &&
+               positive(i, true, true);
+    }
+    bool chosen_positive(std::size_t i, const Order& order) const
+    {
+        const auto corner = static_cast<std::uint8_t>(i);
+        const auto next = static_cast<std::uint8_t>((i + 1) % 3);
+        const auto previous = static_cast<std::uint8_t>((i + 2) % 3);
+        return positive(i, comes_before(order, corner, next),
+                        comes_before(order, corner, previous));
+    }
+
+private:
+    std::array<std::array<const openvdb::Vec3s*, 2>, 3> pillar_{};
+};
+
+bool once_each_way(const EdgeUse* first, const EdgeUse* last)
+{
+    return last - first == 2 && first->edge[0] != first->edge[1] &&
+           first[0].forward != first[1].forward;
+}
+
+/// Whether the diagonal over the edge starts at the outer end of its smaller vertex.
+bool from_smaller(const PrismSplit& split, const EdgeUse& use)
+{
+    const auto end = static_cast<std::uint8_t>((use.side + 1) % 3);
+    return comes_before(split.order[use.triangle], use.side, end) == use.forward;
+}
+
+} // namespace
+
+std::vector<char> pinned_flags(const PrismShell& shell)
+{
+    std::vector<char> pinned(shell.outer.size());
+    for_each_index(pinned.size(), [&](std::size_t v) { pinned[v] = shell.pinned(v); });
+    return pinned;
+}
+
+void check_prisms(const PrismShell& shell, const PrismSplit& split, const std::vector<char>& pinned,
+                  Certificate& certificate)
+{
+    std::vector<char> bad(shell.triangles.size()), cyclic(shell.triangles.size());
+    const bool all = certificate.test == PrismTest::twelve_tets;
+    for_each_index(bad.size(), [&](std::size_t t) {
+        cyclic[t] = !is_permutation(split.order[t]);
+        if (cyclic[t] && !all)
+            return;
+        const Prism prism(shell, shell.triangles[t]);
+        for (std::size_t i = 0; i < 3; ++i)
+            if (!pinned[shell.triangles[t][int(i)]])
+                bad[t] = bad[t] ||
+                         !(all ? prism.all_positive(i) : prism.chosen_positive(i, split.order[t]));
+    });
+    certificate.bad_prisms = raised(bad);
+    certificate.cyclic_prisms = raised(cyclic);
+}
+
+void check_edges(const PrismSplit& split, const std::vector<char>& pinned,
+                 const std::vector<EdgeUse>& uses, Certificate& certificate,
+                 std::vector<char>& open_triangle)
+{
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (end < uses.size() && uses[end].edge == uses[begin].edge)
+            ++end;
+        const Edge& edge = uses[begin].edge;
+        if (!once_each_way(&uses[begin], uses.data() + end)) {
+            add_to(certificate.open_edges, edge);
+            for (std::size_t i = begin; i < end; ++i)
+                open_triangle[uses[i].triangle] = 1;
+            continue;
+        }
+        const bool quad = !pinned[edge[0]] && !pinned[edge[1]];
+        if (quad && is_permutation(split.order[uses[begin].triangle]) &&
+            is_permutation(split.order[uses[begin + 1].triangle]) &&
+            from_smaller(split, uses[begin]) != from_smaller(split, uses[begin + 1]))
+            add_to(certificate.non_conforming_edges, edge);
+    }
+}
+
+void check_vertices(const PrismShell& shell, const std::vector<EdgeUse>& uses,
+                    Certificate& certificate)
+{
+    // Corners of triangles, united across common edges; two classes at a vertex are two fans.
+    std::vector<std::uint32_t> parent(3 * shell.triangles.size());
+    std::iota(parent.begin(), parent.end(), 0U);
+    auto root_of = [&](std::uint32_t i) {
+        while (parent[i] != i)
+            i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    auto corner_at = [](const EdgeUse& use, bool larger) {
+        const bool second = larger == use.forward;
+        return 3 * use.triangle + (use.side + (second ? 1U : 0U)) % 3;
+    };
+    for (std::size_t i = 1; i < uses.size(); ++i) {
+        if (uses[i].edge != uses[i - 1].edge)
+            continue;
+        for (const bool larger : {false, true})
+            parent[root_of(corner_at(uses[i], larger))] = root_of(corner_at(uses[i - 1], larger));
+    }
+    constexpr std::uint32_t kNone = ~0U;
+    std::vector<std::uint32_t> fan(shell.outer.size(), kNone);
+    std::vector<char> split(shell.outer.size());
+    for (std::uint32_t corner = 0; corner < parent.size(); ++corner) {
+        const std::uint32_t v = shell.triangles[corner / 3][int(corner % 3)];
+        const std::uint32_t root = root_of(corner);
+        if (fan[v] == kNone)
+            fan[v] = root;
+        split[v] = split[v] || fan[v] != root;
+    }
+    certificate.split_vertices = raised(split);
+}
+
+} // namespace vdb_shell

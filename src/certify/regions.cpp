@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/regions.h"
+
+#include "certify/certificate_findings.h"
+#include "certify/exact_volume.h"
+#include "core/box_pairs.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+
+/// One component with its two closed surfaces. Their region is where their winding numbers differ.
+struct Piece {
+    std::vector<std::uint32_t> triangles;
+    bool closed = true;
+    Box box{}; ///< of both surfaces
+};
+
+std::vector<Piece> gather_pieces(const PrismShell& shell,
+                                 const std::vector<std::uint32_t>& component_of,
+                                 const std::vector<char>& open_triangle)
+{
+    std::vector<Piece> pieces;
+    for (std::uint32_t t = 0; t < component_of.size(); ++t) {
+        const std::uint32_t c = component_of[t];
+        if (c == pieces.size()) {
+            pieces.emplace_back();
+            const Vec3s& p = shell.outer[shell.triangles[t][0]];
+            pieces[c].box = {p, p};
+        }
+        Piece& piece = pieces[c];
+        piece.triangles.push_back(t);
+        piece.closed = piece.closed && !open_triangle[t];
+        for (int k = 0; k < 3; ++k)
+            for (const auto* surface : {&shell.outer, &shell.inner}) {
+                const Vec3s& p = (*surface)[shell.triangles[t][k]];
+                piece.box.low = openvdb::math::minComponent(piece.box.low, p);
+                piece.box.high = openvdb::math::maxComponent(piece.box.high, p);
+            }
+    }
+    return pieces;
+}
+
+/// A triangle that the upward ray from `point` cannot meet.
+bool misses_ray(const Vec3s& point, const Vec3s& a, const Vec3s& b, const Vec3s& c)
+{
+    for (int k = 0; k < 2; ++k)
+        if ((a[k] < point[k] && b[k] < point[k] && c[k] < point[k]) ||
+            (a[k] > point[k] && b[k] > point[k] && c[k] > point[k]))
+            return true;
+    return a[2] < point[2] && b[2] < point[2] && c[2] < point[2];
+}
+
+int winding_number(const std::vector<Vec3s>& points, const PrismShell& shell, const Piece& piece,
+                   const Vec3s& at)
+{
+    int winding = 0;
+    bool on_surface = false;
+    for (const std::uint32_t t : piece.triangles) {
+        const Vec3I& v = shell.triangles[t];
+        const Vec3s &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
+        if (!misses_ray(at, a, b, c))
+            winding += exact::crossing_above(at, a, b, c, on_surface);
+    }
+    return winding;
+}
+
+bool in_region(const PrismShell& shell, const Piece& piece, const Vec3s& at)
+{
+    for (int k = 0; k < 3; ++k)
+        if (at[k] < piece.box.low[k] || at[k] > piece.box.high[k])
+            return false;
+    return winding_number(shell.outer, shell, piece, at) !=
+           winding_number(shell.inner, shell, piece, at);
+}
+
+/// Surfaces that do not touch those of `piece` lie in its region as a whole or not at all: one
+/// point of each decides.
+bool reaches_into(const PrismShell& shell, const Piece& other, const Piece& piece)
+{
+    const std::uint32_t v = shell.triangles[other.triangles.front()][0];
+    return in_region(shell, piece, shell.outer[v]) || in_region(shell, piece, shell.inner[v]);
+}
+
+using ComponentPair = std::array<std::uint32_t, 2>;
+
+std::vector<ComponentPair>
+touching_components(const std::vector<std::uint32_t>& component_of,
+                    const std::vector<std::array<std::uint32_t, 2>>& contacts)
+{
+    std::vector<ComponentPair> touching;
+    for (const auto& [s, t] : contacts) {
+        const auto [low, high] = std::minmax(component_of[s], component_of[t]);
+        if (low != high)
+            touching.push_back({low, high});
+    }
+    std::sort(touching.begin(), touching.end());
+    touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+    return touching;
+}
+
+void check_orientation(const PrismShell& shell, const std::vector<Piece>& pieces,
+                       Certificate& certificate)
+{
+    std::vector<char> inside_out(pieces.size());
+    for_each_index(
+        pieces.size(),
+        [&](std::size_t c) {
+            const Piece& piece = pieces[c];
+            if (!piece.closed)
+                return;
+            const int outer = exact::volume_sign(shell.outer, shell.triangles, piece.triangles);
+            const int inner = exact::volume_sign(shell.inner, shell.triangles, piece.triangles);
+            inside_out[c] = outer == 0 || inner != outer;
+        },
+        1);
+    for (std::size_t c = 0; c < pieces.size(); ++c)
+        if (inside_out[c])
+            add_to(certificate.inside_out_components, pieces[c].triangles.front());
+}
+
+} // namespace
+
+void check_regions(const PrismShell& shell, const std::vector<std::uint32_t>& component_of,
+                   const std::vector<char>& open_triangle,
+                   const std::vector<std::array<std::uint32_t, 2>>& contacts,
+                   Certificate& certificate)
+{
+    const std::vector<Piece> pieces = gather_pieces(shell, component_of, open_triangle);
+    check_orientation(shell, pieces, certificate);
+
+    std::vector<Box> boxes;
+    for (const Piece& piece : pieces)
+        boxes.push_back(piece.box);
+    const std::vector<ComponentPair> touching = touching_components(component_of, contacts);
+    const auto pairs = pieces.size() < 2 ? std::vector<ComponentPair>{} : overlapping_pairs(boxes);
+    std::vector<char> nested(pairs.size());
+    for_each_index(
+        pairs.size(),
+        [&](std::size_t i) {
+            const Piece &first = pieces[pairs[i][0]], &second = pieces[pairs[i][1]];
+            // A contact has failed the pair already, and leaves no side to speak of.
+            if (first.closed && second.closed &&
+                !std::binary_search(touching.begin(), touching.end(), pairs[i]))
+                nested[i] =
+                    reaches_into(shell, first, second) || reaches_into(shell, second, first);
+        },
+        1);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (nested[i])
+            add_to(certificate.nested_wrongly,
+                   {pieces[pairs[i][0]].triangles.front(), pieces[pairs[i][1]].triangles.front()});
+}
+
+} // namespace vdb_shell

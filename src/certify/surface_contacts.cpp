@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "certify/surface_contacts.h"
+
+#include "certify/certificate_findings.h"
+#include "core/box_pairs.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+
+/// Both surfaces over one set of points: the outer ones, then the inner ones. The inner corner of a
+/// pinned vertex *is* its outer point, so triangles of different surfaces share it by index.
+struct TwoSurfaces {
+    std::vector<Vec3s> points;
+    std::vector<Vec3I> faces;          ///< the outer triangles, then the inner ones
+    std::vector<std::uint32_t> source; ///< per face: the triangle of the shell
+    std::size_t outer_count = 0;
+
+    bool inner(std::size_t face) const { return face >= outer_count; }
+};
+
+TwoSurfaces lay_together(const PrismShell& shell, const std::vector<char>& pinned)
+{
+    TwoSurfaces both;
+    both.points = shell.outer;
+    both.points.insert(both.points.end(), shell.inner.begin(), shell.inner.end());
+    both.faces = shell.triangles;
+    both.outer_count = shell.triangles.size();
+    const auto shift = static_cast<std::uint32_t>(shell.outer.size());
+    for (std::uint32_t t = 0; t < shell.triangles.size(); ++t)
+        both.source.push_back(t);
+    for (std::uint32_t t = 0; t < shell.triangles.size(); ++t) {
+        const Vec3I& v = shell.triangles[t];
+        // With three pinned corners the inner triangle is the outer one, and there already.
+        if (pinned[v[0]] && pinned[v[1]] && pinned[v[2]])
+            continue;
+        Vec3I face = v;
+        for (int k = 0; k < 3; ++k)
+            if (!pinned[v[k]])
+                face[k] += shift;
+        both.faces.push_back(face);
+        both.source.push_back(t);
+    }
+    return both;
+}
+
+int shared_corners(const Vec3I& first, const Vec3I& second)
+{
+    int shared = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            shared += first[i] == second[j];
+    return shared;
+}
+
+bool is_corner_of(const Vec3I& face, std::uint32_t point)
+{
+    return face[0] == point || face[1] == point || face[2] == point;
+}
+
+/// Whether all corners of `other` that are not shared lie strictly on one side of the plane of
+/// `face`: then the two meet in shared corners and edges only.
+bool plane_separates(const std::vector<Vec3s>& points, const Vec3I& face, const Vec3I& other)
+{
+    int side = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (is_corner_of(face, other[k]))
+            continue;
+        const int sign =
+            exact::orient3d(points[face[0]], points[face[1]], points[face[2]], points[other[k]]);
+        if (sign == 0 || sign == -side)
+            return false;
+        side = sign;
+    }
+    return side != 0;
+}
+
+std::vector<char> find_degenerate(const TwoSurfaces& both)
+{
+    std::vector<char> degenerate(both.faces.size());
+    for_each_index(degenerate.size(), [&](std::size_t f) {
+        const Vec3I& c = both.faces[f];
+        degenerate[f] = exact::collinear(both.points[c[0]], both.points[c[1]], both.points[c[2]]);
+    });
+    return degenerate;
+}
+
+void list_contact(const TwoSurfaces& both, std::uint32_t first, std::uint32_t second,
+                  Certificate& certificate)
+{
+    const std::uint32_t s = both.source[first], t = both.source[second];
+    if (!both.inner(first) && !both.inner(second))
+        add_to(certificate.outer_contacts, {s, t});
+    else if (!both.inner(first))
+        add_to(certificate.inner_through_outer, {t, s});
+    else if (shared_corners(both.faces[first], both.faces[second]) > 0)
+        add_to(certificate.inner_folds, {s, t});
+    else
+        add_to(certificate.inner_contacts, {s, t});
+}
+
+} // namespace
+
+std::vector<std::array<std::uint32_t, 2>>
+check_surfaces(const PrismShell& shell, const std::vector<char>& pinned, Certificate& certificate)
+{
+    const TwoSurfaces both = lay_together(shell, pinned);
+    const std::vector<char> degenerate = find_degenerate(both);
+    for (std::uint32_t f = 0; f < degenerate.size(); ++f)
+        if (degenerate[f])
+            add_to(both.inner(f) ? certificate.inner_folds : certificate.outer_contacts,
+                   {both.source[f], both.source[f]});
+
+    const auto pairs = overlapping_pairs(triangle_boxes(both.points, both.faces));
+    std::vector<char> touching(pairs.size());
+    for_each_index(pairs.size(), [&](std::size_t i) {
+        const auto [f, g] = pairs[i];
+        const Vec3I &first = both.faces[f], &second = both.faces[g];
+        // A triangle of no area has no plane; the shell has failed by it already.
+        touching[i] = !degenerate[f] && !degenerate[g] &&
+                      !plane_separates(both.points, first, second) &&
+                      !plane_separates(both.points, second, first) &&
+                      exact::triangles_touch(both.points, first, second);
+    });
+    std::vector<std::array<std::uint32_t, 2>> contacts;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!touching[i])
+            continue;
+        list_contact(both, pairs[i][0], pairs[i][1], certificate);
+        contacts.push_back({both.source[pairs[i][0]], both.source[pairs[i][1]]});
+    }
+    return contacts;
+}
+
+} // namespace vdb_shell
