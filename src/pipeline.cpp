@@ -6,11 +6,13 @@
 #include "core/option_names.h"
 #include "core/stage_clock.h"
 #include "pipeline_figures.h"
+#include "step/thickness.h"
 
 #include <nlohmann/json.hpp>
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -76,11 +78,22 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     clock.run("limits", [&] {
         apply_limits(r.lengths, vertex_limits(r.surface, r.directions, options.limits.limit));
     });
-    clock.run("prisms", [&] { r.shell = extrude(r.surface, r.directions, r.lengths); });
-    clock.run("tets", [&] {
-        r.split = split_prisms(r.shell, options.split);
-        r.tets = make_tets(r.shell, r.split);
-    });
+    if (options.grow.method == Method::raw)
+        clock.run("prisms", [&] {
+            r.shell = extrude(r.surface, r.directions, r.lengths);
+            r.split = split_prisms(r.shell, options.split);
+        });
+    else
+        clock.run("growth", [&] {
+            GrowResult grown =
+                grow_shell(r.surface, r.directions, r.lengths,
+                           largest_lengths(r.surface, options.line_step, thickness_grid),
+                           options.grow, options.split, interrupter);
+            r.shell = std::move(grown.shell);
+            r.split = std::move(grown.split);
+            r.report.grow = grown.report;
+        });
+    clock.run("tets", [&] { r.tets = make_tets(r.shell, r.split); });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
         r.report.coverage = estimate_coverage(r.surface, r.tets, options.coverage, interrupter);
@@ -112,6 +125,15 @@ std::string options_json(const ShellOptions& options)
                          {"reference_voxels", options.line_step.reference_voxels},
                          {"thickness", or_null(options.line_step.thickness)}};
     json["limits"] = {{"limit", name_in_table(options.limits.limit)}};
+    json["grow"] = {{"method", name_in_table(options.grow.method)},
+                    {"mend_directions", options.grow.mend_directions},
+                    {"smooth_directions", options.grow.smooth_directions},
+                    {"top_down", options.grow.top_down},
+                    {"grow_lines", options.grow.grow_lines},
+                    {"free_moves", options.grow.free_moves},
+                    {"soft_contacts", options.grow.soft_contacts},
+                    {"flips", options.grow.flips},
+                    {"free_rounds", options.grow.free_rounds}};
     json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};
     json["coverage"] = {{"samples", options.coverage.samples}, {"seed", options.coverage.seed}};
     return json.dump(2);
