@@ -6,11 +6,13 @@
 #include "core/option_names.h"
 #include "core/stage_clock.h"
 #include "pipeline_figures.h"
+#include "step/thickness.h"
 
 #include <nlohmann/json.hpp>
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -41,6 +43,31 @@ LevelSetOptions band_for(const ShellOptions& options, const openvdb::FloatGrid* 
             band.interior_depth = std::min(band.interior_depth.value_or(deepest), deepest);
     }
     return band;
+}
+
+/// Growth, or for Method::raw the prisms straight from the lengths.
+void make_shell(ShellResult& r, const ShellOptions& options,
+                const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    if (options.grow.method == Method::raw) {
+        r.shell = extrude(r.surface, r.directions, r.lengths);
+        r.split = split_prisms(r.shell, options.split);
+        return;
+    }
+    GrowResult grown = grow_shell(r.surface, r.directions, r.lengths,
+                                  largest_lengths(r.surface, options.line_step, thickness_grid),
+                                  options.grow, options.split, interrupter);
+    r.shell = std::move(grown.shell);
+    r.split = std::move(grown.split);
+    r.report.grow = grown.report;
+}
+
+/// The twelve tets are what growth keeps positive by default, and what the raw shells are held
+/// against; the thickest shells stand by their chosen tets alone.
+PrismTest prism_test(const ShellOptions& options)
+{
+    return options.grow.method == Method::thickest ? PrismTest::chosen_tets
+                                                   : PrismTest::twelve_tets;
 }
 
 } // namespace
@@ -76,13 +103,11 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     clock.run("limits", [&] {
         apply_limits(r.lengths, vertex_limits(r.surface, r.directions, options.limits.limit));
     });
-    clock.run("prisms", [&] { r.shell = extrude(r.surface, r.directions, r.lengths); });
-    clock.run("tets", [&] {
-        r.split = split_prisms(r.shell, options.split);
-        r.tets = make_tets(r.shell, r.split);
-    });
+    clock.run(options.grow.method == Method::raw ? "prisms" : "growth",
+              [&] { make_shell(r, options, thickness_grid, interrupter); });
+    clock.run("tets", [&] { r.tets = make_tets(r.shell, r.split); });
     clock.run("certificate", [&] {
-        r.report.certificate = certify_shell(r.shell, r.split, PrismTest::twelve_tets, interrupter);
+        r.report.certificate = certify_shell(r.shell, r.split, prism_test(options), interrupter);
     });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
@@ -115,6 +140,15 @@ std::string options_json(const ShellOptions& options)
                          {"reference_voxels", options.line_step.reference_voxels},
                          {"thickness", or_null(options.line_step.thickness)}};
     json["limits"] = {{"limit", name_in_table(options.limits.limit)}};
+    json["grow"] = {{"method", name_in_table(options.grow.method)},
+                    {"mend_directions", options.grow.mend_directions},
+                    {"smooth_directions", options.grow.smooth_directions},
+                    {"top_down", options.grow.top_down},
+                    {"grow_lines", options.grow.grow_lines},
+                    {"free_moves", options.grow.free_moves},
+                    {"soft_contacts", options.grow.soft_contacts},
+                    {"flips", options.grow.flips},
+                    {"free_rounds", options.grow.free_rounds}};
     json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};
     json["coverage"] = {{"samples", options.coverage.samples}, {"seed", options.coverage.seed}};
     return json.dump(2);

@@ -5,6 +5,7 @@
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/prism_shell.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
@@ -26,6 +27,7 @@ struct ShellOptions {
     DirectionOptions directions;
     LineStepOptions line_step;
     LimitOptions limits;
+    GrowOptions grow;
     SplitOptions split;
     CoverageOptions coverage;
 };
@@ -43,9 +45,9 @@ struct ShellResult {
 };
 
 /// The whole job on a mesh in memory: check, level set, smooth, directions, line stepping, limits,
-/// prisms, tets, certificate, figures. `name` is what messages and the report call the mesh. `thickness_grid` as
-/// in line_step. Throws what the stages throw. Same result for any number of threads (costs in the
-/// report aside).
+/// growth (Method::raw: prisms straight from the lengths), tets, certificate, figures. `name` is what
+/// messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the stages
+/// throw. Same result for any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

@@ -95,6 +95,36 @@ void add_line_options(CLI::App& app, BuildArguments& arguments)
         ->group("Lines");
 }
 
+void add_growth_options(CLI::App& app, GrowOptions& grow)
+{
+    CLI::Option* method =
+        bind_enum(app, "--method", grow.method, "How the inner vertices get their places")
+            ->group("Growth");
+    app.add_flag_callback(
+           "--thickest", [&grow] { grow.method = Method::thickest; }, "Same as --method thickest")
+        ->excludes(method)
+        ->group("Growth");
+    const auto lever = [&](const char* flag, bool& field, const char* help) {
+        app.add_flag(flag, field, help)->group("Growth");
+    };
+    lever("--mend-directions,!--no-mend-directions", grow.mend_directions,
+          "Replace directions that see a triangle from behind [on]");
+    lever("--smooth-directions,!--no-smooth-directions", grow.smooth_directions,
+          "Smooth the directions across faces, not across creases [on]");
+    lever("--top-down,!--no-top-down", grow.top_down,
+          "Start from long lines and shrink them, instead of a thin shell [on]");
+    lever("--grow-lines,!--no-grow-lines", grow.grow_lines, "Lengthen along the lines [on]");
+    lever("--free-moves,!--no-free-moves", grow.free_moves,
+          "Let inner vertices leave their lines [on]");
+    lever("--soft-contacts,!--no-soft-contacts", grow.soft_contacts,
+          "Keep clear of near triangles before they touch [on]");
+    lever("--flips,!--no-flips", grow.flips, "Turn diagonals for room and for quality [on]");
+    app.add_option("--free-rounds", grow.free_rounds, "Upper bound on rounds of free moves")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str()
+        ->group("Growth");
+}
+
 void add_shell_options(CLI::App& app, ShellOptions& shell)
 {
     bind_enum(app, "--split", shell.split.rule, "How the prisms' diagonals are chosen")
@@ -160,6 +190,7 @@ void add_build_command(CLI::App& app, BuildArguments& arguments)
     add_surface_options(app, arguments);
     add_field_options(app, arguments.shell);
     add_line_options(app, arguments);
+    add_growth_options(app, arguments.shell.grow);
     add_shell_options(app, arguments.shell);
 }
 

@@ -2,6 +2,7 @@
 #include "core/exact.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
 #include <CGAL/intersections.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point2 = Kernel::Point_2;
 using Point3 = Kernel::Point_3;
 using Segment = Kernel::Segment_3;
-using Triangle = Kernel::Triangle_3;
+using Triangle3 = Kernel::Triangle_3;
 
 Point3 point3(const openvdb::Vec3s& p)
 {
@@ -100,18 +101,69 @@ bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::V
     auto q = [&](std::size_t slot) { return point3(points[second[shared.in_second[slot]]]); };
     switch (shared.count) {
     case 0:
-        return CGAL::do_intersect(Triangle(p(0), p(1), p(2)), Triangle(q(0), q(1), q(2)));
+        return CGAL::do_intersect(Triangle3(p(0), p(1), p(2)), Triangle3(q(0), q(1), q(2)));
     case 1:
         // The common part is convex and holds the shared corner; if it holds more, it reaches the
         // opposite edge of one of the two.
-        return CGAL::do_intersect(Segment(p(1), p(2)), Triangle(q(0), q(1), q(2))) ||
-               CGAL::do_intersect(Segment(q(1), q(2)), Triangle(p(0), p(1), p(2)));
+        return CGAL::do_intersect(Segment(p(1), p(2)), Triangle3(q(0), q(1), q(2))) ||
+               CGAL::do_intersect(Segment(q(1), q(2)), Triangle3(p(0), p(1), p(2)));
     case 2:
         return CGAL::orientation(p(0), p(1), p(2), q(2)) == CGAL::COPLANAR &&
                CGAL::coplanar_orientation(p(0), p(1), p(2), q(2)) == CGAL::POSITIVE;
     default:
         return true;
     }
+}
+
+namespace
+{
+
+bool degenerate(const Triangle& t)
+{
+    return collinear(t[0], t[1], t[2]);
+}
+Triangle3 triangle3(const Triangle& t)
+{
+    return {point3(t[0]), point3(t[1]), point3(t[2])};
+}
+
+} // namespace
+
+bool triangles_touch(const Triangle& first, const Triangle& second)
+{
+    return degenerate(first) || degenerate(second) ||
+           CGAL::do_intersect(triangle3(first), triangle3(second));
+}
+
+bool segment_touches_triangle(const openvdb::Vec3s& p, const openvdb::Vec3s& q,
+                              const Triangle& triangle)
+{
+    return p == q || degenerate(triangle) ||
+           CGAL::do_intersect(Segment(point3(p), point3(q)), triangle3(triangle));
+}
+
+bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& p,
+                 const openvdb::Vec3s& q)
+{
+    return CGAL::coplanar_orientation(point3(a), point3(b), point3(p), point3(q)) != CGAL::NEGATIVE;
+}
+
+bool longer_than(const openvdb::Vec3s& from, const openvdb::Vec3s& to, double length)
+{
+    // Double arithmetic is off by a few units in the last place at most; only a tie needs more.
+    constexpr double kSlack = 1e-14;
+    const double measured = (openvdb::Vec3d(to) - openvdb::Vec3d(from)).length();
+    if (measured > length)
+        return true;
+    if (measured < length * (1 - kSlack))
+        return false;
+    CGAL::Exact_rational squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const CGAL::Exact_rational extent =
+            CGAL::Exact_rational(to[axis]) - CGAL::Exact_rational(from[axis]);
+        squared += extent * extent;
+    }
+    return squared > CGAL::Exact_rational(length) * CGAL::Exact_rational(length);
 }
 
 namespace
@@ -138,7 +190,7 @@ int crossing_above(const openvdb::Vec3s& point, const openvdb::Vec3s& a, const o
     const CGAL::Orientation turn = CGAL::orientation(pa, pb, pc);
     const int side = orient3d(a, b, c, point); // < 0: the point lies behind the triangle
     if (side == 0 && !collinear(a, b, c)) {
-        const Triangle triangle(point3(a), point3(b), point3(c));
+        const Triangle3 triangle(point3(a), point3(b), point3(c));
         on_surface = on_surface || triangle.has_on(point3(point));
     }
     if (turn == CGAL::COLLINEAR)

@@ -6,6 +6,7 @@
 
 #include <openvdb/Types.h>
 
+#include <array>
 #include <vector>
 
 namespace vdb_shell::exact
@@ -23,6 +24,26 @@ bool collinear(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::
 /// the other; three - always. Precondition: neither triangle is degenerate.
 bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
                      const openvdb::Vec3I& second);
+
+/// The corners of a triangle by value, for callers whose points stand in no list.
+using Triangle = std::array<openvdb::Vec3s, 3>;
+
+/// Whether two triangles without a shared corner have a common point. A degenerate triangle, which
+/// has no place in a surface, counts as touching whatever it is asked about.
+bool triangles_touch(const Triangle& first, const Triangle& second);
+
+/// Whether the closed segment and the closed triangle have a common point; degenerate ones as
+/// above.
+bool segment_touches_triangle(const openvdb::Vec3s& p, const openvdb::Vec3s& q,
+                              const Triangle& triangle);
+
+/// Of four points in one plane: whether p and q are not strictly on opposite sides of the line a b.
+bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& p,
+                 const openvdb::Vec3s& q);
+
+/// Whether the segment is longer than `length`, without any rounding, or by the double measure
+/// (Vec3d(to) - Vec3d(from)).length() that callers see.
+bool longer_than(const openvdb::Vec3s& from, const openvdb::Vec3s& to, double length);
 
 /// Whether the vertical line through `point` (parallel to z) crosses the triangle above it, with
 /// the half-open rule that counts a shared edge or corner for exactly one of its triangles. 0: no

@@ -4,6 +4,7 @@
 // The names that option values have on the command line and in JSON: one table an enum.
 
 #include "vdb_shell/certify/certificate.h"
+#include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/limits.h"
@@ -43,6 +44,13 @@ inline const NameTable<Limit>& names(Limit)
 {
     static const NameTable<Limit> table{
         {"none", Limit::none}, {"uniform", Limit::uniform}, {"adaptive", Limit::adaptive}};
+    return table;
+}
+
+inline const NameTable<Method>& names(Method)
+{
+    static const NameTable<Method> table{
+        {"raw", Method::raw}, {"certified", Method::certified}, {"thickest", Method::thickest}};
     return table;
 }
 

@@ -1,2 +1,145 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/grow.h"
+
+#include "core/stage_progress.h"
+#include "shell/grow/diagonals.h"
+#include "shell/grow/directions.h"
+#include "shell/grow/free_moves.h"
+#include "shell/grow/lines.h"
+#include "shell/grow/start.h"
+#include "shell/grow/stops.h"
+
+#include <algorithm>
+#include <cassert>
+#include <string>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using growth::GrowState;
+
+// Rounds under the twelve-tet test before the three-tet ones: enough to spread the vertices.
+constexpr int kTwelveRoundsFirst = 25;
+// Of the lengths to try first: a little less than where the fronts meet.
+constexpr double kTopDown = 0.98;
+
+Directions prepare(const TriangleMesh& mesh, Directions directions, const GrowOptions& options)
+{
+    if (options.mend_directions)
+        growth::mend_directions(mesh, directions);
+    if (options.smooth_directions)
+        growth::smooth_directions(mesh, directions);
+    return directions;
+}
+
+std::vector<double> first_lengths(const GrowState& s, const Directions& directions,
+                                  const LineLengths& start, const std::vector<double>& thin)
+{
+    (void)start;
+    (void)thin;
+    std::vector<double> lengths = growth::half_rays(s, directions);
+    for (double& length : lengths)
+        length *= kTopDown;
+    return lengths;
+}
+
+std::ptrdiff_t pins(const GrowState& s)
+{
+    return std::count(s.pinned.begin(), s.pinned.end(), 1);
+}
+
+/// Top-down where the whole may collapse at once (sphere, torus), thin where that would pin more
+/// vertices than the thin start does.
+void settle(GrowState& s, const Directions& directions, const LineLengths& start,
+            const GrowOptions& options, const StageProgress& progress)
+{
+    const std::vector<double> thin = growth::thin_heights(s);
+    growth::settle_start(s, directions, thin, progress);
+    if (!options.top_down)
+        return;
+    const std::vector<openvdb::Vec3d> thin_b = s.b;
+    const std::vector<std::uint8_t> thin_pinned = s.pinned;
+    const std::ptrdiff_t thin_pins = pins(s);
+    growth::settle_start(s, directions, first_lengths(s, directions, start, thin), progress);
+    if (pins(s) <= thin_pins)
+        return;
+    s.b = thin_b;
+    s.pinned = thin_pinned;
+}
+
+void move_off_the_lines(GrowState& s, const GrowOptions& options, const StageProgress& progress,
+                        GrowReport& report)
+{
+    const bool thickest = options.method == Method::thickest;
+    const int twelve_rounds =
+        thickest ? std::min(kTwelveRoundsFirst, options.free_rounds) : options.free_rounds;
+    growth::move_freely(s, options, {twelve_rounds, growth::kTwelveSoftness}, progress, report);
+    if (!thickest)
+        return;
+    s.twelve = false;
+    growth::order_by_length(s);
+    growth::move_freely(s, options, {options.free_rounds, growth::kThreeSoftness}, progress,
+                        report);
+}
+
+PrismShell shell_of(const TriangleMesh& mesh, GrowState& s)
+{
+    PrismShell shell{mesh.points, mesh.points, mesh.triangles, growth::probe_stops(s)};
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        if (!s.pinned[v])
+            shell.inner[v] = openvdb::Vec3s(s.b[v]);
+    return shell;
+}
+
+/// Under the twelve-tet test any rule of the user's will do; otherwise growth has its own orders.
+PrismSplit split_of(GrowState& s, const PrismShell& shell, const GrowOptions& options,
+                    const SplitOptions& split, GrowReport& report)
+{
+    PrismSplit result;
+    if (s.twelve) {
+        result = split_prisms(shell, split);
+        for (std::size_t f = 0; f < result.order.size(); ++f)
+            s.order[f] = static_cast<std::uint8_t>(growth::order_index(result.order[f]));
+    }
+    const bool own_order = !s.twelve || split.rule == SplitRule::length_descending;
+    if (options.flips && own_order)
+        report.flips += growth::flip_for_quality(s);
+    result.order.clear();
+    for (const std::uint8_t order : s.order)
+        result.order.push_back(growth::tables().order[order]);
+    return result;
+}
+
+} // namespace
+
+GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
+                      const LineLengths& start, const std::vector<double>& cap,
+                      const GrowOptions& options, const SplitOptions& split,
+                      Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "grow");
+    if (options.free_rounds < 0)
+        throw InvalidOption("growth: free_rounds is " + std::to_string(options.free_rounds) +
+                            ", must not be negative");
+    assert(options.method != Method::raw);
+    assert(directions.inward.size() == mesh.points.size());
+    assert(start.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
+    const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
+    const Directions lines = prepare(mesh, directions, options);
+    GrowState s = growth::make_state(connectivity, mesh.points, cap);
+    GrowResult result;
+
+    settle(s, lines, start, options, progress);
+    if (options.grow_lines)
+        growth::lengthen_lines(s, lines, progress);
+    result.report.fill_after_lines = growth::fill_of(s);
+    if (options.free_moves)
+        move_off_the_lines(s, options, progress, result.report);
+    result.shell = shell_of(mesh, s);
+    result.split = split_of(s, result.shell, options, split, result.report);
+    return result;
+}
+
+} // namespace vdb_shell

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/prism_shell.h"
 
+#include "core/exact.h"
 #include "core/parallel.h"
-
-#include <CGAL/Exact_rational.h>
+#include "shell/pillar.h"
 
 #include <cassert>
 #include <cmath>
@@ -15,26 +15,6 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3s;
-
-/// Whether the pillar is longer than `length`, without any rounding, nor by the measure that
-/// PrismShell::length gives to callers.
-bool is_longer(const Vec3s& outer, const Vec3s& inner, double length)
-{
-    // Double arithmetic is off by a few units in the last place at most; only a tie needs more.
-    constexpr double kSlack = 1e-14;
-    const double measured = (Vec3d(inner) - Vec3d(outer)).length();
-    if (measured > length)
-        return true;
-    if (measured < length * (1 - kSlack))
-        return false;
-    CGAL::Exact_rational squared = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const CGAL::Exact_rational extent =
-            CGAL::Exact_rational(inner[axis]) - CGAL::Exact_rational(outer[axis]);
-        squared += extent * extent;
-    }
-    return squared > CGAL::Exact_rational(length) * CGAL::Exact_rational(length);
-}
 
 /// Moves the component that is farthest beyond `target` (seen from `outer`) one float32 back.
 void step_back(const Vec3s& outer, const Vec3d& target, Vec3s& inner)
@@ -55,19 +35,19 @@ void step_back(const Vec3s& outer, const Vec3d& target, Vec3s& inner)
     inner[worst] = std::nextafter(inner[worst], outer[worst]);
 }
 
+} // namespace
+
 Vec3s end_of_pillar(const Vec3s& outer, const Vec3d& inward, double length)
 {
     const Vec3d target = Vec3d(outer) + length * inward;
     Vec3s inner(target);
     // After one step per axis every component is rounded towards the outer point; then only the
     // last bit of the direction's own norm can be left, so this ends within a few steps.
-    while (inner != outer && is_longer(outer, inner, length))
+    while (inner != outer && exact::longer_than(outer, inner, length))
         step_back(outer, target, inner);
     // The bits of the outer point even where the sum turned -0 into 0.
     return inner == outer ? outer : inner;
 }
-
-} // namespace
 
 PrismShell extrude(const TriangleMesh& mesh, const Directions& directions,
                    const LineLengths& lengths)

@@ -5,9 +5,8 @@
 #include "core/stage_progress.h"
 #include "field/field_sampler.h"
 #include "step/march.h"
+#include "step/thickness.h"
 #include "vdb_shell/core/error.h"
-
-#include <openvdb/tools/Interpolation.h>
 
 #include <cassert>
 #include <sstream>
@@ -73,27 +72,6 @@ MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_se
     return rules;
 }
 
-std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::FloatGrid& grid)
-{
-    std::vector<double> sampled(mesh.points.size());
-    for_each_range(sampled.size(), [&](std::size_t begin, std::size_t end) {
-        const auto accessor = grid.getConstAccessor();
-        for (std::size_t v = begin; v < end; ++v) {
-            const auto index = grid.transform().worldToIndex(openvdb::Vec3d(mesh.points[v]));
-            sampled[v] = static_cast<double>(openvdb::tools::BoxSampler::sample(accessor, index));
-        }
-    });
-    for (std::size_t v = 0; v < sampled.size(); ++v)
-        if (!(std::isfinite(sampled[v]) && sampled[v] >= 0)) {
-            std::ostringstream message;
-            message << "thickness grid '" << grid.getName() << "': value " << sampled[v]
-                    << " at vertex " << v << " " << mesh.points[v]
-                    << ", must be finite and not negative";
-            throw GeometryError(message.str());
-        }
-    return sampled;
-}
-
 } // namespace
 
 const char* name_of(StopReason reason)
@@ -146,19 +124,16 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
     if (count == 0)
         return lengths;
     const MarchRules rules = rules_of(mesh, level_set, options);
-    std::vector<double> sampled;
-    if (thickness_grid)
-        sampled = sample_thickness(mesh, *thickness_grid);
-    const double thickness = options.thickness.value_or(std::numeric_limits<double>::infinity());
+    const std::vector<double> thickest = largest_lengths(mesh, options, thickness_grid);
 
     for (std::size_t block = 0; block < count; block += kBlock) {
         progress.stop_if_interrupted(static_cast<int>(100 * block / count));
         for_each_range(std::min(kBlock, count - block), [&](std::size_t begin, std::size_t end) {
             FieldSampler field(level_set);
             for (std::size_t v = block + begin; v < block + end; ++v) {
-                const double bound = sampled.empty() ? thickness : std::min(thickness, sampled[v]);
                 const LineEnd line_end = step_one(
-                    field, {openvdb::Vec3d(mesh.points[v]), directions.inward[v], bound}, rules);
+                    field, {openvdb::Vec3d(mesh.points[v]), directions.inward[v], thickest[v]},
+                    rules);
                 lengths.length[v] = line_end.length;
                 lengths.steps[v] = line_end.steps;
                 lengths.reason[v] = line_end.reason;

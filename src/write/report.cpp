@@ -97,6 +97,13 @@ ordered_json lines_json(const LineReport& lines)
             {"length_voxels", spread_json(lines.length_voxels)}};
 }
 
+ordered_json growth_json(const GrowReport& grow)
+{
+    return {{"rounds", grow.rounds},
+            {"flips", grow.flips},
+            {"fill_after_lines", grow.fill_after_lines}};
+}
+
 ordered_json tets_json(const ShellReport& report)
 {
     return {{"tets", report.signs.tets},
@@ -165,6 +172,7 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["mesh"] = mesh_json(report.mesh);
     json["field"] = field_json(report.field);
     json["lines"] = lines_json(report.lines);
+    json["growth"] = report.grow ? growth_json(*report.grow) : ordered_json();
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},
                       {"ripples", report.ripples}};

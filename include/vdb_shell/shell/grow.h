@@ -8,32 +8,38 @@
 #include <cstddef>
 #include <vector>
 
-namespace vdb_shell {
+namespace vdb_shell
+{
 
 /// How the inner vertices get their places.
 enum class Method {
-    raw,       ///< the lengths of line stepping as they are (the paper); overlaps are reported, not prevented
-    certified, ///< grown from a valid thin shell, all twelve tets of each prism positive: every
-               ///< diagonal and every thinner shell is valid too (docs/theory.md)
+    raw,       ///< the lengths of line stepping as they are (the paper): overlaps are reported, not
+               ///< prevented
+    certified, ///< grown from a valid start, all twelve tets of each prism positive: every diagonal
+               ///< and every thinner shell is valid too (docs/theory.md)
     thickest,  ///< the same, then on with only the three chosen tets of each prism positive
 };
 
 /// Each lever is an option of its own; docs/thickness.md has its gain and cost.
 struct GrowOptions {
     Method method = Method::certified;
+    bool mend_directions = true;   ///< a direction that sees a triangle from behind, or nearly so,
+                                   ///< gives way to the one that sees its worst triangle best
     bool smooth_directions = true; ///< bilateral smoothing of the directions, visibility kept
-    bool top_down = true;          ///< start from the lengths of line stepping, shrunk until valid, instead of a thin shell
+    bool top_down = true;          ///< start from long lines, shrunk until valid, instead of a thin
+                                   ///< shell
     bool grow_lines = true;        ///< lengthen along the lines
     bool free_moves = true;        ///< let inner vertices leave their lines
     bool soft_contacts = true;     ///< free moves keep clear of near triangles before they touch
-    bool flips = true;             ///< choose diagonals again while moving (thickest) and for quality at the end
-    int free_rounds = 60;          ///< upper bound on rounds of free moves
+    bool flips = true;             ///< choose diagonals again while moving (thickest) and for
+                                   ///< quality at the end
+    int free_rounds = 40;          ///< upper bound on rounds of free moves, under each prism test
 };
 
 struct GrowReport {
-    std::size_t rounds = 0;          ///< rounds of free moves
-    std::size_t flips = 0;           ///< diagonals turned
-    double fill_after_lines = 0;     ///< shell volume / solid volume before the first free move
+    std::size_t rounds = 0;      ///< rounds of free moves
+    std::size_t flips = 0;       ///< diagonals turned
+    double fill_after_lines = 0; ///< shell volume / solid volume before the first free move
 };
 
 struct GrowResult {
@@ -42,13 +48,19 @@ struct GrowResult {
     GrowReport report;
 };
 
-/// Grows the shell of an embedded surface to the thickest that the levers find, through valid states only: every
-/// accepted move is tested exactly on the float32 coordinates, so no tet inverts and no two surfaces touch.
-/// `start` gives the first lengths to try (line stepping); `cap` bounds |inner - outer| per vertex exactly (the user's
-/// thickness; infinite where there is none). Vertices that no direction serves are pinned.
-/// Same bits for any number of threads. Terminates: rounds are bounded, and in a round each vertex is tried a bounded number of times.
-/// Precondition: closed, manifold, outward mesh. On a surface that crosses itself the result is some shell; only a certificate tells.
-/// Throws Cancelled.
+/// Grows the shell of an embedded surface to the thickest that the levers find, through valid
+/// states only: every accepted move is tested exactly on the float32 coordinates, so no tet inverts
+/// and no two surfaces touch, nor does one component end up inside another's shell.
+/// `start` gives the first lengths to try (line stepping); they bound nothing. `cap` bounds
+/// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).
+/// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back.
+/// `split` is honoured under Method::certified, where any diagonals are valid; with `flips` and
+/// SplitRule::length_descending they are then turned for quality. Method::thickest has its own.
+/// Same bits for any number of threads. Terminates: rounds are bounded, and in a round each vertex
+/// is tried a bounded number of times.
+/// Precondition: closed, manifold, outward mesh; one entry per vertex in all lists; cap not
+/// negative; method not raw. On a surface that crosses itself the result is some shell; only a
+/// certificate tells. Throws InvalidOption when free_rounds is negative, Cancelled.
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& start, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,

@@ -9,6 +9,7 @@
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/shell/grow.h"
 #include "vdb_shell/step/line_step.h"
 
 #include <array>
@@ -52,6 +53,7 @@ struct ShellReport {
     MeshCheck mesh;
     FieldReport field;
     LineReport lines;
+    std::optional<GrowReport> grow; ///< absent for Method::raw
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     TetSigns signs;
     Conformity conformity;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/connectivity.h"
+
+#include "mesh/topology.h"
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+void build_incidence(Connectivity& c)
+{
+    const VertexTriangles around =
+        triangles_around_vertices(static_cast<std::size_t>(c.vertices), c.faces);
+    c.first.assign(around.offset.begin(), around.offset.end());
+    c.incident.reserve(around.triangle.size());
+    for (int v = 0; v < c.vertices; ++v)
+        for (const std::uint32_t t : around.around(static_cast<std::size_t>(v))) {
+            const int f = static_cast<int>(t);
+            c.incident.push_back({f, c.corner(f, 0) == v ? 0 : c.corner(f, 1) == v ? 1 : 2});
+        }
+}
+
+void sort_unique(std::vector<int>& list)
+{
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+void build_neighbours(Connectivity& c)
+{
+    c.neighbour_first.assign(1, 0);
+    std::vector<int> ring;
+    for (int v = 0; v < c.vertices; ++v) {
+        ring.clear();
+        for (const FaceCorner& at : star(c, v))
+            for (int k = 1; k < 3; ++k)
+                ring.push_back(c.corner(at.face, (at.local + k) % 3));
+        sort_unique(ring);
+        c.neighbour.insert(c.neighbour.end(), ring.begin(), ring.end());
+        c.neighbour_first.push_back(static_cast<int>(c.neighbour.size()));
+    }
+}
+
+void label_components(Connectivity& c)
+{
+    c.component.assign(static_cast<std::size_t>(c.vertices), -1);
+    std::vector<int> stack;
+    for (int seed = 0; seed < c.vertices; ++seed) {
+        if (c.component[seed] >= 0)
+            continue;
+        stack.assign(1, seed);
+        c.component[seed] = c.components;
+        while (!stack.empty()) {
+            const int v = stack.back();
+            stack.pop_back();
+            for (const int u : neighbours(c, v)) {
+                if (c.component[u] >= 0)
+                    continue;
+                c.component[u] = c.components;
+                stack.push_back(u);
+            }
+        }
+        ++c.components;
+    }
+}
+
+/// Greedy in index order: two vertices of one class never share a prism, so the tet tests of one
+/// class are independent of each other.
+void colour_vertices(Connectivity& c)
+{
+    std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1), used;
+    for (int v = 0; v < c.vertices; ++v) {
+        used.clear();
+        for (const int u : neighbours(c, v))
+            if (colour[u] >= 0)
+                used.push_back(colour[u]);
+        sort_unique(used);
+        int smallest_free = 0;
+        for (const int u : used)
+            smallest_free += u == smallest_free;
+        colour[v] = smallest_free;
+        if (smallest_free >= static_cast<int>(c.colour.size()))
+            c.colour.resize(static_cast<std::size_t>(smallest_free) + 1);
+        c.colour[smallest_free].push_back(v);
+    }
+}
+
+} // namespace
+
+Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
+{
+    Connectivity c;
+    c.vertices = static_cast<int>(vertices);
+    c.faces = faces;
+    build_incidence(c);
+    build_neighbours(c);
+    label_components(c);
+    colour_vertices(c);
+    return c;
+}
+
+} // namespace vdb_shell::growth

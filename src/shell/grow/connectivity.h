@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/Types.h>
+
+#include <vector>
+
+namespace vdb_shell::growth
+{
+
+using openvdb::Vec3I;
+
+/// A corner of a face: `local` is 0, 1 or 2.
+struct FaceCorner {
+    int face, local;
+};
+
+/// The combinatorics of the surface, which growth never changes. Indices are int: they are counted
+/// down and compared with -1 all over, and a surface has fewer than 2^31 corners.
+struct Connectivity {
+    int vertices = 0;
+    std::vector<Vec3I> faces;
+    std::vector<int> first;           ///< vertex -> its first entry in `incident`; one past the end
+    std::vector<FaceCorner> incident; ///< ascending by face
+    std::vector<int> neighbour_first, neighbour; ///< vertex -> adjacent vertices, ascending
+    std::vector<int> component;                  ///< by vertex
+    int components = 0;
+    std::vector<std::vector<int>> colour; ///< classes of pairwise non-adjacent vertices
+
+    int face_count() const { return static_cast<int>(faces.size()); }
+    int corner(int face, int local) const { return static_cast<int>(faces[face][local]); }
+    bool incident_to(int face, int vertex) const
+    {
+        return corner(face, 0) == vertex || corner(face, 1) == vertex || corner(face, 2) == vertex;
+    }
+};
+
+Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces);
+
+/// The iterable slice of a CSR list that belongs to one vertex.
+template <class Entry> struct Slice {
+    const Entry *first, *last;
+    const Entry* begin() const { return first; }
+    const Entry* end() const { return last; }
+    int size() const { return static_cast<int>(last - first); }
+};
+inline Slice<FaceCorner> star(const Connectivity& c, int v)
+{
+    return {c.incident.data() + c.first[v], c.incident.data() + c.first[v + 1]};
+}
+inline Slice<int> neighbours(const Connectivity& c, int v)
+{
+    return {c.neighbour.data() + c.neighbour_first[v],
+            c.neighbour.data() + c.neighbour_first[v + 1]};
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/diagonals.h"
+
+#include "shell/grow/move_tests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+constexpr int kQualityPasses = 20;
+
+int rank_of(const PrismOrder& order, int local)
+{
+    return order[0] == local ? 0 : order[1] == local ? 1 : 2;
+}
+
+/// The order with local vertices l and m exchanged, or -1 where another stands between them: then
+/// turning the one diagonal would close a cycle.
+int exchanged(int order, int l, int m)
+{
+    PrismOrder o = tables().order[order];
+    const int i = rank_of(o, l), j = rank_of(o, m);
+    if (std::abs(i - j) != 1)
+        return -1;
+    std::swap(o[i], o[j]);
+    return order_index(o);
+}
+
+using TetCorners = std::array<Vec3d, 4>;
+
+TetCorners tet_corners(const GrowState& s, int f, const OrientedTet& tet)
+{
+    return {corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
+            corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])};
+}
+
+double volume6_of(const TetCorners& p)
+{
+    return (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
+}
+
+double log_room(const GrowState& s, int f, int order)
+{
+    double sum = 0;
+    for (const OrientedTet& tet : tables().three[order]) {
+        if (dropped(s, f, tet.pillar))
+            continue;
+        const double v = volume6_of(tet_corners(s, f, tet));
+        if (v <= 0)
+            return -std::numeric_limits<double>::max();
+        sum += std::log(v);
+    }
+    return sum;
+}
+
+/// Mean ratio 12 (3V)^(2/3) / (sum of squared edges) of the worst tet of a split; -1 if inverted.
+double worst_mean_ratio(const GrowState& s, int f, int order)
+{
+    double worst = 1;
+    for (const OrientedTet& tet : tables().three[order]) {
+        if (dropped(s, f, tet.pillar))
+            continue;
+        const TetCorners p = tet_corners(s, f, tet);
+        const double v = volume6_of(p);
+        if (v <= 0)
+            return -1;
+        double edges = 0;
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j)
+                edges += (p[i] - p[j]).lengthSqr();
+        worst = std::min(worst, 12 * std::cbrt(v * v / 4) / edges);
+    }
+    return worst;
+}
+
+/// The corner at u of the face across the edge that runs u -> w in face f; face -1 if there is
+/// none.
+FaceCorner across(const Connectivity& m, int f, int u, int w)
+{
+    for (const FaceCorner& at : star(m, u))
+        if (at.face != f && m.corner(at.face, (at.local + 2) % 3) == w)
+            return at;
+    return {-1, 0};
+}
+
+/// One pass over the edges in index order; score(f, order) of both prisms is joined by `join`.
+template <class Score, class Join>
+std::size_t flip_pass(GrowState& s, const Score& score, const Join& join, double margin)
+{
+    const Connectivity& m = *s.mesh;
+    std::size_t flips = 0;
+    for (int u = 0; u < m.vertices; ++u)
+        for (const FaceCorner& at : star(m, u)) {
+            // Each edge once: from its smaller end, seen from the face where it runs u -> w.
+            const int f = at.face, next = (at.local + 1) % 3, w = m.corner(f, next);
+            const FaceCorner other = w < u ? FaceCorner{-1, 0} : across(m, f, u, w);
+            if (other.face < 0)
+                continue;
+            const int g = other.face;
+            const int f_order = exchanged(s.order[f], at.local, next);
+            const int g_order = exchanged(s.order[g], other.local, (other.local + 2) % 3);
+            if (f_order < 0 || g_order < 0)
+                continue;
+            if (join(score(f, f_order), score(g, g_order)) <=
+                    join(score(f, s.order[f]), score(g, s.order[g])) + margin ||
+                !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
+                continue;
+            s.order[f] = static_cast<std::uint8_t>(f_order);
+            s.order[g] = static_cast<std::uint8_t>(g_order);
+            ++flips;
+        }
+    return flips;
+}
+
+} // namespace
+
+void order_by_length(GrowState& s)
+{
+    std::vector<double> length(s.b.size());
+    for (std::size_t v = 0; v < length.size(); ++v)
+        length[v] = (s.b[v] - s.a[v]).length();
+    for (int f = 0; f < s.mesh->face_count(); ++f) {
+        const Vec3I& t = s.mesh->faces[f];
+        PrismOrder order{0, 1, 2};
+        std::sort(order.begin(), order.end(), [&](int l, int m) {
+            return length[t[l]] != length[t[m]] ? length[t[l]] > length[t[m]] : t[l] < t[m];
+        });
+        s.order[f] = static_cast<std::uint8_t>(order_index(order));
+    }
+}
+
+std::size_t flip_for_room(GrowState& s)
+{
+    constexpr double kMargin = 1e-9;
+    return flip_pass(
+        s, [&](int f, int order) { return log_room(s, f, order); },
+        [](double f, double g) { return f + g; }, kMargin);
+}
+
+std::size_t flip_for_quality(GrowState& s)
+{
+    constexpr double kMargin = 1e-12;
+    std::size_t total = 0;
+    for (int pass = 0; pass < kQualityPasses; ++pass) {
+        const std::size_t flips = flip_pass(
+            s, [&](int f, int order) { return worst_mean_ratio(s, f, order); },
+            [](double f, double g) { return std::min(f, g); }, kMargin);
+        total += flips;
+        if (flips == 0)
+            break;
+    }
+    return total;
+}
+
+} // namespace vdb_shell::growth

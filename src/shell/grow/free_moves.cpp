@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/free_moves.h"
+
+#include "shell/grow/barrier.h"
+#include "shell/grow/diagonals.h"
+#include "shell/grow/soft_contacts.h"
+#include "shell/grow/sweep.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+constexpr double kEnoughFill = 0.998; ///< a solid this full is not worth another round
+constexpr double kLeastSoftness = 1e-3;
+constexpr double kCool = 0.72, kCoolFast = 0.3; ///< factors per round
+constexpr double kLeastGain = 1e-4; ///< share of the solid that a round must win to go on
+constexpr int kSweepsPerRound = 2;  ///< on one set of candidate lists
+constexpr int kHalvings = 5;
+
+// Lengths as shares of the diagonal.
+constexpr double kLeastMove = 1e-6;
+constexpr double kQuietMove = 3e-5;
+constexpr double kLeastReach = 1e-4, kMostReach = 0.05;
+
+struct Scratch {
+    std::vector<HalfSpace> bounds;
+    ContactScratch contacts;
+};
+
+struct MoveRules {
+    bool contacts;
+    double softness; ///< barrier weight, in units of volume6
+    double least;    ///< shorter moves are not worth making
+};
+
+/// Gradient of the inner surface's volume6 in b_v.
+Vec3d inner_volume6_gradient(const GrowState& s, int v)
+{
+    const Connectivity& m = *s.mesh;
+    Vec3d sum(0.0);
+    for (const FaceCorner& at : star(m, v)) {
+        const Vec3d u = s.b[m.corner(at.face, (at.local + 1) % 3)] - s.b[v];
+        const Vec3d w = s.b[m.corner(at.face, (at.local + 2) % 3)] - s.b[v];
+        sum += u.cross(w);
+    }
+    return sum;
+}
+
+/// Nearer than the reach, which the candidate lists rely on.
+Vec3d within_reach(const GrowState& s, int v, const Vec3d& x)
+{
+    const Vec3d off = x - s.home[v];
+    const double distance = off.length(), most = 0.99 * s.reach[v];
+    return distance > most ? s.home[v] + off * (most / distance) : x;
+}
+
+/// The float32 point nearest x that respects the cap.
+Vec3d capped(const GrowState& s, int v, const Vec3d& x)
+{
+    const Vec3d point = rounded(x);
+    if (within_cap(s, v, point))
+        return point;
+    const Vec3d arm = x - s.a[v];
+    return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
+}
+
+bool propose_move(const GrowState& s, int v, const MoveRules& rules, Scratch& scratch, Vec3d& out)
+{
+    scratch.bounds.clear();
+    tet_bounds(s, v, scratch.bounds);
+    if (rules.contacts)
+        contact_bounds(s, v, scratch.contacts, scratch.bounds);
+    const Vec3d target = within_reach(
+        s, v,
+        barrier_minimum(scratch.bounds, inner_volume6_gradient(s, v), rules.softness, s.b[v]));
+    const Vec3d full = capped(s, v, target) - s.b[v];
+    double share = 1;
+    for (int i = 0; i < kHalvings && share * full.length() > rules.least; ++i, share *= 0.5) {
+        out = capped(s, v, s.b[v] + share * full);
+        if (move_allowed(s, v, out))
+            return true;
+    }
+    return false;
+}
+
+/// Short where the inner surface has already collapsed: candidate lists stay short there.
+double first_reach(const GrowState& s, int v)
+{
+    double outer = 0, inner = 0;
+    for (const int u : neighbours(*s.mesh, v)) {
+        outer += (s.a[u] - s.a[v]).length();
+        inner = std::max(inner, (s.b[u] - s.b[v]).length());
+    }
+    const int count = std::max(1, neighbours(*s.mesh, v).size());
+    return std::max(std::min(0.3 * outer / count, inner), 200 * s.rounding);
+}
+
+/// Where a vertex used up its reach it gets more, where it hardly moved less. The floor keeps the
+/// rounding of a move within the hundredth that within_reach leaves.
+void adapt_reach(GrowState& s)
+{
+    const double least = std::max(kLeastReach * s.diagonal, 200 * s.rounding);
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        const double moved = (s.b[v] - s.home[v]).length();
+        if (moved > 0.6 * s.reach[v])
+            s.reach[v] = std::min(kMostReach * s.diagonal, 1.5 * s.reach[v]);
+        else if (moved < 0.25 * s.reach[v])
+            s.reach[v] = std::max(least, 0.7 * s.reach[v]);
+    }
+}
+
+/// Rounds for which each vertex has not moved.
+void update_quiet(const GrowState& s, std::vector<int>& quiet)
+{
+    for (int v = 0; v < s.mesh->vertices; ++v)
+        quiet[v] = (s.b[v] - s.home[v]).length() < kQuietMove * s.diagonal ? quiet[v] + 1 : 0;
+}
+
+/// A vertex that has stopped moving is asked only every fourth round.
+bool asleep(const GrowState& s, const std::vector<int>& quiet, int v)
+{
+    return s.pinned[v] || (quiet[v] > 1 && (quiet[v] + v) % 4 != 0);
+}
+
+/// Faster where little is left to give; a loss early on is the barrier undoing jams.
+double cooled(double softness, double gain)
+{
+    const bool stale = softness < 0.05 && std::abs(gain) < 5 * kLeastGain;
+    return std::max(kLeastSoftness, softness * (stale ? kCoolFast : kCool));
+}
+
+} // namespace
+
+void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stage,
+                 const StageProgress& progress, GrowReport& report)
+{
+    const double per_tet =
+        std::abs(volume6(s.a, s.mesh->faces)) / (3.0 * std::max(1, s.mesh->face_count()));
+    const double first_fill = fill_of(s);
+    const std::vector<Vec3d> first_b = s.b;
+    const std::vector<std::uint8_t> first_order = s.order;
+    for (int v = 0; v < s.mesh->vertices; ++v)
+        s.reach[v] = first_reach(s, v);
+    double fill = first_fill;
+    // A barrier worth more than what is left to win would only undo what is reached.
+    double softness = std::min(stage.softness, std::max(kLeastSoftness, 7 * (1 - fill)));
+    SweepScratch sweep_scratch;
+    std::vector<int> quiet(s.b.size(), 0);
+    tbb::enumerable_thread_specific<Scratch> scratch;
+    for (int round = 0; round < stage.rounds && fill < kEnoughFill; ++round) {
+        progress.stop_if_interrupted(100 * round / stage.rounds);
+        const MoveRules rules{options.soft_contacts, per_tet * softness, kLeastMove * s.diagonal};
+        rebuild_broad_phase(s);
+        for (int i = 0; i < kSweepsPerRound; ++i)
+            sweep(s, sweep_scratch, [&](int v, Vec3d& x) {
+                return !asleep(s, quiet, v) && propose_move(s, v, rules, scratch.local(), x);
+            });
+        update_quiet(s, quiet);
+        adapt_reach(s);
+        if (options.flips && !s.twelve)
+            report.flips += flip_for_room(s);
+        ++report.rounds;
+        const double gain = fill_of(s) - fill;
+        fill += gain;
+        if (softness <= kLeastSoftness && gain < kLeastGain)
+            break;
+        softness = cooled(softness, gain);
+    }
+    if (fill < first_fill) {
+        s.b = first_b;
+        s.order = first_order;
+    }
+}
+
+} // namespace vdb_shell::growth

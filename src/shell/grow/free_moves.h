@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/stage_progress.h"
+#include "shell/grow/grow_state.h"
+#include "vdb_shell/shell/grow.h"
+
+namespace vdb_shell::growth
+{
+
+/// First weight of the barrier, in units of the mean volume per tet. Under the twelve-tet test a
+/// stiff start spreads the inner vertices; under the three-tet test it would only undo what is
+/// reached, and traps.
+inline constexpr double kTwelveSoftness = 1.0;
+inline constexpr double kThreeSoftness = 0.02;
+
+struct FreeStage {
+    int rounds;      ///< upper bound
+    double softness; ///< at the first round; it sinks from round to round
+};
+
+/// Inner vertices leave their lines: each minimises the inner volume with an interior barrier on
+/// the tets around it and on near triangles, and every move is tested exactly before it is made.
+/// Never ends with less fill than it began with. Adds to the report's rounds and flips.
+void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stage,
+                 const StageProgress& progress, GrowReport& report);
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/grow_state.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell::growth
+{
+
+CornerIds inner_ids(const GrowState& s, int f)
+{
+    CornerIds id = outer_ids(s, f);
+    for (int& v : id)
+        v += s.pinned[v] ? 0 : s.mesh->vertices;
+    return id;
+}
+
+CornerIds outer_ids(const GrowState& s, int f)
+{
+    return {s.mesh->corner(f, 0), s.mesh->corner(f, 1), s.mesh->corner(f, 2)};
+}
+
+namespace
+{
+
+Box bounds_of(const std::vector<Vec3d>& points)
+{
+    Box b;
+    for (const Vec3d& p : points)
+        b.add(p);
+    return b;
+}
+
+std::vector<int> first_of_each_component(const Connectivity& c)
+{
+    std::vector<int> witness;
+    std::vector<std::uint8_t> seen(static_cast<std::size_t>(c.components), 0);
+    for (int v = 0; v < c.vertices; ++v) {
+        if (seen[c.component[v]] || star(c, v).size() == 0)
+            continue;
+        seen[c.component[v]] = 1;
+        witness.push_back(v);
+    }
+    return witness;
+}
+
+/// The box of everything inner triangle f can become within its corners' reach.
+Box reachable_box(const GrowState& s, int f)
+{
+    Box fat;
+    for (int k = 0; k < 3; ++k) {
+        const int v = s.mesh->corner(f, k);
+        Box ball;
+        ball.add(s.b[v]);
+        ball.inflate(s.reach[v]);
+        fat.add(ball);
+    }
+    return fat;
+}
+
+} // namespace
+
+GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
+                     const std::vector<double>& cap)
+{
+    GrowState s;
+    s.mesh = &mesh;
+    s.a.assign(outer.begin(), outer.end());
+    s.b = s.home = s.a;
+    s.cap = cap;
+    s.pinned.assign(outer.size(), 0);
+    s.reach.assign(outer.size(), 0.0);
+    s.order.assign(mesh.faces.size(), 0);
+    s.inner_box.resize(mesh.faces.size());
+    s.outer_box.resize(mesh.faces.size());
+    s.near_inner.resize(mesh.faces.size());
+    s.near_outer.resize(mesh.faces.size());
+    for (int f = 0; f < mesh.face_count(); ++f)
+        s.outer_box[f] = box_of(outer_corners(s, f));
+    s.outer_tree.build(s.outer_box);
+    const Box all = bounds_of(s.a);
+    s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
+    double largest = 0;
+    for (const Vec3d& p : s.a)
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, std::abs(p[k]));
+    s.rounding = largest * double(std::numeric_limits<float>::epsilon());
+    s.witness = first_of_each_component(mesh);
+    return s;
+}
+
+void rebuild_broad_phase(GrowState& s)
+{
+    const std::size_t count = s.mesh->faces.size();
+    s.home = s.b;
+    std::vector<Box> fat(count);
+    for_each_index(
+        count,
+        [&](std::size_t i) {
+            const int f = static_cast<int>(i);
+            s.inner_box[f] = box_of(inner_corners(s, f));
+            fat[f] = reachable_box(s, f);
+        },
+        256);
+    BoxTree tree;
+    tree.build(fat);
+    for_each_index(count, [&](std::size_t i) {
+        const int f = static_cast<int>(i);
+        s.near_inner[f].clear();
+        s.near_outer[f].clear();
+        tree.for_each_overlap(fat[f], [&](int g) {
+            if (g != f)
+                s.near_inner[f].push_back(g);
+        });
+        s.outer_tree.for_each_overlap(fat[f], [&](int g) { s.near_outer[f].push_back(g); });
+    });
+}
+
+void commit_move(GrowState& s, int v, const Vec3d& x)
+{
+    s.b[v] = x;
+    for (const FaceCorner& at : star(*s.mesh, v))
+        s.inner_box[at.face] = box_of(inner_corners(s, at.face));
+}
+
+double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
+{
+    if (p.empty())
+        return 0;
+    const Vec3d origin = p[0];
+    double sum = 0;
+    for (const Vec3I& f : faces)
+        sum += (p[f[0]] - origin).dot((p[f[1]] - origin).cross(p[f[2]] - origin));
+    return sum;
+}
+
+double fill_of(const GrowState& s)
+{
+    return 1 - volume6(s.b, s.mesh->faces) / volume6(s.a, s.mesh->faces);
+}
+
+} // namespace vdb_shell::growth

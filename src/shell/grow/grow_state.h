@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The shell while it grows: positions, splits, pins, and the exact tests one move needs.
+
+#include "shell/grow/box_tree.h"
+#include "shell/grow/connectivity.h"
+#include "shell/grow/predicates.h"
+#include "shell/grow/prism.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell::growth
+{
+
+/// A linear bound on one vertex: value(x) = n.(x-p) must stay positive.
+struct HalfSpace {
+    Vec3d n, p;
+    double value(const Vec3d& x) const { return n.dot(x - p); }
+};
+
+struct GrowState {
+    const Connectivity* mesh = nullptr;
+    std::vector<Vec3d> a, b;          ///< outer and inner points: float32 values held as doubles
+    std::vector<std::uint8_t> pinned; ///< b_v = a_v; the tets that own the pillar do not exist
+    std::vector<std::uint8_t> order;  ///< by face: index into PrismTables::order
+    bool twelve = true;               ///< ask all 12 tets of a prism, not the chosen 3
+    std::vector<double> cap;          ///< upper bound of |b-a|, may be infinite
+    double diagonal = 0;              ///< of the surface's box: the scale of all step lengths
+
+    double rounding = 0; ///< how far rounding to float32 can move a point
+
+    // Broad phase: for each inner triangle the others that may reach it while every vertex stays
+    // within `reach` of `home`.
+    std::vector<Vec3d> home;
+    std::vector<double> reach;
+    std::vector<Box> inner_box, outer_box;
+    BoxTree outer_tree;
+    std::vector<std::vector<int>> near_inner, near_outer;
+
+    /// One vertex per component, to see a move that would swallow a whole other component.
+    std::vector<int> witness;
+};
+
+GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
+                     const std::vector<double>& cap);
+
+/// Position of prism corner c (0..2 outer, 3..5 inner) of face f.
+inline const Vec3d& corner_of(const GrowState& s, int f, int c)
+{
+    return c < 3 ? s.a[s.mesh->faces[f][c]] : s.b[s.mesh->faces[f][c - 3]];
+}
+/// Whether the tet of face f that owns local pillar `pillar` does not exist.
+inline bool dropped(const GrowState& s, int f, int pillar)
+{
+    return s.pinned[s.mesh->faces[f][pillar]] != 0;
+}
+inline Corners inner_corners(const GrowState& s, int f)
+{
+    const Vec3I& t = s.mesh->faces[f];
+    return {s.b[t[0]], s.b[t[1]], s.b[t[2]]};
+}
+inline Corners outer_corners(const GrowState& s, int f)
+{
+    const Vec3I& t = s.mesh->faces[f];
+    return {s.a[t[0]], s.a[t[1]], s.a[t[2]]};
+}
+inline Box box_of(const Corners& c)
+{
+    Box b;
+    for (const Vec3d& p : c)
+        b.add(p);
+    return b;
+}
+/// Ids of the corners: outer vertex v is v, inner vertex v is V + v, or v where it is pinned.
+CornerIds inner_ids(const GrowState& s, int f);
+CornerIds outer_ids(const GrowState& s, int f);
+
+/// Rebuilds boxes and candidate lists; homes become the present positions.
+void rebuild_broad_phase(GrowState& s);
+
+/// Moves b_v; `x` must be float32 values.
+void commit_move(GrowState& s, int v, const Vec3d& x);
+
+/// Six times the signed volume enclosed.
+double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);
+/// The share of the solid that lies between the surfaces.
+double fill_of(const GrowState& s);
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/move_tests.h"
+
+#include "shell/pillar.h"
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+/// The tets of a prism that hold b_l, under the state's present rule.
+Slice<TetFromInner> tets_with_inner(const GrowState& s, int f, int l)
+{
+    const int set = s.twelve ? kTwelve : s.order[f];
+    const TetFromInner* first = tables().from_b[set][l].data();
+    return {first, first + tables().from_b_count[set][l]};
+}
+
+bool positive(const GrowState& s, int f, const OrientedTet& tet)
+{
+    return dropped(s, f, tet.pillar) ||
+           orient(corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
+                  corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])) > 0;
+}
+
+bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
+{
+    const auto& [a, b, c] = base;
+    const int s0 = orient(a, b, c, p), s1 = orient(a, c, apex, p), s2 = orient(a, apex, b, p),
+              s3 = orient(b, apex, c, p);
+    return (s0 >= 0 && s1 >= 0 && s2 >= 0 && s3 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0 && s3 <= 0);
+}
+
+bool touches_inner(const GrowState& s, int v, const Vec3d& x, const FaceCorner& at, int g,
+                   const Corners& corners, const Box& box)
+{
+    Corners other = inner_corners(s, g);
+    bool both = false;
+    for (int k = 0; k < 3; ++k)
+        if (s.mesh->corner(g, k) == v) {
+            other[k] = x;
+            both = true;
+        }
+    // Two triangles of the star are asked once, from the smaller index.
+    if (both ? g < at.face : !box.overlaps(s.inner_box[g]))
+        return false;
+    return improper_contact(corners, inner_ids(s, at.face), other, inner_ids(s, g));
+}
+
+} // namespace
+
+bool tets_positive_at(const GrowState& s, int v, const Vec3d& x)
+{
+    for (const FaceCorner& at : star(*s.mesh, v))
+        for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local))
+            if (!dropped(s, at.face, tet.pillar) &&
+                orient(corner_of(s, at.face, tet.base[0]), corner_of(s, at.face, tet.base[1]),
+                       corner_of(s, at.face, tet.base[2]), x) <= 0)
+                return false;
+    return true;
+}
+
+bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker)
+{
+    const auto blocked_by = [&](int id) {
+        if (blocker)
+            *blocker = id;
+        return false;
+    };
+    for (const FaceCorner& at : star(*s.mesh, v)) {
+        Corners corners = inner_corners(s, at.face);
+        corners[at.local] = x;
+        const Box box = box_of(corners);
+        for (const int g : s.near_inner[at.face])
+            if (touches_inner(s, v, x, at, g, corners, box))
+                return blocked_by(g);
+        for (const int g : s.near_outer[at.face])
+            if (box.overlaps(s.outer_box[g]) &&
+                improper_contact(corners, inner_ids(s, at.face), outer_corners(s, g),
+                                 outer_ids(s, g)))
+                return blocked_by(s.mesh->face_count() + g);
+    }
+    return true;
+}
+
+bool within_cap(const GrowState& s, int v, const Vec3d& x)
+{
+    return !exact::longer_than(Vec3s(s.a[v]), Vec3s(x), s.cap[v]);
+}
+
+Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length)
+{
+    const Vec3d x = rounded(s.a[v] + std::min(length, s.cap[v]) * unit);
+    return within_cap(s, v, x) ? x : Vec3d(end_of_pillar(Vec3s(s.a[v]), unit, s.cap[v]));
+}
+
+bool swallows_component(const GrowState& s, int v, const Vec3d& x)
+{
+    const Connectivity& m = *s.mesh;
+    if (m.components < 2)
+        return false;
+    for (const FaceCorner& at : star(m, v)) {
+        const Vec3d& p = s.b[m.corner(at.face, (at.local + 1) % 3)];
+        const Vec3d& q = s.b[m.corner(at.face, (at.local + 2) % 3)];
+        Box swept = box_of({s.b[v], p, q});
+        swept.add(x);
+        for (const int w : s.witness) {
+            if (m.component[w] == m.component[v])
+                continue;
+            for (const Vec3d* e : {&s.a[w], &s.b[w]})
+                if (swept.contains(*e) && in_tet({s.b[v], x, p}, q, *e))
+                    return true;
+        }
+    }
+    return false;
+}
+
+bool holds_component(const GrowState& s, int f)
+{
+    const Connectivity& m = *s.mesh;
+    if (m.components < 2)
+        return false;
+    Box box = box_of(outer_corners(s, f));
+    box.add(box_of(inner_corners(s, f)));
+    for (const int w : s.witness) {
+        if (m.component[w] == m.component[m.corner(f, 0)])
+            continue;
+        for (const Vec3d* e : {&s.a[w], &s.b[w]})
+            for (const OrientedTet& tet : tables().three[s.order[f]])
+                if (box.contains(*e) && !dropped(s, f, tet.pillar) &&
+                    in_tet({corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
+                            corner_of(s, f, tet.corner[2])},
+                           corner_of(s, f, tet.corner[3]), *e))
+                    return true;
+    }
+    return false;
+}
+
+bool move_allowed(const GrowState& s, int v, const Vec3d& x)
+{
+    return within_cap(s, v, x) && tets_positive_at(s, v, x) && star_clear_at(s, v, x) &&
+           !swallows_component(s, v, x);
+}
+
+bool split_positive(const GrowState& s, int f, int order)
+{
+    for (const OrientedTet& tet : tables().three[order])
+        if (!positive(s, f, tet))
+            return false;
+    return true;
+}
+
+bool prism_valid(const GrowState& s, int f)
+{
+    if (!s.twelve && !split_positive(s, f, s.order[f]))
+        return false;
+    if (s.twelve)
+        for (const OrientedTet& tet : tables().twelve)
+            if (!positive(s, f, tet))
+                return false;
+    // With a pin, no tet that is left need hold the whole inner triangle.
+    const bool pins = dropped(s, f, 0) || dropped(s, f, 1) || dropped(s, f, 2);
+    const Corners b = inner_corners(s, f);
+    return !pins || !exact::collinear(Vec3s(b[0]), Vec3s(b[1]), Vec3s(b[2]));
+}
+
+bool inner_triangle_clear(const GrowState& s, int f)
+{
+    const Corners c = inner_corners(s, f);
+    const CornerIds id = inner_ids(s, f);
+    for (const int g : s.near_inner[f])
+        if (improper_contact(c, id, inner_corners(s, g), inner_ids(s, g)))
+            return false;
+    for (const int g : s.near_outer[f])
+        if (improper_contact(c, id, outer_corners(s, g), outer_ids(s, g)))
+            return false;
+    return true;
+}
+
+void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out)
+{
+    for (const FaceCorner& at : star(*s.mesh, v))
+        for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local)) {
+            if (dropped(s, at.face, tet.pillar))
+                continue;
+            const Vec3d& p = corner_of(s, at.face, tet.base[0]);
+            const Vec3d u = corner_of(s, at.face, tet.base[1]) - p;
+            const Vec3d w = corner_of(s, at.face, tet.base[2]) - p;
+            out.push_back({u.cross(w), p});
+        }
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "shell/grow/grow_state.h"
+
+namespace vdb_shell::growth
+{
+
+/// Would the tets of the prisms around v be positive with b_v = x? Exact.
+bool tets_positive_at(const GrowState& s, int v, const Vec3d& x);
+
+/// Would the inner triangles around v be free of improper contact with b_v = x? Exact. On failure
+/// the blocking triangle (inner: f, outer: F+f) is told through `blocker`.
+bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker = nullptr);
+
+/// |x - a_v| <= cap_v, exactly.
+bool within_cap(const GrowState& s, int v, const Vec3d& x);
+
+/// The point at `length` from a_v towards `unit`, rounded so that the cap holds.
+Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length);
+
+/// Would moving b_v to x sweep over another component as a whole, touching nothing? The contact
+/// tests see only where the triangles end up.
+bool swallows_component(const GrowState& s, int v, const Vec3d& x);
+/// Does prism f hold another component as a whole? Precondition: its tets are positive.
+bool holds_component(const GrowState& s, int f);
+
+/// Everything a single move must satisfy, cheapest test first.
+bool move_allowed(const GrowState& s, int v, const Vec3d& x);
+
+/// All tets of face f positive (under s.twelve or its order), and its inner triangle not
+/// degenerate.
+bool prism_valid(const GrowState& s, int f);
+/// Whether the chosen tets of face f were positive with this order.
+bool split_positive(const GrowState& s, int f, int order);
+/// Inner triangle f free of improper contact with every other triangle on its lists.
+bool inner_triangle_clear(const GrowState& s, int f);
+
+/// Appends the linear bounds that the tets around v put on b_v.
+void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out);
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/start.h"
+
+#include "core/parallel.h"
+#include "shell/grow/move_tests.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kThinShare = 0.02;
+constexpr double kShrink = 0.65;
+
+double smallest_altitude(const Corners& c)
+{
+    const double longest =
+        std::max({(c[1] - c[0]).lengthSqr(), (c[2] - c[1]).lengthSqr(), (c[0] - c[2]).lengthSqr()});
+    return longest > 0 ? (c[1] - c[0]).cross(c[2] - c[0]).length() / std::sqrt(longest) : 0;
+}
+
+void place(GrowState& s, const Directions& directions, const std::vector<double>& h)
+{
+    for_each_index(s.b.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        if (!s.pinned[v])
+            s.b[v] = end_within_cap(s, v, directions.inward[v], h[v]);
+        if (s.b[v] == s.a[v] || s.pinned[v]) {
+            s.b[v] = s.a[v];
+            s.pinned[v] = 1;
+        }
+    });
+}
+
+std::vector<std::uint8_t> violating_faces(GrowState& s)
+{
+    rebuild_broad_phase(s);
+    std::vector<std::uint8_t> bad(s.mesh->faces.size(), 0);
+    for_each_index(bad.size(), [&](std::size_t i) {
+        const int f = static_cast<int>(i);
+        bad[f] = !prism_valid(s, f) || !inner_triangle_clear(s, f) || holds_component(s, f);
+    });
+    return bad;
+}
+
+/// Parameter where p + t d meets the triangle, or infinity: a hint, in plain doubles.
+double ray_hit(const Vec3d& p, const Vec3d& d, const Corners& c)
+{
+    const Vec3d e1 = c[1] - c[0], e2 = c[2] - c[0], h = d.cross(e2);
+    const double det = e1.dot(h);
+    if (det == 0)
+        return kInfinity;
+    const Vec3d s = p - c[0], q = s.cross(e1);
+    const double u = s.dot(h) / det, v = d.dot(q) / det, t = e2.dot(q) / det;
+    return u < 0 || v < 0 || u + v > 1 || t <= 0 ? kInfinity : t;
+}
+
+/// One look at all vertices of violating prisms; false when there is nothing left to shrink.
+bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, double floor,
+                   std::vector<double>& h)
+{
+    std::vector<std::uint8_t> touched(s.b.size(), 0);
+    for (int f = 0; f < s.mesh->face_count(); ++f)
+        for (int k = 0; bad[f] && k < 3; ++k)
+            touched[s.mesh->corner(f, k)] = 1;
+    bool any = false;
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        if (!touched[v] || s.pinned[v])
+            continue;
+        any = true;
+        h[v] *= kShrink;
+        if (h[v] < floor)
+            s.pinned[v] = 1;
+    }
+    return any;
+}
+
+} // namespace
+
+std::vector<double> half_rays(const GrowState& s, const Directions& directions)
+{
+    std::vector<double> half(s.a.size(), 0);
+    for_each_index(half.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        const Vec3d& d = directions.inward[v];
+        double best = s.diagonal;
+        s.outer_tree.for_each_on_ray(s.a[v], d, best, [&](int f) {
+            if (!s.mesh->incident_to(f, v))
+                best = std::min(best, ray_hit(s.a[v], d, outer_corners(s, f)));
+        });
+        half[v] = 0.5 * best;
+    });
+    return half;
+}
+
+std::vector<double> thin_heights(const GrowState& s)
+{
+    std::vector<double> h(s.a.size(), kInfinity);
+    for (int f = 0; f < s.mesh->face_count(); ++f) {
+        const double height = kThinShare * smallest_altitude(outer_corners(s, f));
+        for (int k = 0; k < 3; ++k)
+            h[s.mesh->corner(f, k)] = std::min(h[s.mesh->corner(f, k)], height);
+    }
+    return h;
+}
+
+void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
+                  const StageProgress& progress)
+{
+    const double floor = 2 * s.rounding; // shorter pillars are lost in the rounding
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        const bool stranded = star(*s.mesh, v).size() == 0;
+        s.pinned[v] = stranded || directions.visibility[v] <= 0 || h[v] <= 0 || s.cap[v] <= 0;
+        s.reach[v] = 0;
+        h[v] = std::min(h[v], s.cap[v]);
+    }
+    // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
+    // crosses itself: with all its vertices pinned.
+    for (bool any = true; any;) {
+        progress.stop_if_interrupted(0);
+        place(s, directions, h);
+        any = shrink_around(s, violating_faces(s), floor, h);
+    }
+    rebuild_broad_phase(s);
+}
+
+} // namespace vdb_shell::growth

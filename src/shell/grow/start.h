@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// A valid first shell along the directions: what violates is shrunk, what cannot leave the surface
+// is pinned.
+
+#include "core/stage_progress.h"
+#include "shell/grow/grow_state.h"
+#include "vdb_shell/step/directions.h"
+
+namespace vdb_shell::growth
+{
+
+/// Sets b = a + h d with h as given, lessened until every test passes; may pin.
+void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
+                  const StageProgress& progress);
+
+/// A small share of the smallest altitude around each vertex.
+std::vector<double> thin_heights(const GrowState& s);
+/// Half the length of each inward ray up to the outer surface.
+std::vector<double> half_rays(const GrowState& s, const Directions& directions);
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "step/thickness.h"
+
+#include "core/parallel.h"
+#include "vdb_shell/core/error.h"
+
+#include <openvdb/tools/Interpolation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace vdb_shell
+{
+namespace
+{
+
+std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::FloatGrid& grid)
+{
+    std::vector<double> sampled(mesh.points.size());
+    for_each_range(sampled.size(), [&](std::size_t begin, std::size_t end) {
+        const auto accessor = grid.getConstAccessor();
+        for (std::size_t v = begin; v < end; ++v) {
+            const auto index = grid.transform().worldToIndex(openvdb::Vec3d(mesh.points[v]));
+            sampled[v] = static_cast<double>(openvdb::tools::BoxSampler::sample(accessor, index));
+        }
+    });
+    for (std::size_t v = 0; v < sampled.size(); ++v)
+        if (!(std::isfinite(sampled[v]) && sampled[v] >= 0)) {
+            std::ostringstream message;
+            message << "thickness grid '" << grid.getName() << "': value " << sampled[v]
+                    << " at vertex " << v << " " << mesh.points[v]
+                    << ", must be finite and not negative";
+            throw GeometryError(message.str());
+        }
+    return sampled;
+}
+
+} // namespace
+
+std::vector<double> largest_lengths(const TriangleMesh& mesh, const LineStepOptions& options,
+                                    const openvdb::FloatGrid* thickness_grid)
+{
+    const double thickness = options.thickness.value_or(std::numeric_limits<double>::infinity());
+    if (!thickness_grid)
+        return std::vector<double>(mesh.points.size(), thickness);
+    std::vector<double> lengths = sample_thickness(mesh, *thickness_grid);
+    for (double& length : lengths)
+        length = std::min(length, thickness);
+    return lengths;
+}
+
+} // namespace vdb_shell
