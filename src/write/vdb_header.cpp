@@ -107,8 +107,10 @@ void walk_grids(Walk& walk)
     if (count < 0)
         walk.fail("the number of grids is " + std::to_string(count));
     for (std::int32_t i = 0; i < count; ++i) {
-        // The name carries a separator and a number where names repeat.
-        const std::string name = walk.text("a grid's name").c_str();
+        std::string name = walk.text("a grid's name");
+        // Where names repeat, a separator and a number follow.
+        constexpr char kSeparator = 30;
+        name = name.substr(0, name.find(kSeparator));
         walk.text("a grid's type");
         walk.text("a grid's instance parent");
         const auto grid = walk.number<std::int64_t>("a grid's position");
