@@ -110,18 +110,17 @@ inline SplitShell pierced_shell()
     });
 }
 
-/// Two unit cubes that overlap by a corner of 0.1; all is pinned there.
+/// Two unit cubes that overlap by a corner of 0.1; all is pinned but their far corners.
 inline SplitShell crossing_shell()
 {
-    const auto cube = [](double low, float far) {
-        const auto corner = static_cast<float>(far == 0.0f ? 0 : 2 * low + 1 - low);
+    const auto cube = [](double low, float corner, float inward) {
         return moved_shell(box(openvdb::Vec3d(low), openvdb::Vec3d(low + 1)),
                            [=](const openvdb::Vec3s& p) {
-                               const bool at = p == openvdb::Vec3s(corner);
-                               return at ? p + openvdb::Vec3s(far) : p;
+                               const bool moves = p == openvdb::Vec3s(corner);
+                               return moves ? p + openvdb::Vec3s(inward) : p;
                            });
     };
-    return joined(cube(0, 0.0f), cube(0.9, -0.2f));
+    return joined(cube(0, 0.0f, 0.2f), cube(0.9, 1.9f, -0.2f));
 }
 
 /// A small ball with its own shell inside the shell of a large one.

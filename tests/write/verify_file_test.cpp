@@ -64,15 +64,23 @@ TEST(VerifyFile, ACertifiedShellIsCertifiedAgain)
 
 TEST(VerifyFile, NamesWhatBreaksAShellAndFailsAFalseClaim)
 {
+    const auto cube = [](double low) {
+        return test::moved_shell(test::box(openvdb::Vec3d(low), openvdb::Vec3d(low + 1)),
+                                 [=](const openvdb::Vec3s& p) {
+                                     const openvdb::Vec3s centre(static_cast<float>(low + 0.5));
+                                     return centre + (p - centre) * 0.5f;
+                                 });
+    };
+    const SplitShell two_cubes = test::joined(cube(0), cube(0.875));
     const std::pair<const char*, SplitShell> broken[] = {
         {"bad_prisms", test::twisted_shell(1.2)},
         {"inner_folds", test::folded_shell()},
         {"inner_contacts", test::plate_shell(0.625f, 0.625f)},
-        {"inner_through_outer", test::pierced_shell()},
+        {"inner_through_outer", test::plate_shell(1.25f, 0.25f)},
         {"inside_out_components", test::inside_out_shell()},
         {"non_conforming_edges", test::disagreeing_shell(5)},
         {"open_edges", test::open_shell()},
-        {"outer_contacts", test::crossing_shell()},
+        {"outer_contacts", two_cubes},
         {"nested_wrongly", test::swallowed_shell()}};
     for (const auto& [kind, made] : broken) {
         ShellFile file = file_of(made);
@@ -89,14 +97,20 @@ TEST(VerifyFile, NamesWhatBreaksAShellAndFailsAFalseClaim)
 
 TEST(VerifyFile, TheTestIsTheOneThatTheFileNames)
 {
-    // Twisted so far that all chosen tets are positive, but not all twelve.
+    // An inner vertex goes aside, until not all twelve tets are positive, but all chosen ones are.
+    const auto certified = [](const SplitShell& shell, PrismTest test) {
+        return certify_shell(shell.shell, shell.split, test).certified();
+    };
     SplitShell made;
-    for (double angle = 0.3; angle < 1.2; angle += 0.02) {
-        made = test::twisted_shell(angle);
-        if (!certify_shell(made.shell, made.split, PrismTest::twelve_tets).certified())
-            break;
-    }
-    ASSERT_TRUE(certify_shell(made.shell, made.split, PrismTest::chosen_tets).certified());
+    bool found = false;
+    for (std::size_t v = 0; v < 42 && !found; ++v)
+        for (int step = 1; step < 40 && !found; ++step) {
+            made = test::scaled_shell(test::icosphere(1, 1), 0.5f);
+            made.shell.inner[v] += openvdb::Vec3s(0.02f, 0.01f, 0) * float(step);
+            found =
+                !certified(made, PrismTest::twelve_tets) && certified(made, PrismTest::chosen_tets);
+        }
+    ASSERT_TRUE(found);
     ShellFile file = file_of(made);
     claim(file, "certified", true);
     EXPECT_FALSE(verdict(file).holds);
