@@ -96,6 +96,36 @@ TEST(Report, TextIsAboutTwentyLines)
     EXPECT_NE(text.find("smallest 90 degrees"), std::string::npos) << text;
 }
 
+TEST(Report, SaysWhetherTheShellIsCertified)
+{
+    ShellReport report = good_report();
+    EXPECT_TRUE(json::parse(report_json(report)).at("certificate").is_null());
+    EXPECT_EQ(report_text(report).find("certified   "), std::string::npos);
+    report.certificate.emplace();
+    json certificate = json::parse(report_json(report)).at("certificate");
+    EXPECT_EQ(certificate.at("test"), "twelve-tets");
+    EXPECT_EQ(certificate.at("certified"), true);
+    EXPECT_NE(report_text(report).find("yes (12 tets of each prism positive, surfaces embedded and "
+                                       "disjoint)"),
+              std::string::npos);
+    EXPECT_EQ(report_text(report).find("not certified"), std::string::npos);
+
+    report.certificate->test = PrismTest::chosen_tets;
+    report.certificate->inner_folds = {2, {{3, 4}, {5, 9}}};
+    certificate = json::parse(report_json(report)).at("certificate");
+    EXPECT_EQ(certificate.at("test"), "chosen-tets");
+    EXPECT_EQ(certificate.at("certified"), false);
+    EXPECT_EQ(certificate.at("locally_valid"), true);
+    EXPECT_EQ(certificate.at("/inner_folds/count"_json_pointer), 2);
+    EXPECT_EQ(certificate.at("/inner_folds/first"_json_pointer), json({{3, 4}, {5, 9}}));
+    EXPECT_NE(report_text(report).find("NO, only locally valid: inner_folds 2 (first 3-4 5-9)"),
+              std::string::npos);
+    EXPECT_NE(report_text(report).find("not certified"), std::string::npos);
+    report.certificate->bad_prisms = {1, {7}};
+    EXPECT_NE(report_text(report).find("NO: bad_prisms 1 (first 7), inner_folds"),
+              std::string::npos);
+}
+
 TEST(Report, VerdictNamesEveryFault)
 {
     const auto verdict = [](const ShellReport& report) {
