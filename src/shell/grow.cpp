@@ -34,14 +34,17 @@ Directions prepare(const TriangleMesh& mesh, Directions directions, const GrowOp
     return directions;
 }
 
+/// The lengths of line stepping, for the parts whose fronts it follows; half the ray to the other
+/// side where it got no further than a thin shell, and where it is shorter: two fronts meet there.
 std::vector<double> first_lengths(const GrowState& s, const Directions& directions,
                                   const LineLengths& start, const std::vector<double>& thin)
 {
-    (void)start;
-    (void)thin;
     std::vector<double> lengths = growth::half_rays(s, directions);
-    for (double& length : lengths)
-        length *= kTopDown;
+    for (std::size_t v = 0; v < lengths.size(); ++v) {
+        if (start.length[v] > thin[v])
+            lengths[v] = std::min(lengths[v], start.length[v]);
+        lengths[v] *= kTopDown;
+    }
     return lengths;
 }
 

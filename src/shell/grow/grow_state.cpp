@@ -10,19 +10,6 @@
 namespace vdb_shell::growth
 {
 
-CornerIds inner_ids(const GrowState& s, int f)
-{
-    CornerIds id = outer_ids(s, f);
-    for (int& v : id)
-        v += s.pinned[v] ? 0 : s.mesh->vertices;
-    return id;
-}
-
-CornerIds outer_ids(const GrowState& s, int f)
-{
-    return {s.mesh->corner(f, 0), s.mesh->corner(f, 1), s.mesh->corner(f, 2)};
-}
-
 namespace
 {
 

@@ -74,8 +74,17 @@ inline Box box_of(const Corners& c)
     return b;
 }
 /// Ids of the corners: outer vertex v is v, inner vertex v is V + v, or v where it is pinned.
-CornerIds inner_ids(const GrowState& s, int f);
-CornerIds outer_ids(const GrowState& s, int f);
+inline CornerIds outer_ids(const GrowState& s, int f)
+{
+    return {s.mesh->corner(f, 0), s.mesh->corner(f, 1), s.mesh->corner(f, 2)};
+}
+inline CornerIds inner_ids(const GrowState& s, int f)
+{
+    CornerIds id = outer_ids(s, f);
+    for (int& v : id)
+        v += s.pinned[v] ? 0 : s.mesh->vertices;
+    return id;
+}
 
 /// Rebuilds boxes and candidate lists; homes become the present positions.
 void rebuild_broad_phase(GrowState& s);

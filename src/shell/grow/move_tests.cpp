@@ -33,20 +33,25 @@ bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
     return (s0 >= 0 && s1 >= 0 && s2 >= 0 && s3 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0 && s3 <= 0);
 }
 
-bool touches_inner(const GrowState& s, int v, const Vec3d& x, const FaceCorner& at, int g,
-                   const Corners& corners, const Box& box)
+/// The moved triangle of the star that is being tested.
+struct MovedTriangle {
+    int face;
+    Corners corners;
+    CornerIds ids;
+    Box box;
+};
+
+bool touches_inner(const GrowState& s, int v, const MovedTriangle& moved, const Vec3d& x, int g)
 {
-    Corners other = inner_corners(s, g);
-    bool both = false;
-    for (int k = 0; k < 3; ++k)
-        if (s.mesh->corner(g, k) == v) {
-            other[k] = x;
-            both = true;
-        }
+    const bool both = s.mesh->incident_to(g, v);
     // Two triangles of the star are asked once, from the smaller index.
-    if (both ? g < at.face : !box.overlaps(s.inner_box[g]))
+    if (both ? g < moved.face : !moved.box.overlaps(s.inner_box[g]))
         return false;
-    return improper_contact(corners, inner_ids(s, at.face), other, inner_ids(s, g));
+    Corners other = inner_corners(s, g);
+    for (int k = 0; both && k < 3; ++k)
+        if (s.mesh->corner(g, k) == v)
+            other[k] = x;
+    return improper_contact(moved.corners, moved.ids, other, inner_ids(s, g));
 }
 
 } // namespace
@@ -70,16 +75,15 @@ bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker)
         return false;
     };
     for (const FaceCorner& at : star(*s.mesh, v)) {
-        Corners corners = inner_corners(s, at.face);
-        corners[at.local] = x;
-        const Box box = box_of(corners);
+        MovedTriangle moved{at.face, inner_corners(s, at.face), inner_ids(s, at.face), {}};
+        moved.corners[at.local] = x;
+        moved.box = box_of(moved.corners);
         for (const int g : s.near_inner[at.face])
-            if (touches_inner(s, v, x, at, g, corners, box))
+            if (touches_inner(s, v, moved, x, g))
                 return blocked_by(g);
         for (const int g : s.near_outer[at.face])
-            if (box.overlaps(s.outer_box[g]) &&
-                improper_contact(corners, inner_ids(s, at.face), outer_corners(s, g),
-                                 outer_ids(s, g)))
+            if (moved.box.overlaps(s.outer_box[g]) &&
+                improper_contact(moved.corners, moved.ids, outer_corners(s, g), outer_ids(s, g)))
                 return blocked_by(s.mesh->face_count() + g);
     }
     return true;

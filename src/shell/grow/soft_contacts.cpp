@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/soft_contacts.h"
 
-#include <algorithm>
-
 namespace vdb_shell::growth
 {
 namespace
@@ -104,35 +102,27 @@ void bounds_of_star(const GrowState& s, int v, double range, const ContactScratc
     }
 }
 
-void sort_unique(std::vector<int>& list)
-{
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 void gather(const GrowState& s, int v, const Box& box, ContactScratch& scratch)
 {
     const Connectivity& m = *s.mesh;
     const int faces = m.face_count();
-    scratch.near.clear();
-    scratch.corner.clear();
+    scratch.near.clear(2 * m.faces.size());
+    scratch.corner.clear(2 * s.b.size());
     for (const FaceCorner& at : star(m, v)) {
         for (const int g : s.near_inner[at.face])
             if (box.overlaps(s.inner_box[g]) && !m.incident_to(g, v))
-                scratch.near.push_back(g);
+                scratch.near.add(g);
         for (const int g : s.near_outer[at.face])
             if (box.overlaps(s.outer_box[g]) && !m.incident_to(g, v))
-                scratch.near.push_back(faces + g);
+                scratch.near.add(faces + g);
     }
-    sort_unique(scratch.near);
     for (const int id : scratch.near)
         for (int k = 0; k < 3; ++k) {
             const bool inner = id < faces;
             const int u = m.corner(inner ? id : id - faces, k);
             if (box.contains(inner ? s.b[u] : s.a[u]))
-                scratch.corner.push_back(inner ? m.vertices + u : u);
+                scratch.corner.add(inner ? m.vertices + u : u);
         }
-    sort_unique(scratch.corner);
 }
 
 } // namespace

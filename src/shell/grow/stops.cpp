@@ -5,6 +5,7 @@
 #include "shell/grow/move_tests.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vdb_shell::growth
 {
@@ -21,7 +22,7 @@ StopReason reason_at(const GrowState& s, int v, double step)
         return StopReason::pinned;
     const Vec3d arm = s.b[v] - s.a[v];
     const double length = arm.length(), room = s.cap[v] - length;
-    if (room <= kAtCap * s.cap[v] + s.rounding)
+    if (std::isfinite(room) && room <= kAtCap * s.cap[v] + s.rounding)
         return StopReason::thickness;
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
