@@ -17,7 +17,7 @@ std::vector<TriangleMesh> split_by_nesting(const TriangleMesh& mesh);
 
 /// Takes a cavity out of a solid, in place: max(solid, -cavity) wherever either is active.
 /// Precondition: `cavity` is negative inside the cavity, with all of its interior active and an
-/// exterior band as deep as the solid's interior one.
+/// exterior band as deep as the solid is.
 void subtract_cavity(openvdb::FloatGrid& solid, const openvdb::FloatGrid& cavity);
 
 /// Adds a solid that stands in a cavity of the first one, in place: min of both.

@@ -6,6 +6,7 @@
 #include "field/latched_interrupter.h"
 #include "vdb_shell/core/error.h"
 
+#include <openvdb/tools/Count.h>
 #include <openvdb/tools/MeshToVolume.h>
 
 #include <algorithm>
@@ -134,6 +135,12 @@ openvdb::FloatGrid::Ptr convert(const TriangleMesh& mesh, const openvdb::math::T
     return grid;
 }
 
+/// How far the surfaces so far leave room for another one, with a voxel to spare.
+double deepest_voxels(const openvdb::FloatGrid& grid)
+{
+    return 1.0 - openvdb::tools::minMax(grid.tree()).min() / grid.voxelSize()[0];
+}
+
 /// OpenVDB's flood fill takes everything inside the outermost surface for solid, so what stands
 /// inside a cavity's surface is converted on its own and taken out, or put back.
 openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
@@ -145,7 +152,7 @@ openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
     constexpr double kAllOfIt = std::numeric_limits<float>::max();
     for (std::size_t depth = 1; depth < parts.size(); ++depth) {
         const bool is_cavity = depth % 2 == 1;
-        const BandVoxels part_band = is_cavity ? BandVoxels{band.interior, kAllOfIt}
+        const BandVoxels part_band = is_cavity ? BandVoxels{deepest_voxels(*grid), kAllOfIt}
                                                : BandVoxels{band.exterior, band.interior};
         const auto part = convert(parts[depth], transform, part_band, interrupter);
         if (is_cavity)

@@ -6,6 +6,7 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <openvdb/tools/Interpolation.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -194,6 +195,49 @@ TEST(LevelSet, StopsWhenItIsAskedTo)
         // A stage that is refused before it starts has opened its frame and not yet closed it.
         EXPECT_EQ(interrupter.open, polls == 0 ? 1 : 0);
     }
+}
+
+/// phi on the x axis at x, by the grid's trilinear interpolation.
+double on_axis(const openvdb::FloatGrid& grid, double x)
+{
+    using Sampler = openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler>;
+    return Sampler(grid).wsSample(Vec3d(x, 0, 0));
+}
+
+TEST(LevelSet, SeesTheWallOfACavity)
+{
+    const TriangleMesh hollow =
+        test::joined(test::icosphere(1.0, 4), test::reversed(test::icosphere(0.5, 4)));
+    const auto grid = mesh_to_level_set(hollow, at_resolution(64));
+    const double voxel = grid->voxelSize()[0];
+    EXPECT_GT(on_axis(*grid, 0.0), 0.0);
+    EXPECT_NEAR(on_axis(*grid, 0.5), 0.0, 0.2 * voxel);
+    EXPECT_NEAR(on_axis(*grid, 0.6), -0.1, 0.2 * voxel);
+    EXPECT_NEAR(on_axis(*grid, 0.9), -0.1, 0.2 * voxel);
+}
+
+TEST(LevelSet, ShallowBandsMeetNowhereButKeepTheirSigns)
+{
+    LevelSetOptions options = at_resolution(64);
+    options.interior_depth = 0.05;
+    const TriangleMesh hollow =
+        test::joined(test::icosphere(1.0, 4), test::reversed(test::icosphere(0.5, 4)));
+    const auto grid = mesh_to_level_set(hollow, options);
+    const double voxel = grid->voxelSize()[0];
+    EXPECT_GT(on_axis(*grid, 0.0), 0.0);
+    EXPECT_NEAR(on_axis(*grid, 0.55), -0.05, 0.2 * voxel);
+    EXPECT_LT(on_axis(*grid, 0.75), -0.05);
+}
+
+TEST(LevelSet, SeesASolidInsideACavity)
+{
+    const TriangleMesh nested =
+        test::joined(test::joined(test::icosphere(1.0, 4), test::reversed(test::icosphere(0.6, 4))),
+                     test::icosphere(0.3, 3));
+    const auto grid = mesh_to_level_set(nested, at_resolution(64));
+    EXPECT_LT(on_axis(*grid, 0.0), -0.2);
+    EXPECT_GT(on_axis(*grid, 0.45), 0.0);
+    EXPECT_LT(on_axis(*grid, 0.8), -0.1);
 }
 
 } // namespace
