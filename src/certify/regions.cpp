@@ -139,6 +139,7 @@ void check_regions(const PrismShell& shell, const std::vector<std::uint32_t>& co
     check_orientation(shell, pieces, certificate);
 
     std::vector<Box> boxes;
+    boxes.reserve(pieces.size());
     for (const Piece& piece : pieces)
         boxes.push_back(piece.box);
     const std::vector<ComponentPair> touching = touching_components(component_of, contacts);
