@@ -4,6 +4,7 @@
 #include "shell/grow/predicates.h"
 #include "support/files.h"
 #include "support/shapes.h"
+#include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/tet_signs.h"
@@ -15,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -101,6 +103,10 @@ void expect_sound(const GrowResult& result, Method method)
     if (method == Method::certified)
         expect_twelve_positive(result.shell);
     expect_all_positive(result.shell, result.split);
+    const PrismTest test =
+        method == Method::certified ? PrismTest::twelve_tets : PrismTest::chosen_tets;
+    for (const std::string& failure : certify_shell(result.shell, result.split, test).failures())
+        ADD_FAILURE() << failure;
     EXPECT_TRUE(check_conformity(result.shell, make_tets(result.shell, result.split)).conforming());
     EXPECT_GE(fill_of(result.shell), result.report.fill_after_lines - 1e-12);
 }
@@ -301,6 +307,21 @@ TEST(Grow, GrowsFromBothSidesOfACavity)
         EXPECT_EQ(coverage.in_several, 0U);
         EXPECT_EQ(coverage.outside_covered, 0U);
     }
+}
+
+// A cavity with hardly a shell of its own, that no line of the outer box meets: the start would
+// cover it with one prism, touching nothing.
+TEST(Grow, DoesNotStartAcrossACavity)
+{
+    const TriangleMesh solid =
+        test::joined(test::box(Vec3d(-1), Vec3d(1)),
+                     test::translated(test::reversed(test::box(Vec3d(-0.02), Vec3d(0.02))),
+                                      Vec3d(0.25, 0.1, -0.5)));
+    Case c = case_of(solid);
+    std::fill(c.cap.begin() + 8, c.cap.end(), 0.01);
+    const GrowResult result = grown(c);
+    expect_sound(result, Method::certified);
+    expect_embedded(result.shell);
 }
 
 TEST(Grow, EndsOnASurfaceThatCrossesItself)
