@@ -34,17 +34,14 @@ Directions prepare(const TriangleMesh& mesh, Directions directions, const GrowOp
     return directions;
 }
 
-/// The lengths of line stepping, for the parts whose fronts it follows; half the ray to the other
-/// side where it got no further than a thin shell, and where it is shorter: two fronts meet there.
+/// The longer of line stepping's length and half the ray to the other side, where two fronts would
+/// meet: stop tests end many lines early, and how early depends on the voxels.
 std::vector<double> first_lengths(const GrowState& s, const Directions& directions,
-                                  const LineLengths& start, const std::vector<double>& thin)
+                                  const LineLengths& start)
 {
     std::vector<double> lengths = growth::half_rays(s, directions);
-    for (std::size_t v = 0; v < lengths.size(); ++v) {
-        if (start.length[v] > thin[v])
-            lengths[v] = std::min(lengths[v], start.length[v]);
-        lengths[v] *= kTopDown;
-    }
+    for (std::size_t v = 0; v < lengths.size(); ++v)
+        lengths[v] = kTopDown * std::max(lengths[v], start.length[v]);
     return lengths;
 }
 
@@ -58,14 +55,13 @@ std::ptrdiff_t pins(const GrowState& s)
 void settle(GrowState& s, const Directions& directions, const LineLengths& start,
             const GrowOptions& options, const StageProgress& progress)
 {
-    const std::vector<double> thin = growth::thin_heights(s);
-    growth::settle_start(s, directions, thin, progress);
+    growth::settle_start(s, directions, growth::thin_heights(s), progress);
     if (!options.top_down)
         return;
     const std::vector<openvdb::Vec3d> thin_b = s.b;
     const std::vector<std::uint8_t> thin_pinned = s.pinned;
     const std::ptrdiff_t thin_pins = pins(s);
-    growth::settle_start(s, directions, first_lengths(s, directions, start, thin), progress);
+    growth::settle_start(s, directions, first_lengths(s, directions, start), progress);
     if (pins(s) <= thin_pins)
         return;
     s.b = thin_b;

@@ -51,7 +51,8 @@ struct GrowResult {
 /// Grows the shell of an embedded surface to the thickest that the levers find, through valid
 /// states only: every accepted move is tested exactly on the float32 coordinates, so no tet inverts
 /// and no two surfaces touch, nor does one component end up inside another's shell.
-/// `start` gives the first lengths to try (line stepping); they bound nothing. `cap` bounds
+/// `start` gives the first lengths to try (line stepping) where they exceed half the ray to the
+/// other side; they bound nothing. `cap` bounds
 /// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).
 /// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back.
 /// `split` is honoured under Method::certified, where any diagonals are valid; with `flips` and
