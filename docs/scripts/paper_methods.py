@@ -33,7 +33,7 @@ def build(command, mesh, flags):
 def row(name, report):
     vertices = report["mesh"]["points"]
     stuck = report["lines"]["stuck_vertices"]
-    tets = report["tets"]["count"]
+    tets = report["tets"]["tets"]
     seconds = {stage["stage"]: stage["seconds"] for stage in report["stages"]}
     cells = [name, str(report["mesh"]["triangles"]), f"{100 * stuck / vertices:.0f}",
              f"{report['volume']['fill']:.3f}", f"{report['tets']['inverted']}",

@@ -47,6 +47,7 @@ void add_output_options(CLI::App& app, Outputs& outputs)
            "File to write; give it once for each file wanted. By extension: .vdb (everything), "
            ".vtu .node .ele .mesh .msh (tets), .obj .ply .off .stl (inner surface), .png "
            "(picture of a cross-section)")
+        ->allow_extra_args(false)
         ->group("Output");
     bind_enum(app, "--points", outputs.vdb.points,
               "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb")

@@ -24,7 +24,7 @@ namespace
 
 using command::ExitCode;
 
-struct Run {
+struct Outcome {
     int status = -1;
     std::string out, err;
 };
@@ -32,7 +32,7 @@ struct Run {
 class Command : public ::testing::Test
 {
 protected:
-    Run run(const std::string& arguments)
+    Outcome run(const std::string& arguments)
     {
         const std::string line = std::string(VDB_SHELL_COMMAND) + " " + arguments + " >" +
                                  (folder / "out").string() + " 2>" + (folder / "err").string();
@@ -53,7 +53,7 @@ protected:
     void expect_refusal(const std::string& arguments, int status,
                         const std::vector<std::string>& words)
     {
-        const Run result = run(arguments);
+        const Outcome result = run(arguments);
         EXPECT_EQ(result.status, status) << arguments << '\n' << result.err;
         for (const std::string& word : words)
             EXPECT_NE(result.err.find(word), std::string::npos)
@@ -71,7 +71,7 @@ TEST_F(Command, BuildsEveryFormatAndTheFigures)
     std::string outputs;
     for (const char* name : {"s.vdb", "s.vtu", "s.node", "s.mesh", "s.msh", "inner.ply", "s.png"})
         outputs += " -o " + file(name);
-    const Run result = run("build " + sphere + kCoarse + outputs + " --report " + file("s.json"));
+    const Outcome result = run("build " + sphere + kCoarse + outputs + " --report " + file("s.json"));
     ASSERT_EQ(result.status, ExitCode::success) << result.err;
     for (const char* name :
          {"s.vdb", "s.vtu", "s.node", "s.ele", "s.mesh", "s.msh", "inner.ply", "s.png"})
@@ -82,10 +82,17 @@ TEST_F(Command, BuildsEveryFormatAndTheFigures)
     EXPECT_FALSE(result.out.empty());
 }
 
+TEST_F(Command, TakesOptionsBeforeTheMesh)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    EXPECT_EQ(run("build -o " + file("s.vdb") + " -o " + file("s.vtu") + kCoarse + sphere).status,
+              ExitCode::success);
+}
+
 TEST_F(Command, QuietPrintsNothing)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
-    const Run result = run("build -q " + sphere + kCoarse + " -o " + file("s.vdb"));
+    const Outcome result = run("build -q " + sphere + kCoarse + " -o " + file("s.vdb"));
     EXPECT_EQ(result.status, ExitCode::success);
     EXPECT_EQ(result.out + result.err, "");
 }
@@ -94,7 +101,7 @@ TEST_F(Command, CheckAcceptsWhatBuildWrote)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
     ASSERT_EQ(run("build " + sphere + kCoarse + " -o " + file("s.vdb")).status, ExitCode::success);
-    const Run check = run("check " + file("s.vdb"));
+    const Outcome check = run("check " + file("s.vdb"));
     EXPECT_EQ(check.status, ExitCode::success) << check.out << check.err;
     EXPECT_EQ(check.out.find("FAILED"), std::string::npos) << check.out;
 }
@@ -120,7 +127,7 @@ TEST_F(Command, InfoPrintsTheStoredFigures)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
     ASSERT_EQ(run("build " + sphere + kCoarse + " -o " + file("s.vdb")).status, ExitCode::success);
-    const Run info = run("info --json " + file("s.vdb"));
+    const Outcome info = run("info --json " + file("s.vdb"));
     ASSERT_EQ(info.status, ExitCode::success) << info.err;
     const auto json = nlohmann::json::parse(info.out);
     EXPECT_EQ(json.at("parameters").at("level_set").at("resolution"), 24);
@@ -182,8 +189,10 @@ TEST_F(Command, RefusesBadInputAndLeavesTheOutputAlone)
                    {"inside_out.obj", "--turn-outward"});
     expect_refusal("build " + sphere + " --voxel-size 3" + to_kept, ExitCode::geometry_error,
                    {"voxel", "3"});
-    expect_refusal("build " + sphere + " --voxel-size 1e-6" + to_kept, ExitCode::geometry_error,
+    expect_refusal("build " + sphere + " --voxel-size 2e-5" + to_kept, ExitCode::geometry_error,
                    {"voxel", "GiB"});
+    expect_refusal("build " + sphere + " --voxel-size 1e-6" + to_kept, ExitCode::geometry_error,
+                   {"voxel", "1e-06"});
     expect_refusal("build " + sphere + " --voxel-size 0" + to_kept, ExitCode::usage_error,
                    {"voxel"});
     expect_refusal("build " + sphere + " --voxel-size 0.1 --resolution 9" + to_kept,
@@ -206,10 +215,23 @@ TEST_F(Command, RefusesBadInputAndLeavesTheOutputAlone)
     expect_refusal("build", ExitCode::usage_error, {"mesh"});
 }
 
+TEST_F(Command, DocumentationIsWhatHelpSays)
+{
+    const std::string page = read_bytes(VDB_SHELL_COMMAND_PAGE);
+    for (const char* arguments :
+         {"--help", "build --help", "info --help", "convert --help", "check --help"}) {
+        const Outcome help = run(arguments);
+        EXPECT_EQ(help.status, ExitCode::success);
+        EXPECT_NE(page.find(help.out), std::string::npos)
+            << "docs/command_line.md is not what `vdb_shell " << arguments
+            << "` prints; run docs/scripts/command_line.py";
+    }
+}
+
 TEST_F(Command, TurnsAnInsideOutMeshOnlyWhenAsked)
 {
     const std::string inside_out = mesh_file("inside_out.obj", reversed(icosphere(1.0, 2)));
-    const Run result =
+    const Outcome result =
         run("build --turn-outward " + inside_out + kCoarse + " --report " + file("r.json"));
     ASSERT_EQ(result.status, ExitCode::success) << result.err;
     const auto report = nlohmann::json::parse(read_bytes(folder / "r.json"));
@@ -219,7 +241,7 @@ TEST_F(Command, TurnsAnInsideOutMeshOnlyWhenAsked)
 TEST_F(Command, ThicknessIsNeverExceeded)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
-    const Run result =
+    const Outcome result =
         run("build " + sphere + kCoarse + " --thickness 0.25 --report " + file("r.json"));
     ASSERT_EQ(result.status, ExitCode::success) << result.err;
     const auto report = nlohmann::json::parse(read_bytes(folder / "r.json"));

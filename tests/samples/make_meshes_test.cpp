@@ -37,6 +37,12 @@ struct Sample {
     double volume_tolerance; ///< relative, from the chords that replace arcs
 };
 
+// GoogleTest would print the bytes, addresses included.
+void PrintTo(const Sample& sample, std::ostream* out)
+{
+    *out << sample.name;
+}
+
 PolygonMesh make_sphere()
 {
     return sphere(32, 16);
