@@ -45,9 +45,9 @@ struct ShellResult {
 };
 
 /// The whole job on a mesh in memory: check, level set, smooth, directions, line stepping, limits,
-/// growth (Method::raw: prisms straight from the lengths), tets, certificate, figures. `name` is what
-/// messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the stages
-/// throw. Same result for any number of threads (costs in the report aside).
+/// growth (Method::raw: prisms straight from the lengths), tets, certificate, figures. `name` is
+/// what messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the
+/// stages throw. Same result for any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

@@ -148,7 +148,7 @@ openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
                                        const BandVoxels& band, Interrupter* interrupter)
 {
     const std::vector<TriangleMesh> parts = split_by_nesting(mesh);
-    const auto grid = convert(parts.front(), transform, band, interrupter);
+    auto grid = convert(parts.front(), transform, band, interrupter);
     constexpr double kAllOfIt = std::numeric_limits<float>::max();
     for (std::size_t depth = 1; depth < parts.size(); ++depth) {
         const bool is_cavity = depth % 2 == 1;
@@ -238,7 +238,7 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
     // Voxel centres at whole multiples of the voxel size, wherever the mesh stands: grids of
     // different objects of a scene then fit voxel on voxel.
     const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-    const auto grid = convert_nested(mesh, *transform, band, interrupter);
+    auto grid = convert_nested(mesh, *transform, band, interrupter);
     if (!has_inside(*grid))
         fail<GeometryError>(
             "voxel larger than the object: no voxel centre lies inside, voxel size ", voxel,

@@ -28,16 +28,16 @@ enum class StopTest {
 
 /// Why a line ended where it did.
 enum class StopReason : std::uint8_t {
-    none,         ///< not stepped
-    stop_test,    ///< the stop test failed
-    thickness,    ///< reached the user's thickness
-    limit,        ///< reached a thin-shell limit
-    left_solid,   ///< phi became positive: the line left the solid again
-    left_band,    ///< reached the depth of the grid's interior band
-    no_direction, ///< no usable direction at this vertex
-    converged,    ///< bisection closed its interval
-    iterations,   ///< bisection hit its iteration limit
-    prism,        ///< growth: a tet of a prism would not stay positive
+    none,          ///< not stepped
+    stop_test,     ///< the stop test failed
+    thickness,     ///< reached the user's thickness
+    limit,         ///< reached a thin-shell limit
+    left_solid,    ///< phi became positive: the line left the solid again
+    left_band,     ///< reached the depth of the grid's interior band
+    no_direction,  ///< no usable direction at this vertex
+    converged,     ///< bisection closed its interval
+    iterations,    ///< bisection hit its iteration limit
+    prism,         ///< growth: a tet of a prism would not stay positive
     inner_contact, ///< growth: the inner surface would touch itself
     outer_contact, ///< growth: the inner surface would touch the outer one
     pinned,        ///< growth: no valid length at all
