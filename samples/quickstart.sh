@@ -8,7 +8,7 @@ cmake --build --preset release
 out=build/quickstart
 mkdir -p "$out"
 build/release/src/vdb_shell build samples/meshes/creature.obj \
-    -o "$out/creature.vdb" -o "$out/creature.vtu" -o "$out/creature.png" --report "$out/creature.json"
+    -o "$out/creature.vdb" -o "$out/creature.vtu" -o "$out/creature.png" --section-axis x --section-position 0.525 --report "$out/creature.json"
 build/release/src/vdb_shell check "$out/creature.vdb"
 echo
 echo "The shell:    $out/creature.vdb (level set, depth, points) and $out/creature.vtu (tets)"
