@@ -60,8 +60,9 @@ FileScan scan_binary(const std::string& name, std::string bytes)
         const char* corner = bytes.data() + kHeaderBytes + kFacetBytes * facet + 12;
         for (int k = 0; k < 3; ++k, corner += 12) {
             openvdb::Vec3s point;
-            for (int axis = 0; axis < 3; ++axis) {
-                const std::uint32_t bits = little_endian_32(corner + 4 * axis);
+            const char* coordinate = corner;
+            for (int axis = 0; axis < 3; ++axis, coordinate += 4) {
+                const std::uint32_t bits = little_endian_32(coordinate);
                 std::memcpy(&point[axis], &bits, sizeof bits);
             }
             if (!point.isFinite())

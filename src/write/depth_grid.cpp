@@ -187,7 +187,7 @@ void require_voxels_in_range(const TetMesh& mesh, double voxel_size)
 
 openvdb::FloatGrid::Ptr empty_depth_grid(double voxel_size)
 {
-    const auto grid = openvdb::FloatGrid::create(0.0f);
+    auto grid = openvdb::FloatGrid::create(0.0f);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
     grid->setName("depth");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
@@ -201,7 +201,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
 {
     require_voxels_in_range(tets, voxel_size);
     const StageProgress progress(interrupter, "Shell depth");
-    const auto grid = empty_depth_grid(voxel_size);
+    auto grid = empty_depth_grid(voxel_size);
     std::vector<IndexTet> placed(tets.tets.size());
     for_each_index(placed.size(),
                    [&](std::size_t t) { placed[t] = index_tet(tets, t, voxel_size); });

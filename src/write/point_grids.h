@@ -52,6 +52,9 @@ void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const 
 /// coordinate is finite: what is refused here could not be read back.
 void require_consistent(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets);
 
+/// Not equality of values: zeros of either sign differ, as they do for the checksum.
+bool same_bits(const openvdb::Vec3s& a, const openvdb::Vec3s& b);
+
 /// FNV-1a over all arrays of the shell, as 16 hexadecimal digits: tells a damaged file, and points
 /// that belong to another file.
 std::string checksum_of(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets);

@@ -75,8 +75,8 @@ void require_points(const PrismShell& shell, const TetMesh& tets)
         require(v < shell.outer.size() && layer < 2 && !(layer == 1 && shell.pinned(v)),
                 "a point of the tets belongs to no end of a pillar", i);
         const Vec3s& end = layer == 0 ? shell.outer[v] : shell.inner[v];
-        require(std::memcmp(end.asPointer(), tets.points[i].asPointer(), 3 * sizeof(float)) == 0,
-                "a point of the tets is not where its pillar ends", i);
+        require(same_bits(end, tets.points[i]), "a point of the tets is not where its pillar ends",
+                i);
         require(!seen[layer][v], "a point of the tets is there twice", i);
         seen[layer][v] = true;
     }
@@ -111,6 +111,13 @@ private:
 };
 
 } // namespace
+
+bool same_bits(const Vec3s& a, const Vec3s& b)
+{
+    // The bits are what is asked for: values that compare equal need not have the same ones.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
+}
 
 void require_consistent(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
 {

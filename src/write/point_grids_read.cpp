@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 
 namespace vdb_shell
 {
@@ -118,11 +117,6 @@ private:
     std::size_t count_;
     std::string where_;
 };
-
-bool same_bits(const Vec3s& a, const Vec3s& b)
-{
-    return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
-}
 
 /// The points by id, as the file has them.
 struct Rows {

@@ -29,7 +29,7 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name)
     if (!grid)
         throw InvalidOption(std::string("the shell cannot be written as .vdb: grid \"") + name +
                             "\" is missing");
-    const FloatGrid::Ptr copy = openvdb::ConstPtrCast<FloatGrid>(grid)->copy();
+    FloatGrid::Ptr copy = openvdb::ConstPtrCast<FloatGrid>(grid)->copy();
     copy->setName(name);
     copy->setCreator(creator_name());
     // Half floats would not read back bit for bit.
@@ -70,7 +70,7 @@ typename Grid::Ptr read_grid(openvdb::io::File& file, const std::string& where, 
     if (!file.hasGrid(name))
         throw ReadError(where + ": grid \"" + name + "\" is missing");
     const GridBase::Ptr grid = file.readGrid(name);
-    const auto typed = openvdb::gridPtrCast<Grid>(grid);
+    auto typed = openvdb::gridPtrCast<Grid>(grid);
     if (!typed)
         throw ReadError(where + ": grid \"" + name + "\" has type " + grid->type() + ", expected " +
                         Grid::gridType());
@@ -205,7 +205,7 @@ FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
             throw ReadError(path.string() + ": has no grid \"" + name + "\"; it has " +
                             list_of_grids(file));
         }
-        const auto grid = openvdb::gridPtrCast<FloatGrid>(file.readGrid(chosen));
+        auto grid = openvdb::gridPtrCast<FloatGrid>(file.readGrid(chosen));
         if (!grid)
             throw ReadError(path.string() + ": grid \"" + chosen +
                             "\" is not a float grid; the file has " + list_of_grids(file));

@@ -71,7 +71,8 @@ TEST_F(Command, BuildsEveryFormatAndTheFigures)
     std::string outputs;
     for (const char* name : {"s.vdb", "s.vtu", "s.node", "s.mesh", "s.msh", "inner.ply", "s.png"})
         outputs += " -o " + file(name);
-    const Outcome result = run("build " + sphere + kCoarse + outputs + " --report " + file("s.json"));
+    const Outcome result =
+        run("build " + sphere + kCoarse + outputs + " --report " + file("s.json"));
     ASSERT_EQ(result.status, ExitCode::success) << result.err;
     for (const char* name :
          {"s.vdb", "s.vtu", "s.node", "s.ele", "s.mesh", "s.msh", "inner.ply", "s.png"})
