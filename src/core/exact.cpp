@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/exact.h"
 
+#include "core/orient3d_filter.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 #include <CGAL/intersections.h>
@@ -65,26 +67,9 @@ SharedCorners match_corners(const openvdb::Vec3I& first, const openvdb::Vec3I& s
 int orient3d(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c,
              const openvdb::Vec3s& d)
 {
-    // Static filter: the float32 differences are rounded once each in double; 7.8e-16 times the
-    // permanent bounds the error of the determinant (Shewchuk 1997, "Adaptive Precision
-    // Floating-Point Arithmetic and Fast Robust Geometric Predicates", bound A of ORIENT3D).
-    const double bx = double(b[0]) - a[0], by = double(b[1]) - a[1], bz = double(b[2]) - a[2];
-    const double cx = double(c[0]) - a[0], cy = double(c[1]) - a[1], cz = double(c[2]) - a[2];
-    const double dx = double(d[0]) - a[0], dy = double(d[1]) - a[1], dz = double(d[2]) - a[2];
-    const double xy = bx * cy, yx = by * cx, yz = by * cz, zy = bz * cy, zx = bz * cx, xz = bx * cz;
-    const double det = dz * (xy - yx) + dx * (yz - zy) + dy * (zx - xz);
-    const double permanent = std::abs(dz) * (std::abs(xy) + std::abs(yx)) +
-                             std::abs(dx) * (std::abs(yz) + std::abs(zy)) +
-                             std::abs(dy) * (std::abs(zx) + std::abs(xz));
-    constexpr double kErrorBound = 7.8e-16;
-    // Products of float32 differences cannot underflow in double unless they are subnormal squares;
-    // the tiny absolute term sends those to the exact path.
-    constexpr double kUnderflowGuard = 1e-280;
-    const double bound = kErrorBound * permanent + kUnderflowGuard;
-    if (det > bound)
-        return 1;
-    if (det < -bound)
-        return -1;
+    if (const int sign = orient3d_filter(openvdb::Vec3d(a), openvdb::Vec3d(b), openvdb::Vec3d(c),
+                                         openvdb::Vec3d(d)))
+        return sign;
     return static_cast<int>(CGAL::orientation(point3(a), point3(b), point3(c), point3(d)));
 }
 

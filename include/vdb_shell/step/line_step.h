@@ -28,7 +28,7 @@ enum class StopTest {
 
 /// Why a line ended where it did.
 enum class StopReason : std::uint8_t {
-    none,          ///< not stepped
+    none,          ///< not stepped; after growth: nothing single holds the vertex
     stop_test,     ///< the stop test failed
     thickness,     ///< reached the user's thickness
     limit,         ///< reached a thin-shell limit

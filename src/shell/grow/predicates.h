@@ -5,11 +5,11 @@
 // All points are float32 values held as doubles, so that the same numbers serve the barrier too.
 
 #include "core/exact.h"
+#include "core/orient3d_filter.h"
 
 #include <openvdb/Types.h>
 
 #include <array>
-#include <cmath>
 
 namespace vdb_shell::growth
 {
@@ -35,23 +35,8 @@ inline Vec3d rounded(const Vec3d& p)
 /// Sign of det(q-p, r-p, s-p), always right.
 inline int orient(const Vec3d& p, const Vec3d& q, const Vec3d& r, const Vec3d& s)
 {
-    const double ax = q[0] - p[0], ay = q[1] - p[1], az = q[2] - p[2];
-    const double bx = r[0] - p[0], by = r[1] - p[1], bz = r[2] - p[2];
-    const double cx = s[0] - p[0], cy = s[1] - p[1], cz = s[2] - p[2];
-    const double byz = by * cz, bzy = bz * cy, bzx = bz * cx, bxz = bx * cz, bxy = bx * cy,
-                 byx = by * cx;
-    const double det = ax * (byz - bzy) + ay * (bzx - bxz) + az * (bxy - byx);
-    const double permanent = std::abs(ax) * (std::abs(byz) + std::abs(bzy)) +
-                             std::abs(ay) * (std::abs(bzx) + std::abs(bxz)) +
-                             std::abs(az) * (std::abs(bxy) + std::abs(byx));
-    // The bound and the guard of exact::orient3d, which decides what they leave open.
-    constexpr double kErrorBound = 7.8e-16;
-    constexpr double kUnderflowGuard = 1e-280;
-    const double bound = kErrorBound * permanent + kUnderflowGuard;
-    if (det > bound)
-        return 1;
-    if (det < -bound)
-        return -1;
+    if (const int sign = exact::orient3d_filter(p, q, r, s))
+        return sign;
     return exact::orient3d(Vec3s(p), Vec3s(q), Vec3s(r), Vec3s(s));
 }
 
