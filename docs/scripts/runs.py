@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What robustness.py and thickness.py share: the clean meshes, one run of the command, the page's table."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+CLEAN_MESHES = [
+    "paper/box", "paper/support_box", "paper/cylinder", "paper/pointy", "paper/diku", "paper/tube", "paper/lamp",
+    "paper/sphere", "paper/teapot", "paper/glass", "paper/propella", "paper/funnel", "paper/jack",
+    "paper/dragon_small_resolution", "paper/cow", "paper/bunny_low_resolution", "paper/bend", "paper/bowl",
+    "paper/torus", "paper/knot", "artist/fandisk", "artist/cheburashka", "artist/rocker-arm"]
+METHODS = ["certified", "thickest"]
+
+
+def build(command, mesh, flags):
+    """One run on one thread: exit status, message, CPU seconds of the child and the figures of its report."""
+    with tempfile.TemporaryDirectory() as folder:
+        report, errors = pathlib.Path(folder) / "report.json", pathlib.Path(folder) / "errors.txt"
+        with errors.open("w") as stream:
+            child = subprocess.Popen([command, "--threads", "1", "build", "-q", *flags, "--report", str(report),
+                                      str(mesh)], stdout=subprocess.DEVNULL, stderr=stream)
+            # wait4 and not wait: only it tells the resources of this child alone.
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+        run = {"exit": child.returncode, "message": errors.read_text().strip().replace(str(mesh), "MESH"),
+               "seconds": usage.ru_utime + usage.ru_stime}
+        if child.returncode == 0:
+            run.update(figures(json.loads(report.read_text())))
+        return run
+
+
+def figures(report):
+    coverage, certificate = report["coverage"], report["certificate"]
+    failed = {name: value for name, value in certificate.items() if isinstance(value, dict) and value.get("count")}
+    return {"certified": certificate["certified"], "failed": failed, "fill": report["volume"]["fill"],
+            "inverted": report["tets"]["inverted"], "triangles": report["mesh"]["triangles"],
+            "samples": coverage["samples"], "in_several": coverage["in_several"],
+            "pinned": report["prisms"]["pinned_vertices"]}
+
+
+def table(head, rows):
+    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(row) + " |" for row in rows]
+
+
+def replace_tables(page, lines):
+    begin, end = "<!-- tables: begin -->", "<!-- tables: end -->"
+    old = page.read_text()
+    before, after = old[:old.index(begin) + len(begin)], old[old.index(end):]
+    page.write_text(before + "\n\n" + "\n".join(lines) + "\n\n" + after)
+
+
+class Results:
+    """Finished runs, kept in a file when one is named, so that a long series can be continued."""
+
+    def __init__(self, path):
+        self.path = pathlib.Path(path) if path else None
+        self.runs = json.loads(self.path.read_text()) if self.path and self.path.exists() else {}
+
+    def keep(self, key, run):
+        self.runs[key] = run
+        if self.path:
+            scratch = self.path.with_suffix(".new")
+            scratch.write_text(json.dumps(self.runs, indent=1))
+            scratch.replace(self.path)
