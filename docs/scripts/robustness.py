@@ -200,13 +200,18 @@ def exceptions(runs):
     return ["### Exceptions", "", *(lines or ["None."])]
 
 
+def pins(runs):
+    pinned = [f"{key}: {run['pinned']}" for key, run in runs.items() if run.get("pinned") and "thickest" in key]
+    return ["### Pinned vertices, `--method thickest`", "", "; ".join(pinned) or "None.", ""]
+
+
 def write_page(page, runs):
     lines = summary(runs)
     for method in METHODS:
         rows = [[name] + [cell(runs.get(f"{name}, {variant}, {method}")) for variant in VARIANTS]
                 for name in CLEAN_MESHES]
         lines += [f"### Fill, `--method {method}`", "", *table(["mesh", *VARIANTS], rows), ""]
-    replace_tables(page, lines + exceptions(runs))
+    replace_tables(page, lines + pins(runs) + exceptions(runs))
 
 
 def main():
