@@ -12,6 +12,8 @@
 #include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 
@@ -35,9 +37,19 @@ double stated(const json& report, const char* pointer)
                                                                   : std::nan("");
 }
 
+/// Shortest digits that give the same double again.
+std::string digits(double value)
+{
+    if (std::isnan(value))
+        return "nothing";
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    return {text.data(), end};
+}
+
 std::string compare(double found, double claimed)
 {
-    return "found " + json(found).dump() + ", the file says " + json(claimed).dump();
+    return "found " + digits(found) + ", the file says " + digits(claimed);
 }
 
 Verification verify_surface(const ShellFile& file, const json& report)
@@ -130,7 +142,7 @@ Verification verify_level_set(const ShellFile& file, const json& report)
         std::sqrt(3.0) * grid.voxelSize()[0] + (std::isfinite(drift) ? drift : 0.0);
     const bool level_set = grid.getGridClass() == openvdb::GRID_LEVEL_SET;
     return {"level set follows the surface", level_set && worst <= bound,
-            "largest |phi| at a vertex " + json(worst).dump() + ", allowed " + json(bound).dump() +
+            "largest |phi| at a vertex " + digits(worst) + ", allowed " + digits(bound) +
                 (level_set ? "" : "; its class is not level set")};
 }
 
