@@ -16,7 +16,7 @@ int main(int argc, char** argv)
     }
     try {
         const vdb_shell::TriangleMesh mesh = vdb_shell::read_mesh(argv[1]).mesh;
-        vdb_shell::ShellOptions options; // the paper's settings, unless told otherwise
+        vdb_shell::ShellOptions options; // the defaults of the command
         options.level_set.resolution = 128;
         const vdb_shell::ShellResult result = vdb_shell::build_shell(mesh, options);
         vdb_shell::write_tets(argv[2], result.tets);

@@ -27,6 +27,8 @@ struct LevelSetOptions {
 };
 
 /// Voxel size that the options mean for this mesh, in world units.
+/// From `resolution`, an object so small that its voxels would be under 1.5e-5 (the least that
+/// OpenVDB's transforms hold) gets voxels of that size, but at least eight along its longest side.
 /// Throws InvalidOption for sizes that are not positive and finite.
 double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& options);
 
@@ -36,6 +38,7 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
 
 /// The signed distance to a closed mesh: negative inside, name "surface", class level set, world
 /// units, background = exterior band width; the interior band reaches as deep as the options say.
+/// What lies in a cavity (a component of odd nesting depth) is outside.
 /// Throws InvalidOption (see above), GeometryError when no voxel centre lies inside ("voxel larger
 /// than the object") or when the estimated memory is over the limit, Cancelled. Same bits for any
 /// number of threads.
