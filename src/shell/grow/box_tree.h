@@ -57,24 +57,7 @@ public:
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const Box& query, Visit&& visit) const
     {
-        if (nodes_.empty())
-            return;
-        std::array<int, kStack> stack;
-        int top = 0;
-        stack[top++] = 0;
-        while (top > 0) {
-            const Node& n = nodes_[stack[--top]];
-            if (!n.box.overlaps(query))
-                continue;
-            if (n.right < 0) {
-                for (int i = n.begin; i < n.end; ++i)
-                    if (boxes_[item_[i]].overlaps(query))
-                        visit(item_[i]);
-            } else {
-                stack[top++] = n.right;
-                stack[top++] = static_cast<int>(&n - nodes_.data()) + 1;
-            }
-        }
+        descend([&](const Box& box) { return box.overlaps(query); }, visit);
     }
 
     /// Calls visit(i) for the boxes the ray p + t d, 0 <= t <= limit, may meet; visit may lower
@@ -82,24 +65,7 @@ public:
     template <class Visit>
     void for_each_on_ray(const Vec3d& p, const Vec3d& d, const double& limit, Visit&& visit) const
     {
-        if (nodes_.empty())
-            return;
-        std::array<int, kStack> stack;
-        int top = 0;
-        stack[top++] = 0;
-        while (top > 0) {
-            const Node& n = nodes_[stack[--top]];
-            if (!n.box.meets_ray(p, d, limit))
-                continue;
-            if (n.right < 0) {
-                for (int i = n.begin; i < n.end; ++i)
-                    if (boxes_[item_[i]].meets_ray(p, d, limit))
-                        visit(item_[i]);
-            } else {
-                stack[top++] = n.right;
-                stack[top++] = static_cast<int>(&n - nodes_.data()) + 1;
-            }
-        }
+        descend([&](const Box& box) { return box.meets_ray(p, d, limit); }, visit);
     }
 
 private:
@@ -112,6 +78,29 @@ private:
     static constexpr int kStack = 64;
 
     int split(int begin, int end);
+
+    /// Calls visit(i) for every box i that is met, leaving out what lies under boxes that are not.
+    template <class Meets, class Visit> void descend(const Meets& meets, Visit&& visit) const
+    {
+        if (nodes_.empty())
+            return;
+        std::array<int, kStack> stack;
+        int top = 0;
+        stack[top++] = 0;
+        while (top > 0) {
+            const Node& n = nodes_[stack[--top]];
+            if (!meets(n.box))
+                continue;
+            if (n.right < 0) {
+                for (int i = n.begin; i < n.end; ++i)
+                    if (meets(boxes_[item_[i]]))
+                        visit(item_[i]);
+            } else {
+                stack[top++] = n.right;
+                stack[top++] = static_cast<int>(&n - nodes_.data()) + 1;
+            }
+        }
+    }
 
     // Owned: the tree is read long after its caller's boxes have moved on.
     std::vector<Box> boxes_;
