@@ -12,6 +12,8 @@ import subprocess
 import sys
 import tempfile
 
+from runs import replace_tables, table
+
 METHODS = [
     ("raw, rho 0.9", ["--stop-test", "normal", "--rho", "0.9"]),
     ("relative test, rho 0.9", ["--stop-test", "relative-normal", "--rho", "0.9"]),
@@ -42,19 +44,18 @@ def row(name, report):
     return cells + [f"{seconds.get(stage, 0):.2f}" for stage in STAGES]
 
 
-def table(command, meshes, root, flags):
+def measure(command, meshes, root, flags):
     head = ["mesh", "faces", "stuck %", "fill", "inverted", "inverted %", "covered", "covered twice %"] + \
            [f"{stage} s" for stage in STAGES]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    refused = []
+    rows, refused = [], []
     for mesh in meshes:
         name = str(mesh.relative_to(root).with_suffix(""))
         report = build(command, mesh, flags)
         if isinstance(report, str):
             refused.append(f"- `{name}`: {report}")
         else:
-            lines.append("| " + " | ".join(row(name, report)) + " |")
-    return lines, refused
+            rows.append(row(name, report))
+    return table(head, rows), refused
 
 
 def main():
@@ -62,13 +63,10 @@ def main():
     meshes = sorted(folder.glob("*/*.obj"), key=lambda mesh: (mesh.parent.name != "paper", mesh.stat().st_size))
     text = []
     for title, flags in METHODS:
-        lines, refused = table(command, meshes, folder, flags)
+        lines, refused = measure(command, meshes, folder, flags)
         text += [f"### {title}", "", "`vdb_shell build MESH --method raw --resolution 256 " + " ".join(flags) + "`", "", *lines, ""]
-    text += ["### Refused", "", *refused, ""]
-    begin, end = "<!-- tables: begin -->", "<!-- tables: end -->"
-    old = output.read_text()
-    before, after = old[:old.index(begin) + len(begin)], old[old.index(end):]
-    output.write_text(before + "\n\n" + "\n".join(text) + "\n" + after)
+    text += ["### Refused", "", *refused]
+    replace_tables(output, text)
 
 
 if __name__ == "__main__":

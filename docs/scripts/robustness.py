@@ -7,13 +7,12 @@
 COMMAND is the vdb_shell binary. --quick leaves out surfaces of more than 5000 triangles. --results keeps the finished
 runs in a file and takes them from there the next time; delete it when the command has changed.
 """
-import argparse
 import math
 import pathlib
 import random
 import tempfile
 
-from runs import CLEAN_MESHES, METHODS, Results, build, replace_tables, table
+from runs import CLEAN_MESHES, METHODS, Results, arguments, build, replace_tables, table
 
 FLAGS = ["--resolution", "64", "--samples", "20000"]
 QUICK_TRIANGLES = 5000
@@ -215,13 +214,7 @@ def write_page(page, runs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command")
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("page", type=pathlib.Path)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--results")
-    options = parser.parse_args()
+    options = arguments(__doc__)
     results = Results(options.results)
     jobs = [(name, variant, method) for name in CLEAN_MESHES for variant in VARIANTS for method in METHODS]
     # Small surfaces first: an interrupted series has then done the most it could.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What robustness.py and thickness.py share: the clean meshes, one run of the command, the page's table."""
+"""What the scripts that measure share: the clean meshes, the arguments, one run of the command, the page's table."""
+import argparse
 import json
 import os
 import pathlib
@@ -12,6 +13,16 @@ CLEAN_MESHES = [
     "paper/dragon_small_resolution", "paper/cow", "paper/bunny_low_resolution", "paper/bend", "paper/bowl",
     "paper/torus", "paper/knot", "artist/fandisk", "artist/cheburashka", "artist/rocker-arm"]
 METHODS = ["certified", "thickest"]
+
+
+def arguments(description):
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--results")
+    return parser.parse_args()
 
 
 def build(command, mesh, flags):

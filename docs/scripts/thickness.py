@@ -7,10 +7,9 @@
 COMMAND is the vdb_shell binary. --quick leaves out the meshes of more than 5000 triangles. --results keeps the
 finished runs in a file and takes them from there the next time; delete it when the command has changed.
 """
-import argparse
 import pathlib
 
-from runs import CLEAN_MESHES, METHODS, Results, build, replace_tables, table
+from runs import CLEAN_MESHES, METHODS, Results, arguments, build, replace_tables, table
 
 FLAGS = ["--resolution", "128", "--samples", "20000"]
 BIG_MESHES = ["paper/knot", "artist/fandisk", "artist/cheburashka", "artist/rocker-arm"]
@@ -71,13 +70,7 @@ def write_page(page, runs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command")
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("page", type=pathlib.Path)
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--results")
-    options = parser.parse_args()
+    options = arguments(__doc__)
     results = Results(options.results)
     jobs = [(name, method, method, []) for name in CLEAN_MESHES for method in METHODS if name not in BIG_MESHES]
     jobs += [(name, lever, "thickest", [lever]) for name in LEVER_MESHES for lever in LEVERS]
