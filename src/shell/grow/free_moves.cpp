@@ -2,6 +2,7 @@
 #include "shell/grow/free_moves.h"
 
 #include "shell/grow/barrier.h"
+#include "shell/grow/candidates.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/soft_contacts.h"
 #include "shell/grow/sweep.h"
@@ -155,7 +156,7 @@ void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stag
     for (int round = 0; round < stage.rounds && fill < kEnoughFill; ++round) {
         progress.stop_if_interrupted(100 * round / stage.rounds);
         const MoveRules rules{options.soft_contacts, per_tet * softness, kLeastMove * s.diagonal};
-        rebuild_broad_phase(s);
+        rebuild_candidates(s);
         for (int i = 0; i < kSweepsPerRound; ++i)
             sweep(s, sweep_scratch, [&](int v, Vec3d& x) {
                 return !asleep(s, quiet, v) && propose_move(s, v, rules, scratch.local(), x);

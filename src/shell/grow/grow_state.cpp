@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/grow_state.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,20 +32,6 @@ std::vector<int> first_of_each_component(const Connectivity& c)
     return witness;
 }
 
-/// The box of everything inner triangle f can become within its corners' reach.
-Box reachable_box(const GrowState& s, int f)
-{
-    Box fat;
-    for (int k = 0; k < 3; ++k) {
-        const int v = s.mesh->corner(f, k);
-        Box ball;
-        ball.add(s.b[v]);
-        ball.inflate(s.reach[v]);
-        fat.add(ball);
-    }
-    return fat;
-}
-
 } // namespace
 
 GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
@@ -77,33 +61,6 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     s.rounding = largest * double(std::numeric_limits<float>::epsilon());
     s.witness = first_of_each_component(mesh);
     return s;
-}
-
-void rebuild_broad_phase(GrowState& s)
-{
-    const std::size_t count = s.mesh->faces.size();
-    s.home = s.b;
-    std::vector<Box> fat(count);
-    for_each_index(
-        count,
-        [&](std::size_t i) {
-            const int f = static_cast<int>(i);
-            s.inner_box[f] = box_of(inner_corners(s, f));
-            fat[f] = reachable_box(s, f);
-        },
-        256);
-    BoxTree tree;
-    tree.build(fat);
-    for_each_index(count, [&](std::size_t i) {
-        const int f = static_cast<int>(i);
-        s.near_inner[f].clear();
-        s.near_outer[f].clear();
-        tree.for_each_overlap(fat[f], [&](int g) {
-            if (g != f)
-                s.near_inner[f].push_back(g);
-        });
-        s.outer_tree.for_each_overlap(fat[f], [&](int g) { s.near_outer[f].push_back(g); });
-    });
 }
 
 void commit_move(GrowState& s, int v, const Vec3d& x)

@@ -86,9 +86,6 @@ inline CornerIds inner_ids(const GrowState& s, int f)
     return id;
 }
 
-/// Rebuilds boxes and candidate lists; homes become the present positions.
-void rebuild_broad_phase(GrowState& s);
-
 /// Moves b_v; `x` must be float32 values.
 void commit_move(GrowState& s, int v, const Vec3d& x);
 

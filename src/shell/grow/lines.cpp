@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/lines.h"
 
+#include "shell/grow/candidates.h"
 #include "shell/grow/sweep.h"
 
 #include <algorithm>
@@ -60,7 +61,7 @@ void lengthen_lines(GrowState& s, const Directions& directions, const StageProgr
         progress.stop_if_interrupted(0);
         for (int v = 0; v < s.mesh->vertices; ++v)
             s.reach[v] = awake(s, lines, v) ? 1.01 * lines.step[v] + s.rounding : 0;
-        rebuild_broad_phase(s);
+        rebuild_candidates(s);
         sweep(s, scratch, [&](int v, Vec3d& x) {
             if (!awake(s, lines, v))
                 return false;

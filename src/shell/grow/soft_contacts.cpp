@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/soft_contacts.h"
 
+#include "shell/grow/candidates.h"
+
 namespace vdb_shell::growth
 {
 namespace
 {
 
-// Wider ranges make a vertex give way to what it would never meet, and cost more.
-constexpr double kRange = 0.4;
 // A corner that meets a star's triangle far from b_v hardly restrains b_v.
 constexpr double kLeastWeight = 0.02;
 
@@ -130,7 +130,7 @@ void gather(const GrowState& s, int v, const Box& box, ContactScratch& scratch)
 void contact_bounds(const GrowState& s, int v, ContactScratch& scratch,
                     std::vector<HalfSpace>& bounds)
 {
-    const double range = kRange * s.reach[v];
+    const double range = kSoftRange * s.reach[v];
     Box box;
     for (const FaceCorner& at : star(*s.mesh, v))
         box.add(s.inner_box[at.face]);

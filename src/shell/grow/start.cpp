@@ -2,6 +2,7 @@
 #include "shell/grow/start.h"
 
 #include "core/parallel.h"
+#include "shell/grow/candidates.h"
 #include "shell/grow/move_tests.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ void place(GrowState& s, const Directions& directions, const std::vector<double>
 
 std::vector<std::uint8_t> violating_faces(GrowState& s)
 {
-    rebuild_broad_phase(s);
+    rebuild_candidates(s);
     std::vector<std::uint8_t> bad(s.mesh->faces.size(), 0);
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
@@ -125,7 +126,7 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
         place(s, directions, h);
         any = shrink_around(s, violating_faces(s), floor, h);
     }
-    rebuild_broad_phase(s);
+    rebuild_candidates(s);
 }
 
 } // namespace vdb_shell::growth

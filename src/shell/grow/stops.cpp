@@ -2,6 +2,7 @@
 #include "shell/grow/stops.h"
 
 #include "core/parallel.h"
+#include "shell/grow/candidates.h"
 #include "shell/grow/move_tests.h"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = kProbe * s.diagonal;
     s.reach.assign(s.b.size(), 1.01 * step + s.rounding);
-    rebuild_broad_phase(s);
+    rebuild_candidates(s);
     std::vector<StopReason> stop(s.b.size());
     for_each_index(stop.size(),
                    [&](std::size_t v) { stop[v] = reason_at(s, static_cast<int>(v), step); });

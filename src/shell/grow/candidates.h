@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Broad phase: which triangles an inner triangle may meet until the lists are made again.
+
+#include "shell/grow/grow_state.h"
+
+namespace vdb_shell::growth
+{
+
+/// How far from a vertex soft contacts look, as a share of its reach. Wider ranges make a vertex
+/// give way to what it would never meet, and cost more.
+constexpr double kSoftRange = 0.4;
+
+/// Makes boxes and candidate lists for the present positions, which become the homes. Left out are
+/// pairs that cannot come within each other's soft range while every vertex keeps to its reach.
+void rebuild_candidates(GrowState& s);
+
+} // namespace vdb_shell::growth
