@@ -53,6 +53,8 @@ class BoxTree
 {
 public:
     void build(std::vector<Box> boxes);
+    /// Same boxes, moved: the tree keeps its shape. Precondition: as many boxes as in build().
+    void refit(std::vector<Box> boxes);
 
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const Box& query, Visit&& visit) const
@@ -77,7 +79,7 @@ private:
     // The tree is split at medians, so its depth stays below 32.
     static constexpr int kStack = 64;
 
-    int split(int begin, int end);
+    void split(int id, int begin, int end);
 
     /// Calls visit(i) for every box i that is met, leaving out what lies under boxes that are not.
     template <class Meets, class Visit> void descend(const Meets& meets, Visit&& visit) const

@@ -25,7 +25,7 @@ Reachable reachable(const Corners& corner, const Vec3d& reach)
     return {corner, reach, normal, kSoftRange * std::max({reach[0], reach[1], reach[2]})};
 }
 
-Box box_of(const Reachable& t)
+Box reach_box(const Reachable& t)
 {
     Box box;
     for (int k = 0; k < 3; ++k) {
@@ -75,12 +75,15 @@ bool share_a_corner(const GrowState& s, int f, int g)
 
 } // namespace
 
-void rebuild_candidates(GrowState& s)
+namespace
+{
+
+/// Makes the homes and boxes, and gives back what each inner triangle can reach.
+std::vector<Reachable> take_stock(GrowState& s)
 {
     const std::size_t count = s.mesh->faces.size();
     s.home = s.b;
     std::vector<Reachable> inner(count);
-    std::vector<Box> fat(count);
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -89,23 +92,51 @@ void rebuild_candidates(GrowState& s)
             s.inner_box[f] = box_of(corners);
             const Vec3I& v = s.mesh->faces[f];
             inner[f] = reachable(corners, {s.reach[v[0]], s.reach[v[1]], s.reach[v[2]]});
-            fat[f] = box_of(inner[f]);
         },
         256);
-    BoxTree tree;
-    tree.build(fat);
-    for_each_index(count, [&](std::size_t i) {
-        const int f = static_cast<int>(i);
-        s.near_inner[f].clear();
-        s.near_outer[f].clear();
-        tree.for_each_overlap(fat[f], [&](int g) {
-            if (g != f && (share_a_corner(s, f, g) || !far_apart(inner[f], inner[g])))
-                s.near_inner[f].push_back(g);
-        });
-        s.outer_tree.for_each_overlap(fat[f], [&](int g) {
-            if (!far_apart(inner[f], reachable(outer_corners(s, g), Vec3d(0.0))))
-                s.near_outer[f].push_back(g);
-        });
+    return inner;
+}
+
+std::vector<Box> boxes_of(const std::vector<Reachable>& inner)
+{
+    std::vector<Box> boxes(inner.size());
+    for_each_index(
+        inner.size(), [&](std::size_t f) { boxes[f] = reach_box(inner[f]); }, 256);
+    return boxes;
+}
+
+void list_candidates(GrowState& s, const std::vector<Reachable>& inner, int f)
+{
+    const Box box = reach_box(inner[f]);
+    s.near_inner[f].clear();
+    s.near_outer[f].clear();
+    s.inner_tree.for_each_overlap(box, [&](int g) {
+        if (g != f && (share_a_corner(s, f, g) || !far_apart(inner[f], inner[g])))
+            s.near_inner[f].push_back(g);
+    });
+    s.outer_tree.for_each_overlap(box, [&](int g) {
+        if (!far_apart(inner[f], reachable(outer_corners(s, g), Vec3d(0.0))))
+            s.near_outer[f].push_back(g);
+    });
+}
+
+} // namespace
+
+void rebuild_candidates(GrowState& s)
+{
+    const std::vector<Reachable> inner = take_stock(s);
+    s.inner_tree.build(boxes_of(inner));
+    for_each_index(inner.size(),
+                   [&](std::size_t f) { list_candidates(s, inner, static_cast<int>(f)); });
+}
+
+void update_candidates(GrowState& s, const std::vector<std::uint8_t>& faces)
+{
+    const std::vector<Reachable> inner = take_stock(s);
+    s.inner_tree.refit(boxes_of(inner));
+    for_each_index(inner.size(), [&](std::size_t f) {
+        if (faces[f])
+            list_candidates(s, inner, static_cast<int>(f));
     });
 }
 

@@ -15,5 +15,7 @@ constexpr double kSoftRange = 0.4;
 /// Makes boxes and candidate lists for the present positions, which become the homes. Left out are
 /// pairs that cannot come within each other's soft range while every vertex keeps to its reach.
 void rebuild_candidates(GrowState& s);
+/// The same for the marked faces only, on the tree of the last rebuild_candidates.
+void update_candidates(GrowState& s, const std::vector<std::uint8_t>& faces);
 
 } // namespace vdb_shell::growth

@@ -36,7 +36,7 @@ struct GrowState {
     std::vector<Vec3d> home;
     std::vector<double> reach;
     std::vector<Box> inner_box, outer_box;
-    BoxTree outer_tree;
+    BoxTree inner_tree, outer_tree;
     std::vector<std::vector<int>> near_inner, near_outer;
 
     /// One vertex per component, to see a move that would swallow a whole other component.

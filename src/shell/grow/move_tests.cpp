@@ -170,17 +170,18 @@ bool prism_valid(const GrowState& s, int f)
     return !pins || !exact::collinear(Vec3s(b[0]), Vec3s(b[1]), Vec3s(b[2]));
 }
 
-bool inner_triangle_clear(const GrowState& s, int f)
+bool inner_triangle_clear(const GrowState& s, int f, std::vector<int>& touched)
 {
     const Corners c = inner_corners(s, f);
     const CornerIds id = inner_ids(s, f);
+    touched.clear();
     for (const int g : s.near_inner[f])
         if (improper_contact(c, id, inner_corners(s, g), inner_ids(s, g)))
-            return false;
+            touched.push_back(g);
+    bool clear = touched.empty();
     for (const int g : s.near_outer[f])
-        if (improper_contact(c, id, outer_corners(s, g), outer_ids(s, g)))
-            return false;
-    return true;
+        clear = clear && !improper_contact(c, id, outer_corners(s, g), outer_ids(s, g));
+    return clear;
 }
 
 void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out)

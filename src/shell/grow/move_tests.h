@@ -33,8 +33,9 @@ bool move_allowed(const GrowState& s, int v, const Vec3d& x);
 bool prism_valid(const GrowState& s, int f);
 /// Whether the chosen tets of face f were positive with this order.
 bool split_positive(const GrowState& s, int f, int order);
-/// Inner triangle f free of improper contact with every other triangle on its lists.
-bool inner_triangle_clear(const GrowState& s, int f);
+/// Whether inner triangle f is free of improper contact with every other triangle on its lists;
+/// the inner ones that it does touch go into `touched`.
+bool inner_triangle_clear(const GrowState& s, int f, std::vector<int>& touched);
 
 /// Appends the linear bounds that the tets around v put on b_v.
 void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out);

@@ -37,14 +37,21 @@ void place(GrowState& s, const Directions& directions, const std::vector<double>
     });
 }
 
-std::vector<std::uint8_t> violating_faces(GrowState& s)
+/// Looks at the marked faces, which are all that have changed, and marks those that violate.
+std::vector<std::uint8_t> violating_faces(const GrowState& s,
+                                          const std::vector<std::uint8_t>& changed)
 {
-    rebuild_candidates(s);
-    std::vector<std::uint8_t> bad(s.mesh->faces.size(), 0);
+    std::vector<std::uint8_t> bad(changed.size(), 0);
+    std::vector<std::vector<int>> touched(changed.size());
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
-        bad[f] = !prism_valid(s, f) || !inner_triangle_clear(s, f) || holds_component(s, f);
+        if (changed[f])
+            bad[f] = !inner_triangle_clear(s, f, touched[f]) || !prism_valid(s, f) ||
+                     holds_component(s, f);
     });
+    for (const std::vector<int>& faces : touched)
+        for (const int g : faces)
+            bad[g] = 1;
     return bad;
 }
 
@@ -60,23 +67,31 @@ double ray_hit(const Vec3d& p, const Vec3d& d, const Corners& c)
     return u < 0 || v < 0 || u + v > 1 || t <= 0 ? kInfinity : t;
 }
 
-/// One look at all vertices of violating prisms; false when there is nothing left to shrink.
-bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, double floor,
-                   std::vector<double>& h)
+/// Shrinks the pillars of violating prisms; marks the faces that this changes. False when there is
+/// nothing left to shrink.
+bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& h,
+                   std::vector<std::uint8_t>& changed)
 {
+    const double floor = 2 * s.rounding; // shorter pillars are lost in the rounding
     std::vector<std::uint8_t> touched(s.b.size(), 0);
     for (int f = 0; f < s.mesh->face_count(); ++f)
         for (int k = 0; bad[f] && k < 3; ++k)
             touched[s.mesh->corner(f, k)] = 1;
     bool any = false;
     for (int v = 0; v < s.mesh->vertices; ++v) {
-        if (!touched[v] || s.pinned[v])
+        touched[v] = touched[v] && !s.pinned[v];
+        if (!touched[v])
             continue;
         any = true;
         h[v] *= kShrink;
         if (h[v] < floor)
             s.pinned[v] = 1;
     }
+    // A witness that moves may come to lie in any prism of another component.
+    const bool all = s.mesh->components > 1;
+    for (int f = 0; f < s.mesh->face_count(); ++f)
+        changed[f] = all || touched[s.mesh->corner(f, 0)] || touched[s.mesh->corner(f, 1)] ||
+                     touched[s.mesh->corner(f, 2)];
     return any;
 }
 
@@ -112,19 +127,21 @@ std::vector<double> thin_heights(const GrowState& s)
 void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
                   const StageProgress& progress)
 {
-    const double floor = 2 * s.rounding; // shorter pillars are lost in the rounding
     for (int v = 0; v < s.mesh->vertices; ++v) {
         const bool stranded = star(*s.mesh, v).size() == 0;
         s.pinned[v] = stranded || directions.visibility[v] <= 0 || h[v] <= 0 || s.cap[v] <= 0;
         s.reach[v] = 0;
         h[v] = std::min(h[v], s.cap[v]);
     }
+    std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1);
+    place(s, directions, h);
+    rebuild_candidates(s);
     // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
     // crosses itself: with all its vertices pinned.
-    for (bool any = true; any;) {
+    while (shrink_around(s, violating_faces(s, changed), h, changed)) {
         progress.stop_if_interrupted(0);
         place(s, directions, h);
-        any = shrink_around(s, violating_faces(s), floor, h);
+        update_candidates(s, changed);
     }
     rebuild_candidates(s);
 }
