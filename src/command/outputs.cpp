@@ -2,6 +2,8 @@
 #include "command/outputs.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/write/tet_file.h"
 
@@ -18,7 +20,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-enum class Kind { vdb, tets, surface, picture, unknown };
+enum class Kind { vdb, houdini, tets, surface, picture, unknown };
 
 Kind kind_of(const fs::path& path)
 {
@@ -27,6 +29,8 @@ Kind kind_of(const fs::path& path)
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vdb")
         return Kind::vdb;
+    if (houdini::has_geometry_extension(path))
+        return Kind::houdini;
     if (extension == ".png")
         return Kind::picture;
     const std::vector<std::string>& tets = tet_file_extensions();
@@ -45,7 +49,8 @@ void add_output_options(CLI::App& app, Outputs& outputs)
     app.add_option(
            "-o,--output", outputs.paths,
            "File to write; give it once for each file wanted. By extension: .vdb (everything), "
-           ".vtu .node .ele .mesh .msh (tets), .obj .ply .off .stl (inner surface), .png "
+           ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .vtu .node .ele .mesh .msh "
+           "(tets), .obj .ply .off .stl (inner surface), .png "
            "(picture of a cross-section)")
         ->allow_extra_args(false)
         ->group("Output");
@@ -68,9 +73,10 @@ void require_possible(const Outputs& outputs, const std::vector<fs::path>& input
 {
     for (auto path = outputs.paths.begin(); path != outputs.paths.end(); ++path) {
         if (kind_of(*path) == Kind::unknown)
-            throw InvalidOption(
-                path->string() + ": unknown extension \"" + path->extension().string() +
-                "\"; known are .vdb .vtu .node .ele .mesh .msh .obj .ply .off .stl .png");
+            throw InvalidOption(path->string() + ": unknown extension \"" +
+                                path->extension().string() +
+                                "\"; known are .vdb .geo .bgeo .bgeo.sc .vtu .node .ele .mesh .msh "
+                                ".obj .ply .off .stl .png");
         if (std::find(outputs.paths.begin(), path, *path) != path)
             throw InvalidOption(path->string() + ": given twice as an output");
         for (const fs::path& input : inputs) {
@@ -94,6 +100,9 @@ void write_outputs(const Outputs& outputs, const ShellFile& file)
         switch (kind_of(path)) {
         case Kind::vdb:
             write_shell_vdb(path, file, outputs.vdb);
+            break;
+        case Kind::houdini:
+            houdini::write_shell_geometry(path, file);
             break;
         case Kind::tets:
             write_tets(path, file.tets);
