@@ -147,6 +147,16 @@ private:
         return {std::move(made)};
     }
 
+    Value texts(std::uint64_t count)
+    {
+        // Each has a length of one byte at least.
+        require_bytes(count, 1, "an array");
+        List made;
+        for (std::uint64_t i = 0; i < count; ++i)
+            made.push_back({text()});
+        return {std::move(made)};
+    }
+
     Value uniform()
     {
         const auto kind = static_cast<Kind>(number<std::uint8_t>());
@@ -172,6 +182,8 @@ private:
             return array<float, double>(count);
         case Kind::real64:
             return array<double, double>(count);
+        case Kind::text:
+            return texts(count);
         default:
             fail("an array of the unknown kind " + std::to_string(static_cast<int>(kind)));
         }

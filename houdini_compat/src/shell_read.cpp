@@ -196,6 +196,15 @@ void read_split(const Columns& primitives, const Counts& counts, ShellFile& file
             primitives.fail(kPrism, "of primitive " + std::to_string(i) + " is " +
                                         std::to_string(prism[i]) + " of " +
                                         std::to_string(counts.prisms));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint8_t expected_order =
+                file.split.order[static_cast<std::size_t>(prism[i])][k];
+            if (order[3 * i + k] != expected_order)
+                primitives.fail(kSplitOrder, "of primitive " + std::to_string(i) + " has " +
+                                                 std::to_string(order[3 * i + k]) +
+                                                 " where its prism has " +
+                                                 std::to_string(expected_order));
+        }
         if (tet)
             file.tets.prism.push_back(static_cast<std::uint32_t>(prism[i]));
     }

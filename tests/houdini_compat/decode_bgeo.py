@@ -74,6 +74,8 @@ class BinaryJson:
         if kind == 0x10:
             words = self.unpack("I", (count + 31) // 32)
             return [bool(words[i >> 5] >> (i & 31) & 1) for i in range(count)]
+        if kind == 0x27:
+            return [self.text() for _ in range(count)]
         return list(self.unpack(NUMBERS[kind], count))
 
     def value(self, kind):
@@ -156,17 +158,22 @@ def float32(value):
     return struct.unpack("<f", struct.pack("<f", value))[0]
 
 
+def numbers(values, storage):
+    convert = {"fpreal32": float32, "fpreal64": float}.get(storage, lambda whole: whole)
+    return [convert(value) for value in values]
+
+
 def column(values, elements):
     """One tuple an element, from any of the ways to store a numeric array."""
     values = pairs(values)
-    size, single = values["size"], values["storage"] == "fpreal32"
+    size, storage = values["size"], values["storage"]
     if "tuples" in values:
         rows = [tuple(row) for row in values["tuples"]]
     elif "arrays" in values:
         rows = list(zip(*values["arrays"]))
     else:
         rows = paged(values, size, elements)
-    return [tuple(float32(x) if single else x for x in row) for row in rows]
+    return [tuple(numbers(row, storage)) for row in rows]
 
 
 def paged(values, size, elements):
@@ -194,7 +201,10 @@ def plain_attribute(entry, elements):
         values = [data["strings"][i] if i >= 0 else "" for i in indices]
     else:
         values = column(data["values"], elements)
-    about = {key: data[key] for key in ("size", "storage", "defaults") if key in data}
+    about = {key: data[key] for key in ("size", "storage") if key in data}
+    if "defaults" in data:
+        defaults = pairs(data["defaults"])
+        about["defaults"] = numbers(defaults["values"], defaults["storage"])
     return head, about, values
 
 
@@ -214,7 +224,9 @@ def plain(document):
     parts = pairs(document)
     counts = {"vertexattributes": parts["vertexcount"], "pointattributes": parts["pointcount"],
               "primitiveattributes": parts["primitivecount"], "globalattributes": 1}
-    result = {key: parts[key] for key in ("fileversion", "pointcount", "vertexcount", "primitivecount", "info")}
+    result = {key: parts[key] for key in ("fileversion", "pointcount", "vertexcount", "primitivecount")}
+    result["info"] = {key: [float(x) for x in value] if key == "bounds" else value
+                      for key, value in parts["info"].items()}
     result["topology"] = list(pairs(pairs(parts["topology"])["pointref"])["indices"])
     for kind, entries in pairs(parts["attributes"]).items():
         result[kind] = [plain_attribute(entry, counts[kind]) for entry in entries]
