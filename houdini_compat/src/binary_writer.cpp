@@ -53,6 +53,10 @@ public:
     }
     void real(double value) override { tagged(Kind::real64, value); }
     void boolean(bool value) override { kind(value ? Kind::yes : Kind::no); }
+    void numbers(const std::int8_t* values, std::size_t count) override
+    {
+        array(Kind::int8, values, count);
+    }
     void numbers(const std::int32_t* values, std::size_t count) override
     {
         array(Kind::int32, values, count);

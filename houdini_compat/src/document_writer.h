@@ -27,6 +27,7 @@ public:
     virtual void real(double value) = 0;
     virtual void boolean(bool value) = 0;
     /// A list of numbers, in the form's most compact way.
+    virtual void numbers(const std::int8_t* values, std::size_t count) = 0;
     virtual void numbers(const std::int32_t* values, std::size_t count) = 0;
     virtual void numbers(const std::int64_t* values, std::size_t count) = 0;
     virtual void numbers(const float* values, std::size_t count) = 0;

@@ -129,7 +129,9 @@ ReadGeometry parse_geometry(const std::string& bytes, const std::string& name)
     const Value tree = read_document(name, bytes, result.format, size);
     const Where where{name, {}};
     const Fields document(tree, where);
-    text_of(document.at("fileversion"), where, "fileversion");
+    // Some programs leave it out.
+    if (const Value* version = document.find("fileversion"))
+        text_of(*version, where, "fileversion");
     // An element takes a byte at least.
     HoudiniGeometry& geometry = result.geometry;
     geometry.points = count_of(document.at("pointcount"), where, "pointcount", size);

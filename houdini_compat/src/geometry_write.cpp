@@ -257,6 +257,7 @@ void write_primitives(DocumentWriter& out, const HoudiniGeometry& geometry)
     out.close_list();
 }
 
+/// A byte per element: Houdini's other way, of run lengths, is not read by all readers.
 void write_group(DocumentWriter& out, const Group& group)
 {
     out.new_line();
@@ -269,15 +270,9 @@ void write_group(DocumentWriter& out, const Group& group)
     out.open_list();
     out.text("unordered");
     out.open_list();
-    out.text("boolRLE");
-    out.open_list();
-    for (std::size_t begin = 0, end = 0; begin < group.members.size(); begin = end) {
-        for (end = begin; end < group.members.size() && group.members[end] == group.members[begin];)
-            ++end;
-        out.integer(static_cast<std::int64_t>(end - begin));
-        out.boolean(group.members[begin]);
-    }
-    out.close_list();
+    out.text("i8");
+    const std::vector<std::int8_t> members(group.members.begin(), group.members.end());
+    out.numbers(members.data(), members.size());
     out.close_list();
     out.close_list();
     out.close_list();

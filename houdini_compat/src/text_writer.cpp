@@ -46,6 +46,7 @@ public:
         buffer_ += value ? "true" : "false";
         after_value();
     }
+    void numbers(const std::int8_t* values, std::size_t count) override { list(values, count); }
     void numbers(const std::int32_t* values, std::size_t count) override { list(values, count); }
     void numbers(const std::int64_t* values, std::size_t count) override { list(values, count); }
     void numbers(const float* values, std::size_t count) override { list(values, count); }

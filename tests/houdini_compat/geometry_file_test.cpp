@@ -96,7 +96,7 @@ TEST(GeometryFile, TextIsTheDocumentThatHoudiniWrites)
         [["type","Polygon_run"],["startvertex",4,"nprimitives",2,"nvertices_rle",[3,1,4,1]]]])"));
     EXPECT_EQ(document["primitivegroups"][1],
               nlohmann::json::parse(
-                  R"([["name","tet"],["selection",["unordered",["boolRLE",[1,true,2,false]]]]])"));
+                  R"([["name","tet"],["selection",["unordered",["i8",[1,0,0]]]]])"));
     const auto& p = document["attributes"][3][0];
     EXPECT_EQ(p[0], nlohmann::json::parse(R"(["scope","public","type","numeric","name","P",
         "options",{"type":{"type":"string","value":"point"}}])"));
