@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace vdb_shell::houdini
 {
@@ -256,6 +257,7 @@ std::vector<Attribute> read_attributes(const Value& value, std::size_t elements,
                                        std::vector<std::string>& unread)
 {
     std::vector<Attribute> attributes;
+    std::set<std::string> seen;
     if (is_empty(value))
         return attributes;
     for (const Value& entry : list_of(value, where, kind)) {
@@ -273,7 +275,7 @@ std::vector<Attribute> read_attributes(const Value& value, std::size_t elements,
             unread.push_back(title + " of type " + vdb_shell::quoted(type));
             continue;
         }
-        if (find(attributes, attribute.name))
+        if (!seen.insert(attribute.name).second)
             inside.fail("it is there twice");
         const Fields data(parts[1], inside);
         const std::size_t size = count_of(data.at("size"), inside, "size", kMostSize);
@@ -284,6 +286,7 @@ std::vector<Attribute> read_attributes(const Value& value, std::size_t elements,
         }
         attribute.size = static_cast<int>(size);
         attribute.meaning = meaning_of(head, inside);
+        budget.spend(attribute.meaning.size(), inside);
         const Shape shape{elements, size};
         if (type == "numeric")
             attribute.values = read_numeric(data, shape, inside, budget);

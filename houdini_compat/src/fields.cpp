@@ -36,6 +36,10 @@ Fields::Fields(const Value& value, const Where& where) : where_(where)
                    " where keys and values in turn are needed");
     for (std::size_t i = 0; i < items->size(); i += 2) {
         const std::string& key = text_of((*items)[i], where, "a key");
+        // Two bytes can stand for a long key again and again.
+        if (key.size() > kLongestKey)
+            where.fail("a key of " + std::to_string(key.size()) + " bytes, at most " +
+                       std::to_string(kLongestKey) + " are read");
         if (!by_key_.emplace(key, &(*items)[i + 1]).second)
             where.fail(vdb_shell::quoted(key) + " is there twice");
         keys_.push_back(&key);

@@ -34,7 +34,8 @@ private:
 class Fields
 {
 public:
-    /// Throws when `value` is no such thing or has a key twice.
+    static constexpr std::size_t kLongestKey = 1024;
+    /// Throws when `value` is no such thing, has a key twice or one that is longer than any.
     Fields(const Value& value, const Where& where);
     const Value* find(const char* key) const; ///< null when it is not there
     const Value& at(const char* key) const;

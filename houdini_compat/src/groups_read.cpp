@@ -3,6 +3,8 @@
 
 #include "mesh/scan_text.h"
 
+#include <set>
+
 namespace vdb_shell::houdini
 {
 namespace
@@ -43,6 +45,7 @@ std::vector<Group> read_groups(const Value& value, std::size_t elements, const W
                                const char* kind, Budget& budget, std::vector<std::string>& unread)
 {
     std::vector<Group> groups;
+    std::set<std::string> seen;
     if (is_empty(value))
         return groups;
     constexpr unsigned kBitsPerByte = 8;
@@ -63,7 +66,7 @@ std::vector<Group> read_groups(const Value& value, std::size_t elements, const W
             unread.push_back(title + ", which is ordered");
             continue;
         }
-        if (find(groups, group.name))
+        if (!seen.insert(group.name).second)
             inside.fail("it is there twice");
         budget.spend(elements / kBitsPerByte, inside);
         const Fields stored(*unordered, inside);

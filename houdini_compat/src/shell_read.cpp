@@ -40,10 +40,14 @@ public:
     {
         return get<std::vector<std::int32_t>>(attribute, size);
     }
-    Vec3s vector(const char* attribute, std::size_t element) const
+    std::vector<Vec3s> vectors(const char* attribute) const
     {
         const auto& values = get<std::vector<float>>(attribute, 3);
-        return {values[3 * element], values[3 * element + 1], values[3 * element + 2]};
+        std::vector<Vec3s> made;
+        made.reserve(values.size() / 3);
+        for (std::size_t i = 0; i < values.size(); i += 3)
+            made.emplace_back(values[i], values[i + 1], values[i + 2]);
+        return made;
     }
     const std::string& text(const char* attribute) const
     {
@@ -120,10 +124,11 @@ std::vector<std::uint32_t> read_pillars(const HoudiniGeometry& geometry, const C
                                         std::size_t vertices, PrismShell& shell)
 {
     const auto& source = points.integers(kSourceVertex);
-    for (std::size_t v = 0; v < vertices; ++v) {
-        shell.outer.push_back(points.vector("P", v));
-        shell.inner.push_back(points.vector(kOpposite, v));
-    }
+    const std::vector<Vec3s> position = points.vectors("P");
+    const auto end = static_cast<std::ptrdiff_t>(vertices);
+    shell.outer.assign(position.begin(), position.begin() + end);
+    shell.inner = points.vectors(kOpposite);
+    shell.inner.resize(vertices);
     shell.stop = read_stops(points, vertices);
     std::vector<std::uint32_t> below;
     for (std::uint32_t v = 0; v < vertices; ++v)
@@ -137,7 +142,7 @@ std::vector<std::uint32_t> read_pillars(const HoudiniGeometry& geometry, const C
         if (i < vertices)
             continue;
         if (below[vertex] != vertex || shell.pinned(vertex) ||
-            !same_bits(points.vector("P", i), shell.inner[vertex]))
+            !same_bits(position[i], shell.inner[vertex]))
             points.fail("P", "of point " + std::to_string(i) +
                                  " is not the one lower end of the pillar at vertex " +
                                  std::to_string(vertex));
@@ -215,6 +220,7 @@ void read_tets(const HoudiniGeometry& geometry, const Columns& points, const Cou
                TetMesh& tets)
 {
     const auto& source = points.integers(kSourceVertex);
+    const std::vector<Vec3s> position = points.vectors("P");
     std::vector<std::uint32_t> number(geometry.points, 0);
     for (std::size_t k = 0; k < 4 * counts.tets; ++k)
         number[geometry.vertex_point[k]] = 1;
@@ -222,7 +228,7 @@ void read_tets(const HoudiniGeometry& geometry, const Columns& points, const Cou
         if (number[i] == 0)
             continue;
         number[i] = static_cast<std::uint32_t>(tets.points.size());
-        tets.points.push_back(points.vector("P", i));
+        tets.points.push_back(position[i]);
         tets.source_vertex.push_back(static_cast<std::uint32_t>(source[i]));
         tets.layer.push_back(i < counts.vertices ? 0 : 1);
     }

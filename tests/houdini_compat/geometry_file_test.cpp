@@ -94,9 +94,9 @@ TEST(GeometryFile, TextIsTheDocumentThatHoudiniWrites)
     EXPECT_EQ(document["primitives"], nlohmann::json::parse(R"([
         [["type","Tetrahedron_run"],["startvertex",0,"nprimitives",1]],
         [["type","Polygon_run"],["startvertex",4,"nprimitives",2,"nvertices_rle",[3,1,4,1]]]])"));
-    EXPECT_EQ(document["primitivegroups"][1],
-              nlohmann::json::parse(
-                  R"([["name","tet"],["selection",["unordered",["i8",[1,0,0]]]]])"));
+    EXPECT_EQ(
+        document["primitivegroups"][1],
+        nlohmann::json::parse(R"([["name","tet"],["selection",["unordered",["i8",[1,0,0]]]]])"));
     const auto& p = document["attributes"][3][0];
     EXPECT_EQ(p[0], nlohmann::json::parse(R"(["scope","public","type","numeric","name","P",
         "options",{"type":{"type":"string","value":"point"}}])"));
@@ -322,6 +322,27 @@ TEST(GeometryFile, WhatIsSpeltOutIsBoundByTheFilesSize)
                  }() +
                  "],\"rawpagedata\",[1]]]]";
     expect_refusal(pages + "]]]", {"point attribute \"a0\"", "bytes to spell out"});
+}
+
+TEST(GeometryFile, LongTokensAreNotCopiedWithoutLimit)
+{
+    // The same text of 100,000 bytes as the meaning of 100 attributes: 10 MB of a file of some 100
+    // kB.
+    std::string body = "'\x0apointcount\x11\x00'\x0bvertexcount\x11\x00'\x0eprimitivecount\x11\x00"
+                       "'\x08topology['\x08pointref['\x07indices[]]]'\x0aprimitives[]"
+                       "+\x01\xf4\xa0\x86\x01\x00"s +
+                       std::string(100000, 'x') +
+                       "'\x0a"
+                       "attributes['\x0fpointattributes["s;
+    for (char i = 0; i < 100; ++i)
+        body += "[['\x04type'\x07numeric'\x04name'\x02"s + static_cast<char>('a' + i / 10) +
+                static_cast<char>('a' + i % 10) +
+                "'\x07options{'\x04type{'\x05value&\x01}}]['\x04size\x11\x01'\x07storage'\x05int32"
+                "'\x06values['\x04size\x11\x01'\x06"
+                "arrays[]]]]"s;
+    expect_refusal(binary(body + "]]"), {"point attribute \"", "bytes to spell out"});
+    expect_refusal(binary("'\xf2\xd0\x07"s + std::string(2000, 'k') + "\x11\x01"),
+                   {"a key of 2000 bytes"});
 }
 
 TEST(GeometryFile, DamagedContainersAreRefused)
