@@ -259,6 +259,8 @@ TEST_F(Command, RefusesBadInputAndLeavesTheOutputAlone)
     expect_refusal("build " + sphere + " -o " + file("no_folder/out.vdb"), ExitCode::write_error,
                    {"no_folder"});
     expect_refusal("build " + sphere + " -o " + sphere, ExitCode::usage_error, {"input"});
+    expect_refusal("build " + sphere + " --metres-per-unit 0 -o " + file("out.usda"),
+                   ExitCode::usage_error, {"--metres-per-unit"});
     expect_refusal("check " + sphere, ExitCode::read_error, {"sphere.obj"});
     expect_refusal("", ExitCode::usage_error, {});
     expect_refusal("build", ExitCode::usage_error, {"mesh"});
