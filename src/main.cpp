@@ -34,11 +34,11 @@ int run(int argc, char** argv)
     BuildArguments build;
     FileArguments info, convert, check;
     CLI::App& build_app = *app.add_subcommand("build", "Build a shell from a triangle surface");
-    CLI::App& info_app = *app.add_subcommand("info", "Print what a shell's .vdb holds");
+    CLI::App& info_app = *app.add_subcommand("info", "Print what a shell's file holds");
     CLI::App& convert_app =
-        *app.add_subcommand("convert", "Write other formats from a shell's .vdb");
+        *app.add_subcommand("convert", "Write other formats from a shell's file");
     CLI::App& check_app =
-        *app.add_subcommand("check", "Verify that a shell's .vdb is what it claims");
+        *app.add_subcommand("check", "Verify that a shell's file is what it claims");
     add_build_command(build_app, build);
     add_info_command(info_app, info);
     add_convert_command(convert_app, convert);

@@ -2,6 +2,7 @@
 #include "command/build_command.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/polygon_mesh.h"
 
 #include "command/bind.h"
 #include "command/exit_code.h"
@@ -141,6 +142,13 @@ void add_shell_options(CLI::App& app, ShellOptions& shell)
         ->group("Tets");
 }
 
+ReadResult read_surface(const BuildArguments& arguments)
+{
+    return houdini::has_geometry_extension(arguments.mesh)
+               ? houdini::read_polygon_mesh(arguments.mesh, arguments.read)
+               : read_mesh(arguments.mesh, arguments.read);
+}
+
 openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
 {
     if (name.empty())
@@ -181,7 +189,8 @@ void require_sensible(const BuildArguments& arguments)
 
 void add_build_command(CLI::App& app, BuildArguments& arguments)
 {
-    app.add_option("mesh", arguments.mesh, "Triangle surface: .obj .ply .off .stl")->required();
+    app.add_option("mesh", arguments.mesh, "Surface: .obj .ply .off .stl .geo .bgeo .bgeo.sc")
+        ->required();
     add_output_options(app, arguments.outputs);
     app.add_option("--report", arguments.report, "Write all figures as JSON")->group("Output");
     app.add_flag("-q,--quiet", arguments.quiet, "Print no figures")->group("Output");
@@ -201,7 +210,7 @@ int run_build(const BuildArguments& arguments)
     std::vector<StageCost> read_cost, write_cost;
 
     ReadResult read;
-    StageClock(read_cost).run("read", [&] { read = read_mesh(arguments.mesh, arguments.read); });
+    StageClock(read_cost).run("read", [&] { read = read_surface(arguments); });
     const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
     ShellResult result = build_shell(read.mesh, arguments.shell, arguments.mesh.filename().string(),
                                      thickness.get(), &interrupter);

@@ -2,6 +2,8 @@
 #include "command/file_commands.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/write/verify_file.h"
 
 #include "command/bind.h"
@@ -19,7 +21,15 @@ namespace
 
 void add_file(CLI::App& app, FileArguments& arguments)
 {
-    app.add_option("file", arguments.file, "A .vdb that vdb_shell wrote")->required();
+    app.add_option("file", arguments.file, "A .vdb, .geo, .bgeo or .bgeo.sc that vdb_shell wrote")
+        ->required();
+}
+
+/// The grids are null when the file has none.
+ShellFile read_shell(const std::filesystem::path& path)
+{
+    return houdini::has_geometry_extension(path) ? houdini::read_shell_geometry(path)
+                                                 : read_shell_vdb(path);
 }
 
 void print_grid(const openvdb::FloatGrid& grid)
@@ -52,7 +62,7 @@ void add_check_command(CLI::App& app, FileArguments& arguments)
 
 int run_info(const FileArguments& arguments)
 {
-    const ShellFile file = read_shell_vdb(arguments.file);
+    const ShellFile file = read_shell(arguments.file);
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["parameters"] = nlohmann::ordered_json::parse(file.parameters_json);
@@ -64,8 +74,9 @@ int run_info(const FileArguments& arguments)
               << file.shell.outer.size() << " surface vertices, " << file.shell.triangles.size()
               << " prisms, " << file.tets.points.size() << " points, " << file.tets.tets.size()
               << " tets\n";
-    print_grid(*file.surface);
-    print_grid(*file.depth);
+    for (const openvdb::FloatGrid::Ptr& grid : {file.surface, file.depth})
+        if (grid)
+            print_grid(*grid);
     std::cout << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
     return success;
 }
@@ -73,7 +84,7 @@ int run_info(const FileArguments& arguments)
 int run_convert(const FileArguments& arguments)
 {
     require_possible(arguments.outputs, {arguments.file});
-    write_outputs(arguments.outputs, read_shell_vdb(arguments.file));
+    write_outputs(arguments.outputs, read_shell(arguments.file));
     return success;
 }
 
@@ -81,7 +92,7 @@ int run_check(const FileArguments& arguments)
 {
     SignalInterrupter interrupter(false);
     bool all_hold = true;
-    for (const Verification& entry : verify_shell(read_shell_vdb(arguments.file), &interrupter)) {
+    for (const Verification& entry : verify_shell(read_shell(arguments.file), &interrupter)) {
         std::cout << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": " << entry.detail
                   << '\n';
         all_hold = all_hold && entry.holds;

@@ -2,6 +2,8 @@
 #include "command/outputs.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/write/tet_file.h"
 
@@ -11,6 +13,18 @@
 #include <algorithm>
 #include <cctype>
 
+namespace vdb_shell
+{
+
+/// Beside the tables of core/option_names.h, which knows no formats of other programs.
+static const NameTable<UpAxis>& names(UpAxis)
+{
+    static const NameTable<UpAxis> table{{"y", UpAxis::y}, {"z", UpAxis::z}};
+    return table;
+}
+
+} // namespace vdb_shell
+
 namespace vdb_shell::command
 {
 namespace
@@ -18,7 +32,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-enum class Kind { vdb, tets, surface, picture, unknown };
+enum class Kind { vdb, houdini, tets, surface, picture, usd, unknown };
 
 Kind kind_of(const fs::path& path)
 {
@@ -27,8 +41,12 @@ Kind kind_of(const fs::path& path)
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vdb")
         return Kind::vdb;
+    if (houdini::has_geometry_extension(path))
+        return Kind::houdini;
     if (extension == ".png")
         return Kind::picture;
+    if (extension == ".usda")
+        return Kind::usd;
     const std::vector<std::string>& tets = tet_file_extensions();
     if (std::find(tets.begin(), tets.end(), extension) != tets.end())
         return Kind::tets;
@@ -38,6 +56,15 @@ Kind kind_of(const fs::path& path)
     return Kind::unknown;
 }
 
+/// The file whose grids a stage shows.
+fs::path first_vdb(const Outputs& outputs)
+{
+    for (const fs::path& path : outputs.paths)
+        if (kind_of(path) == Kind::vdb)
+            return path;
+    return {};
+}
+
 } // namespace
 
 void add_output_options(CLI::App& app, Outputs& outputs)
@@ -45,12 +72,23 @@ void add_output_options(CLI::App& app, Outputs& outputs)
     app.add_option(
            "-o,--output", outputs.paths,
            "File to write; give it once for each file wanted. By extension: .vdb (everything), "
-           ".vtu .node .ele .mesh .msh (tets), .obj .ply .off .stl (inner surface), .png "
-           "(picture of a cross-section)")
+           ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .usda (surface, tets, and the "
+           "volumes of the .vdb written with it), .vtu .node .ele .mesh .msh (tets), .obj .ply "
+           ".off "
+           ".stl (inner surface), .png (picture of a cross-section)")
         ->allow_extra_args(false)
         ->group("Output");
     bind_enum(app, "--points", outputs.vdb.points,
               "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb")
+        ->group("Output");
+    app.add_flag("--half", outputs.vdb.half,
+                 "Save a .vdb's volumes with half floats; its points stay exact")
+        ->group("Output");
+    bind_enum(app, "--up-axis", outputs.usd.up_axis, "What a .usda says is up")->group("Output");
+    app.add_option("--metres-per-unit,--meters-per-unit", outputs.usd.meters_per_unit,
+                   "What a .usda says a world unit is")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber)
         ->group("Output");
     bind_enum(app, "--section-axis", outputs.picture.axis, "Normal of the picture's cutting plane")
         ->group("Output");
@@ -68,9 +106,10 @@ void require_possible(const Outputs& outputs, const std::vector<fs::path>& input
 {
     for (auto path = outputs.paths.begin(); path != outputs.paths.end(); ++path) {
         if (kind_of(*path) == Kind::unknown)
-            throw InvalidOption(
-                path->string() + ": unknown extension \"" + path->extension().string() +
-                "\"; known are .vdb .vtu .node .ele .mesh .msh .obj .ply .off .stl .png");
+            throw InvalidOption(path->string() + ": unknown extension \"" +
+                                path->extension().string() +
+                                "\"; known are .vdb .geo .bgeo .bgeo.sc .usda .vtu .node .ele "
+                                ".mesh .msh .obj .ply .off .stl .png");
         if (std::find(outputs.paths.begin(), path, *path) != path)
             throw InvalidOption(path->string() + ": given twice as an output");
         for (const fs::path& input : inputs) {
@@ -95,6 +134,9 @@ void write_outputs(const Outputs& outputs, const ShellFile& file)
         case Kind::vdb:
             write_shell_vdb(path, file, outputs.vdb);
             break;
+        case Kind::houdini:
+            houdini::write_shell_geometry(path, file);
+            break;
         case Kind::tets:
             write_tets(path, file.tets);
             break;
@@ -103,6 +145,9 @@ void write_outputs(const Outputs& outputs, const ShellFile& file)
             break;
         case Kind::picture:
             write_cross_section(path, file.shell, file.tets, outputs.picture);
+            break;
+        case Kind::usd:
+            write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd);
             break;
         case Kind::unknown:
             break; // refused by require_possible

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/houdini/usd_file.h"
 #include "vdb_shell/write/cross_section.h"
 #include "vdb_shell/write/vdb_file.h"
 
@@ -20,6 +21,7 @@ struct Outputs {
     std::vector<std::filesystem::path> paths;
     VdbWriteOptions vdb;
     CrossSectionOptions picture;
+    UsdOptions usd;
 };
 
 /// Binds -o and the options of single formats.
@@ -32,7 +34,8 @@ void require_possible(const Outputs& outputs, const std::vector<std::filesystem:
 /// True when some output needs the grids of the file.
 bool wants_vdb(const Outputs& outputs);
 
-/// Writes every output. `file.surface` and `file.depth` may be null unless wants_vdb().
+/// Writes every output; a .usda refers to the first .vdb among them. `file.surface` and
+/// `file.depth` may be null unless wants_vdb().
 void write_outputs(const Outputs& outputs, const ShellFile& file);
 
 } // namespace vdb_shell::command

@@ -121,24 +121,6 @@ private:
     PointDataGrid::Ptr grid_;
 };
 
-/// Unit normals of a layer, each the sum of its triangles' area vectors; zero where they cancel.
-std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
-                                 const std::vector<Vec3I>& triangles)
-{
-    std::vector<Vec3d> sum(points.size(), Vec3d(0.0));
-    for (const Vec3I& t : triangles) {
-        const Vec3d a(points[t[0]]), b(points[t[1]]), c(points[t[2]]);
-        const Vec3d area = (b - a).cross(c - a);
-        for (int corner = 0; corner < 3; ++corner)
-            sum[t[corner]] += area;
-    }
-    std::vector<Vec3s> normals(points.size(), Vec3s(0.0f));
-    for (std::size_t i = 0; i < sum.size(); ++i)
-        if (sum[i].normalize(0.0))
-            normals[i] = Vec3s(sum[i]);
-    return normals;
-}
-
 template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
 {
     Vec3d sum(0.0);
@@ -215,6 +197,23 @@ PointDataGrid::Ptr make_tet_points(const TetMesh& tets, const ShellPoints& point
 }
 
 } // namespace
+
+std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
+                                 const std::vector<Vec3I>& triangles)
+{
+    std::vector<Vec3d> sum(points.size(), Vec3d(0.0));
+    for (const Vec3I& t : triangles) {
+        const Vec3d a(points[t[0]]), b(points[t[1]]), c(points[t[2]]);
+        const Vec3d area = (b - a).cross(c - a);
+        for (int corner = 0; corner < 3; ++corner)
+            sum[t[corner]] += area;
+    }
+    std::vector<Vec3s> normals(points.size(), Vec3s(0.0f));
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        if (sum[i].normalize(0.0))
+            normals[i] = Vec3s(sum[i]);
+    return normals;
+}
 
 ShellPoints number_points(const PrismShell& shell, const TetMesh& tets)
 {

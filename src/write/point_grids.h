@@ -36,6 +36,10 @@ struct ShellPoints {
 /// Precondition: require_consistent.
 ShellPoints number_points(const PrismShell& shell, const TetMesh& tets);
 
+/// Unit normals of a layer, each the sum of its triangles' area vectors; zero where they cancel.
+std::vector<openvdb::Vec3s> layer_normals(const std::vector<openvdb::Vec3s>& points,
+                                          const std::vector<openvdb::Vec3I>& triangles);
+
 /// The shell as three grids of points; the order of points inside a grid means nothing, ids are
 /// explicit. Precondition: require_consistent.
 struct PointGrids {

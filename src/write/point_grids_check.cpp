@@ -17,7 +17,7 @@ using openvdb::Vec3s;
 
 [[noreturn]] void refuse(const std::string& what)
 {
-    throw InvalidOption("the shell cannot be written as .vdb: " + what);
+    throw InvalidOption("the shell cannot be written: " + what);
 }
 
 void require(bool holds, const char* what, std::size_t index)

@@ -11,6 +11,9 @@
 #include <openvdb/io/File.h>
 #include <openvdb/points/PointDataGrid.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace vdb_shell
 {
 namespace
@@ -23,8 +26,21 @@ using openvdb::GridBase;
 constexpr const char* kSurfaceGrid = "surface";
 constexpr const char* kDepthGrid = "depth";
 
+/// Beyond their range half floats become infinite, without a word.
+void require_half_range(const FloatGrid& grid)
+{
+    constexpr double kLargestHalf = 65504.0;
+    double largest = std::abs(double(grid.background()));
+    for (auto value = grid.cbeginValueAll(); value; ++value)
+        largest = std::max(largest, std::abs(double(*value)));
+    if (largest > kLargestHalf)
+        throw InvalidOption("grid \"" + grid.getName() + "\" has a value of magnitude " +
+                            std::to_string(largest) +
+                            "; half floats end at 65504, write it without --half");
+}
+
 /// Shares the voxels, so that name and metadata can be set without touching the caller's grid.
-FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name)
+FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, bool half)
 {
     if (!grid)
         throw InvalidOption(std::string("the shell cannot be written as .vdb: grid \"") + name +
@@ -32,8 +48,9 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name)
     FloatGrid::Ptr copy = openvdb::ConstPtrCast<FloatGrid>(grid)->copy();
     copy->setName(name);
     copy->setCreator(creator_name());
-    // Half floats would not read back bit for bit.
-    copy->setSaveFloatAsHalf(false);
+    copy->setSaveFloatAsHalf(half);
+    if (half)
+        require_half_range(*copy);
     return copy;
 }
 
@@ -128,8 +145,8 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     require_consistent(file.shell, file.split, file.tets);
     const bool beside = options.points == PointPlacement::beside;
     const openvdb::MetaMap metadata = shell_metadata(path, file, options.points);
-    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid),
-                                named_copy(file.depth, kDepthGrid)};
+    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, options.half),
+                                named_copy(file.depth, kDepthGrid, options.half)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
     const PointGrids made = make_point_grids(file.shell, file.split, file.tets);
     const openvdb::GridPtrVec points{made.points, made.prisms, made.tets};

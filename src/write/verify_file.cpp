@@ -146,25 +146,33 @@ Verification verify_level_set(const ShellFile& file, const json& report)
                 (level_set ? "" : "; its class is not level set")};
 }
 
+Verification verify_depth(const ShellFile& file, Interrupter* interrupter)
+{
+    const openvdb::FloatGrid::Ptr depth =
+        shell_depth_grid(file.tets, file.surface->voxelSize()[0], interrupter);
+    return {"depth grid is that of the tets",
+            depth->tree().hasSameTopology(file.depth->tree()) &&
+                depth->activeVoxelCount() == file.depth->activeVoxelCount(),
+            std::to_string(file.depth->activeVoxelCount()) + " active voxels, " +
+                std::to_string(depth->activeVoxelCount()) + " expected"};
+}
+
 } // namespace
 
 std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter)
 {
     const json report = json::parse(file.report_json, nullptr, false);
-    const openvdb::FloatGrid::Ptr depth =
-        shell_depth_grid(file.tets, file.surface->voxelSize()[0], interrupter);
-    return {verify_surface(file, report),
-            verify_tets(file),
-            verify_conformity(file),
-            verify_signs(file, report),
-            verify_certificate(file, report, interrupter),
-            verify_volume(file, report),
-            verify_level_set(file, report),
-            {"depth grid is that of the tets",
-             depth->tree().hasSameTopology(file.depth->tree()) &&
-                 depth->activeVoxelCount() == file.depth->activeVoxelCount(),
-             std::to_string(file.depth->activeVoxelCount()) + " active voxels, " +
-                 std::to_string(depth->activeVoxelCount()) + " expected"}};
+    std::vector<Verification> found{verify_surface(file, report),
+                                    verify_tets(file),
+                                    verify_conformity(file),
+                                    verify_signs(file, report),
+                                    verify_certificate(file, report, interrupter),
+                                    verify_volume(file, report)};
+    if (file.surface && file.depth) {
+        found.push_back(verify_level_set(file, report));
+        found.push_back(verify_depth(file, interrupter));
+    }
+    return found;
 }
 
 } // namespace vdb_shell

@@ -83,6 +83,54 @@ TEST_F(Command, BuildsEveryFormatAndTheFigures)
     EXPECT_FALSE(result.out.empty());
 }
 
+TEST_F(Command, WritesAndReadsHoudiniGeometry)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));
+    const std::vector<std::string> names{"s.geo", "s.bgeo", "s.bgeo.sc"};
+    std::string outputs = " -o " + file("s.vdb");
+    for (const std::string& name : names)
+        outputs += " -o " + file(name);
+    ASSERT_EQ(run("build " + sphere + kCoarse + outputs).status, ExitCode::success);
+    for (const std::string& name : names) {
+        const Outcome check = run("check " + file(name));
+        EXPECT_EQ(check.status, ExitCode::success) << check.out << check.err;
+        EXPECT_EQ(run("info " + file(name)).status, ExitCode::success);
+        // From any form to any other, and from the .vdb, the bytes are the same.
+        for (const std::string& from : {std::string("s.geo"), std::string("s.vdb")}) {
+            ASSERT_EQ(run("convert " + file(from) + " -o " + file("again." + name)).status,
+                      ExitCode::success);
+            EXPECT_EQ(read_bytes(folder / ("again." + name)), read_bytes(folder / name)) << name;
+        }
+    }
+    expect_refusal("build " + file("s.bgeo"), ExitCode::read_error,
+                   {"s.bgeo", "primitive 0 is a tetrahedron"});
+    expect_refusal("convert " + file("s.bgeo") + " -o " + file("t.vdb"), ExitCode::usage_error,
+                   {"\"surface\" is missing"});
+    std::string damaged = read_bytes(folder / "s.bgeo");
+    damaged.resize(damaged.size() / 2);
+    write_bytes(folder / "half.bgeo", damaged);
+    expect_refusal("check " + file("half.bgeo"), ExitCode::read_error, {"half.bgeo", "byte"});
+}
+
+TEST_F(Command, BuildsFromHoudiniPolygons)
+{
+    // A box of quads, clockwise seen from outside.
+    write_bytes(
+        folder / "box.geo",
+        R"(["pointcount",8,"vertexcount",24,"primitivecount",6,"topology",["pointref",["indices",
+                [0,1,2,3,7,6,5,4,0,4,5,1,1,5,6,2,2,6,7,3,3,7,4,0]]],"attributes",["pointattributes",[[
+                ["type","numeric","name","P"],["size",3,"storage","fpreal32","values",["size",3,"tuples",
+                [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1]]]]]]],
+                "primitives",[[["type","Polygon_run"],["startvertex",0,"nprimitives",6,"nvertices_rle",[4,6]]]]])");
+    const Outcome built =
+        run("build " + file("box.geo") + kCoarse + " -q --report " + file("box.json"));
+    ASSERT_EQ(built.status, ExitCode::success) << built.err;
+    const auto report = nlohmann::json::parse(read_bytes(folder / "box.json"));
+    EXPECT_EQ(report.at("read").at("format"), "Houdini geometry (text)");
+    EXPECT_EQ(report.at("read").at("polygons_triangulated"), 6);
+    EXPECT_EQ(report.at("mesh").at("volume"), 1.0);
+}
+
 TEST_F(Command, TakesOptionsBeforeTheMesh)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
@@ -211,6 +259,8 @@ TEST_F(Command, RefusesBadInputAndLeavesTheOutputAlone)
     expect_refusal("build " + sphere + " -o " + file("no_folder/out.vdb"), ExitCode::write_error,
                    {"no_folder"});
     expect_refusal("build " + sphere + " -o " + sphere, ExitCode::usage_error, {"input"});
+    expect_refusal("build " + sphere + " --metres-per-unit 0 -o " + file("out.usda"),
+                   ExitCode::usage_error, {"--metres-per-unit"});
     expect_refusal("check " + sphere, ExitCode::read_error, {"sphere.obj"});
     expect_refusal("", ExitCode::usage_error, {});
     expect_refusal("build", ExitCode::usage_error, {"mesh"});

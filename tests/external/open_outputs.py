@@ -47,8 +47,9 @@ def open_volumes(path):
     if points_file != os.path.basename(path):
         for name in ("surface", "depth"):
             grid = vdb.read(path, name)
+            half = ", saved as half" if grid.saveFloatAsHalf else ""
             report("pyopenvdb", path, f"read({name!r}): {grid.gridClass}, "
-                   f"{grid.activeVoxelCount()} active voxels", grid.activeVoxelCount() > 0)
+                   f"{grid.activeVoxelCount()} active voxels{half}", grid.activeVoxelCount() > 0)
     for call in ("readAllGridMetadata", "readAll"):
         try:
             result = getattr(vdb, call)(path)
@@ -109,7 +110,10 @@ def main():
             names = [os.path.join(folder, "shell" + e) for e in (".vdb", ".vtu", ".msh", ".mesh")]
             outputs = [word for name in names for word in ("-o", name)]
             subprocess.run([*paths[1].split(";"), *outputs], check=True, capture_output=True)
-            for name in names:
+            command, half = paths[1].split(";")[0], os.path.join(folder, "half.vdb")
+            subprocess.run([command, "convert", names[0], "--half", "--points", "beside", "-o", half],
+                           check=True, capture_output=True)
+            for name in [*names, half, os.path.join(folder, "half.points.vdb")]:
                 open_file(name)
     else:
         for path in paths:

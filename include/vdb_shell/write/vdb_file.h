@@ -36,6 +36,9 @@ enum class PointPlacement {
 
 struct VdbWriteOptions {
     PointPlacement points = PointPlacement::same_file;
+    /// Save "surface" and "depth" with half floats: eleven bits of precision. The shell itself
+    /// stays exact.
+    bool half = false;
 };
 
 /// What a shell's .vdb says about itself, without its grids.
@@ -63,12 +66,14 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
 
 /// Writes grids and metadata as docs/file_format.md says; `file` is not changed. The file (with
 /// PointPlacement::beside both files) appears whole or not at all. Same bytes for the same input,
-/// but for OpenVDB's random UUID (bytes 21 to 56). Throws InvalidOption when a grid is missing or
-/// shell, split and tets do not fit together as make_tets leaves them; WriteError.
+/// but for OpenVDB's random UUID (bytes 21 to 56). Throws InvalidOption when a grid is missing,
+/// when shell, split and tets do not fit together as make_tets leaves them, and when a distance is
+/// beyond what the half floats that are asked for can hold; WriteError.
 void write_shell_vdb(const std::filesystem::path& path, const ShellFile& file,
                      const VdbWriteOptions& options = {});
 
-/// Reads what write_shell_vdb wrote, bit for bit; finds points that stand beside the file. Throws
+/// Reads what write_shell_vdb wrote, bit for bit (half floats as they were rounded, the mark that
+/// they were saved so kept); finds points that stand beside the file. Throws
 /// ReadError with file, grid, attribute and index for anything that is missing or out of range.
 ShellFile read_shell_vdb(const std::filesystem::path& path);
 

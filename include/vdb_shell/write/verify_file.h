@@ -19,8 +19,8 @@ struct Verification {
 
 /// Holds a shell against its own surface and against the figures that it carries: the surface is as
 /// sound as its report says, the tets are those of its prisms, conform and have the signs,
-/// certificate, volume and fill that the report states, the level set and the depth grid belong to
-/// this surface. Everything is computed afresh from the stored floats.
+/// certificate, volume and fill that the report states, the level set and the depth grid (where the
+/// file has them) belong to this surface. Everything is computed afresh from the stored floats.
 std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell

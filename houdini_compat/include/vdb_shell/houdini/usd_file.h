@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/write/vdb_file.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace vdb_shell
+{
+
+enum class UpAxis { y, z };
+
+/// What the stage says of its coordinates; they themselves are written as they are.
+struct UsdOptions {
+    UpAxis up_axis = UpAxis::y;
+    double meters_per_unit = 1.0;
+    double frames_per_second = 24.0; ///< of stages with several samples
+};
+
+/// The shell at one time.
+struct UsdSample {
+    double time = 0.0; ///< time code: the frame
+    const ShellFile* shell = nullptr;
+    /// The .vdb that holds shell->surface and shell->depth; empty: the stage gets no volume.
+    std::filesystem::path volume;
+};
+
+/// Writes a stage as text (.usda): Mesh "surface", right-handed TetMesh "tets" with the faces of
+/// its boundary, and Volume "grids" over the two volumes of the .vdb, by a path relative to the
+/// stage. docs/usd.md lists attributes and primvars. With one sample everything is timeless. With
+/// more, what differs between them is time-sampled. Numbers read back as the same float32, same
+/// bytes for the same input; the file appears whole or not at all.
+/// Throws InvalidOption for no samples, times that do not increase, samples whose surfaces have
+/// different triangles, a volume for some samples only or without grids, options that are not
+/// positive and finite; WriteError.
+void write_usd(const std::filesystem::path& path, const std::vector<UsdSample>& samples,
+               const UsdOptions& options = {});
+
+/// The triangles that belong to one tet only, outward from it when it is positive; sorted.
+std::vector<openvdb::Vec3I> boundary_triangles(const TetMesh& tets);
+
+} // namespace vdb_shell

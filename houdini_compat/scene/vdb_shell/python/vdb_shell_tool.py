@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs vdb_shell from Python: options, command line, files, errors. Nothing here needs Houdini.
+
+What is called `geometry` only has to have saveToFile, loadFromFile and merge, as hou.Geometry has.
+The program is `vdb_shell` on the PATH, or what VDB_SHELL_COMMAND names.
+
+    python vdb_shell_tool.py work-item --index 2 --count 5 --from 0.05 --to 0.4 MESH FOLDER
+"""
+
+import argparse
+import collections
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+# kind: int, float (0: not given), flag, menu; flag: the option of the command.
+Parameter = collections.namedtuple("Parameter", "name label kind default choices flag help")
+
+PARAMETERS = (
+    Parameter("result", "Result", "menu", "shell", ("shell", "volumes", "both"), None,
+              "Tetrahedra and surfaces, the level set and depth volumes, or both"),
+    Parameter("method", "Method", "menu", "certified", ("certified", "thickest", "raw"), "--method",
+              "How the inner points get their places"),
+    Parameter("resolution", "Resolution", "int", 256, None, "--resolution",
+              "Voxels along the longest side of the bounding box"),
+    Parameter("thickness", "Largest Thickness", "float", 0.0, None, "--thickness",
+              "In world units; 0 is as thick as it can be"),
+    Parameter("smooth", "Smoothing Steps", "int", 0, None, "--smooth",
+              "Steps of mean-curvature flow on the level set"),
+    Parameter("half", "Half Floats", "flag", False, None, "--half",
+              "Save the volumes with half floats"),
+    Parameter("turn_outward", "Turn Outward", "flag", False, None, "--turn-outward",
+              "Turn closed components that are inside out instead of refusing them"),
+)
+
+# Houdini's own format keeps its orientation and every bit; text formats would round.
+MESH_EXTENSION = ".bgeo.sc"
+EXTENSIONS = {"shell": (".bgeo.sc",), "volumes": (".vdb",), "both": (".bgeo.sc", ".vdb")}
+
+
+class ShellError(Exception):
+    """The program refused or failed; the message is its own last line."""
+
+    def __init__(self, message, status=None):
+        super().__init__(message)
+        self.status = status
+
+
+def defaults():
+    return {parameter.name: parameter.default for parameter in PARAMETERS}
+
+
+def program():
+    return os.environ.get("VDB_SHELL_COMMAND", "vdb_shell")
+
+
+def option_words(values):
+    """The options that are not at their defaults, as words of the command line."""
+    unknown = set(values) - {parameter.name for parameter in PARAMETERS}
+    if unknown:
+        raise ValueError(f"no such parameters: {', '.join(sorted(unknown))}")
+    words = []
+    for parameter in PARAMETERS:
+        value = values.get(parameter.name, parameter.default)
+        if parameter.kind == "menu" and value not in parameter.choices:
+            raise ValueError(f"{parameter.name} is {value!r}, expected one of {parameter.choices}")
+        if parameter.flag is None or value == parameter.default:
+            continue
+        words.append(parameter.flag)
+        if parameter.kind != "flag":
+            words.append(repr(value) if parameter.kind == "float" else str(value))
+    return words
+
+
+def command_line(mesh, outputs, values, report=None):
+    """The whole command as a list of words, safe for any file name."""
+    words = [program(), "build", "--quiet", *option_words(values)]
+    for output in outputs:
+        words += ["--output", os.path.abspath(output)]
+    if report:
+        words += ["--report", os.path.abspath(report)]
+    # An absolute path does not begin with a dash.
+    return [*words, os.path.abspath(mesh)]
+
+
+def run(words, poll=None):
+    """Runs a command to its end. `poll` is called now and then; what it raises ends the command."""
+    with tempfile.TemporaryFile() as errors:
+        try:
+            process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=errors)
+        except OSError as error:
+            raise ShellError(f"{words[0]} cannot be started: {error.strerror}") from error
+        try:
+            while process.poll() is None:
+                if poll:
+                    poll()
+                time.sleep(0.02)
+        finally:
+            if process.poll() is None:
+                process.terminate()
+                process.wait()
+        errors.seek(0)
+        lines = errors.read().decode(errors="replace").strip().splitlines()
+    if process.returncode != 0:
+        said = lines[-1] if lines else f"it ended with status {process.returncode}"
+        raise ShellError(said, process.returncode)
+
+
+def build(mesh, outputs, values, poll=None):
+    """Builds and returns the report's figures."""
+    with tempfile.TemporaryDirectory(prefix="vdb_shell_") as folder:
+        report = os.path.join(folder, "report.json")
+        run(command_line(mesh, outputs, values, report), poll)
+        with open(report, encoding="utf-8") as file:
+            return json.load(file)
+
+
+def replace_by_shell(geometry, values, new_geometry, poll=None):
+    """Puts the shell of `geometry` in its place; new_geometry() makes an empty one to load into.
+
+    Nothing is changed when the program fails."""
+    with tempfile.TemporaryDirectory(prefix="vdb_shell_") as folder:
+        mesh = os.path.join(folder, "mesh" + MESH_EXTENSION)
+        geometry.saveToFile(mesh)
+        result = values.get("result", "shell")
+        if result not in EXTENSIONS:
+            raise ValueError(f"result is {result!r}, expected one of {tuple(EXTENSIONS)}")
+        outputs = [os.path.join(folder, "shell" + extension) for extension in EXTENSIONS[result]]
+        report = build(mesh, outputs, values, poll)
+        geometry.loadFromFile(outputs[0])
+        for output in outputs[1:]:
+            more = new_geometry()
+            more.loadFromFile(output)
+            geometry.merge(more)
+        return report
+
+
+def summary(report):
+    """One line for a node's comment or a log."""
+    certificate = report.get("certificate", {})
+    return (f"{report['tets']['tets']} tets, {report['volume']['fill']:.1%} of the solid, "
+            f"{'certified' if certificate.get('certified') else 'not certified'}")
+
+
+def thickness_of(index, count, low, high):
+    return low if count < 2 else low + (high - low) * index / (count - 1)
+
+
+def work_item(arguments):
+    """One thickness of several; the output's name has the index."""
+    if not 0 <= arguments.index < arguments.count:
+        raise ValueError(f"index {arguments.index} is not in 0 to {arguments.count - 1}")
+    thickness = thickness_of(arguments.index, arguments.count, arguments.low, arguments.high)
+    os.makedirs(arguments.folder, exist_ok=True)
+    output = os.path.join(arguments.folder, f"shell.{arguments.index:04d}{arguments.extension}")
+    report = build(arguments.mesh, [output], {"thickness": thickness, "resolution": arguments.resolution})
+    print(f"{output}: thickness {thickness:.6g}, {summary(report)}")
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(prog="vdb_shell_tool.py")
+    item = parser.add_subparsers(required=True).add_parser("work-item", help="one thickness of several")
+    item.add_argument("--index", type=int, required=True)
+    item.add_argument("--count", type=int, required=True)
+    item.add_argument("--from", dest="low", type=float, required=True)
+    item.add_argument("--to", dest="high", type=float, required=True)
+    item.add_argument("--resolution", type=int, default=256)
+    item.add_argument("--extension", default=".bgeo.sc")
+    item.add_argument("mesh")
+    item.add_argument("folder")
+    try:
+        work_item(parser.parse_args(words))
+    except (ShellError, ValueError) as error:
+        print(error, file=sys.stderr)
+        return getattr(error, "status", None) or 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/houdini/usd_file.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "core/atomic_file.h"
+#include "usd_text.h"
+#include "write/text_out.h"
+#include "write/vdb_metadata.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+namespace vdb_shell
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+using openvdb::Vec4I;
+
+using Samples = std::vector<UsdSample>;
+using Text = std::function<std::string(const UsdSample&)>;
+
+/// Bounds may round inwards on their way to float32; an extent must not.
+std::string extent_of(const Vec3d& low, const Vec3d& high)
+{
+    Vec3s corners[2];
+    for (int axis = 0; axis < 3; ++axis) {
+        corners[0][axis] = float(low[axis]);
+        if (corners[0][axis] > low[axis])
+            corners[0][axis] = std::nextafter(corners[0][axis], -HUGE_VALF);
+        corners[1][axis] = float(high[axis]);
+        if (corners[1][axis] < high[axis])
+            corners[1][axis] = std::nextafter(corners[1][axis], HUGE_VALF);
+    }
+    return usd_array(std::vector<Vec3s>{corners[0], corners[1]});
+}
+
+std::string extent_of(const std::vector<Vec3s>& points)
+{
+    const Bounds bounds = points.empty() ? Bounds{} : bounds_of(points);
+    return extent_of(bounds.low, bounds.high);
+}
+
+/// The box of all active voxels of both grids, as boxes rather than centres.
+std::string extent_of_volume(const ShellFile& shell)
+{
+    Vec3d low(HUGE_VAL), high(-HUGE_VAL);
+    for (const auto& grid : {shell.surface, shell.depth}) {
+        const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+        if (box.empty())
+            continue;
+        const auto world = grid->transform().indexToWorld(
+            openvdb::BBoxd(box.min().asVec3d() - 0.5, box.max().asVec3d() + 0.5));
+        low = openvdb::math::minComponent(low, world.min());
+        high = openvdb::math::maxComponent(high, world.max());
+    }
+    return low[0] > high[0] ? extent_of({}) : extent_of(low, high);
+}
+
+/// The stage under construction: prims in braces, each attribute on a line of its own.
+class Stage
+{
+public:
+    Stage(std::ostream& out, const Samples& samples) : text_(out), samples_(samples) {}
+
+    void line(const std::string& text)
+    {
+        text_ << std::string(text.empty() ? 0 : 4 * depth_, ' ') << text << '\n';
+    }
+
+    void open(const std::string& prim)
+    {
+        line(prim);
+        line("{");
+        ++depth_;
+    }
+    void close()
+    {
+        --depth_;
+        line("}");
+    }
+
+    /// `declaration` is type and name, `metadata` what stands behind the value.
+    void attribute(const std::string& declaration, const Text& value,
+                   const std::string& metadata = {})
+    {
+        std::vector<std::string> values;
+        for (const UsdSample& sample : samples_)
+            values.push_back(value(sample));
+        const std::string behind = metadata.empty() ? metadata : " (" + metadata + ")";
+        if (std::all_of(values.begin(), values.end(),
+                        [&](const std::string& one) { return one == values.front(); })) {
+            line(declaration + " = " + values.front() + behind);
+            return;
+        }
+        if (!metadata.empty())
+            line(declaration + behind);
+        line(declaration + ".timeSamples = {");
+        ++depth_;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            line(usd_value(samples_[i].time) + ": " + values[i] + ",");
+        --depth_;
+        line("}");
+    }
+
+    void primvar(const std::string& declaration, const Text& value)
+    {
+        attribute(declaration, value, "interpolation = \"vertex\"");
+    }
+
+private:
+    TextOut text_;
+    const Samples& samples_;
+    std::size_t depth_ = 0;
+};
+
+void write_header(Stage& stage, const Samples& samples, const UsdOptions& options)
+{
+    stage.line("#usda 1.0");
+    stage.line("(");
+    stage.line("    customLayerData = {");
+    stage.line("        string creator = \"" + creator_name() + "\"");
+    stage.line("    }");
+    stage.line("    defaultPrim = \"shell\"");
+    if (samples.size() > 1)
+        stage.line("    endTimeCode = " + usd_value(samples.back().time));
+    stage.line("    metersPerUnit = " + usd_value(options.meters_per_unit));
+    if (samples.size() > 1) {
+        stage.line("    startTimeCode = " + usd_value(samples.front().time));
+        stage.line("    timeCodesPerSecond = " + usd_value(options.frames_per_second));
+    }
+    stage.line(std::string("    upAxis = \"") + (options.up_axis == UpAxis::y ? "Y" : "Z") + "\"");
+    stage.line(")");
+    stage.line("");
+}
+
+void write_surface(Stage& stage)
+{
+    stage.open("def Mesh \"surface\"");
+    stage.attribute("float3[] extent",
+                    [](const UsdSample& s) { return extent_of(s.shell->shell.outer); });
+    stage.attribute("int[] faceVertexCounts", [](const UsdSample& s) {
+        return usd_array(std::vector<std::int32_t>(s.shell->shell.triangles.size(), 3));
+    });
+    stage.attribute("int[] faceVertexIndices", [](const UsdSample& s) {
+        std::vector<std::uint32_t> corners;
+        for (const Vec3I& triangle : s.shell->shell.triangles)
+            corners.insert(corners.end(), {triangle[0], triangle[1], triangle[2]});
+        return usd_array(corners);
+    });
+    stage.line("uniform token orientation = \"rightHanded\"");
+    stage.attribute("point3f[] points",
+                    [](const UsdSample& s) { return usd_array(s.shell->shell.outer); });
+    stage.primvar("int[] primvars:stopReason", [](const UsdSample& s) {
+        std::vector<std::int32_t> reasons;
+        for (const StopReason reason : s.shell->shell.stop)
+            reasons.push_back(std::int32_t(reason));
+        return usd_array(reasons);
+    });
+    stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
+        std::vector<float> lengths;
+        for (std::size_t v = 0; v < s.shell->shell.outer.size(); ++v)
+            lengths.push_back(float(s.shell->shell.length(v)));
+        return usd_array(lengths);
+    });
+    stage.line("uniform token subdivisionScheme = \"none\"");
+    stage.close();
+}
+
+/// A value for each point of the tets, from its pillar and its distance below the surface.
+template <typename Value> std::string per_point(const UsdSample& sample, const Value& value)
+{
+    const TetMesh& tets = sample.shell->tets;
+    using Result = decltype(value(std::size_t(), 0.0));
+    std::vector<Result> values;
+    for (std::size_t i = 0; i < tets.points.size(); ++i) {
+        const Vec3d top(sample.shell->shell.outer[tets.source_vertex[i]]);
+        values.push_back(value(i, (Vec3d(tets.points[i]) - top).length()));
+    }
+    return usd_array(values);
+}
+
+void write_tet_primvars(Stage& stage)
+{
+    stage.primvar("float[] primvars:depth", [](const UsdSample& s) {
+        return per_point(s, [&](std::size_t i, double below) {
+            const double length = s.shell->shell.length(s.shell->tets.source_vertex[i]);
+            return length > 0.0 ? float(below / length) : 0.0f;
+        });
+    });
+    stage.primvar("int[] primvars:layer", [](const UsdSample& s) {
+        return per_point(
+            s, [&](std::size_t i, double) { return std::int32_t(s.shell->tets.layer[i]); });
+    });
+    stage.primvar("int[] primvars:sourceVertex",
+                  [](const UsdSample& s) { return usd_array(s.shell->tets.source_vertex); });
+    stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
+        return per_point(s, [&](std::size_t i, double) {
+            return float(s.shell->shell.length(s.shell->tets.source_vertex[i]));
+        });
+    });
+}
+
+void write_tets(Stage& stage)
+{
+    stage.open("def TetMesh \"tets\"");
+    stage.attribute("float3[] extent",
+                    [](const UsdSample& s) { return extent_of(s.shell->tets.points); });
+    stage.line("uniform token orientation = \"rightHanded\"");
+    stage.attribute("point3f[] points",
+                    [](const UsdSample& s) { return usd_array(s.shell->tets.points); });
+    write_tet_primvars(stage);
+    stage.attribute("int3[] surfaceFaceVertexIndices", [](const UsdSample& s) {
+        return usd_array(boundary_triangles(s.shell->tets));
+    });
+    stage.attribute("int4[] tetVertexIndices",
+                    [](const UsdSample& s) { return usd_array(s.shell->tets.tets); });
+    // Not a primvar: those that are uniform count the faces that are drawn, not the tets.
+    stage.attribute("custom int[] userProperties:prism",
+                    [](const UsdSample& s) { return usd_array(s.shell->tets.prism); });
+    stage.close();
+}
+
+/// How the stage at `path` finds the .vdb wherever both are moved together.
+std::string relative_asset(const fs::path& path, const fs::path& volume)
+{
+    const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
+    const fs::path target = fs::absolute(volume).lexically_normal();
+    const fs::path relative = target.lexically_relative(folder);
+    if (relative.empty())
+        return usd_asset(target.generic_string());
+    const bool upwards = *relative.begin() == "..";
+    // Without the point USD would search its own paths first.
+    return usd_asset((upwards ? "" : "./") + relative.generic_string());
+}
+
+void write_grids(Stage& stage, const fs::path& path)
+{
+    stage.open("def Volume \"grids\"");
+    stage.attribute("float3[] extent",
+                    [](const UsdSample& s) { return extent_of_volume(*s.shell); });
+    for (const char* name : {"depth", "surface"})
+        stage.line(std::string("rel field:") + name + " = </shell/grids/" + name + ">");
+    const std::pair<const char*, const char*> grids[] = {{"depth", "fogVolume"},
+                                                         {"surface", "levelSet"}};
+    for (const auto& [name, field_class] : grids) {
+        stage.line("");
+        stage.open(std::string("def OpenVDBAsset \"") + name + "\"");
+        stage.line(std::string("token fieldClass = \"") + field_class + "\"");
+        stage.line("token fieldDataType = \"float\"");
+        stage.line(std::string("token fieldName = \"") + name + "\"");
+        stage.attribute("asset filePath",
+                        [&path](const UsdSample& s) { return relative_asset(path, s.volume); });
+        stage.close();
+    }
+    stage.close();
+}
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& what)
+{
+    throw InvalidOption(path.string() + ": " + what);
+}
+
+void require_positive(const fs::path& path, const char* what, double value)
+{
+    if (!(value > 0.0) || !std::isfinite(value))
+        refuse(path, std::string(what) + " is " + usd_value(value) +
+                         ", expected a positive finite number");
+}
+
+void require_fitting(const fs::path& path, const Samples& samples)
+{
+    if (samples.empty())
+        refuse(path, "a stage needs at least one sample");
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const UsdSample &sample = samples[i], &first = samples.front();
+        const std::string name = "sample " + std::to_string(i) + " at " + usd_value(sample.time);
+        if (!std::isfinite(sample.time) || (i > 0 && !(sample.time > samples[i - 1].time)))
+            refuse(path, name + ": times must be finite and increase");
+        if (!sample.shell)
+            refuse(path, name + ": it has no shell");
+        if (sample.shell->shell.triangles != first.shell->shell.triangles)
+            refuse(path, name + ": its surface has other triangles than that of sample 0");
+        if (sample.volume.empty() != first.volume.empty())
+            refuse(path, name + ": all samples have a volume or none has");
+        if (!sample.volume.empty() && !(sample.shell->surface && sample.shell->depth))
+            refuse(path, name + ": it has a volume but no grids");
+    }
+}
+
+} // namespace
+
+std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
+{
+    // The four faces as the right-handed TetMesh of USD has them.
+    constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    struct Face {
+        std::array<std::uint32_t, 3> sorted;
+        Vec3I corners;
+    };
+    std::vector<Face> faces;
+    faces.reserve(4 * tets.tets.size());
+    for (const Vec4I& tet : tets.tets) {
+        for (const auto& corner : kFaces) {
+            const Vec3I face(tet[corner[0]], tet[corner[1]], tet[corner[2]]);
+            std::array<std::uint32_t, 3> sorted{face[0], face[1], face[2]};
+            std::sort(sorted.begin(), sorted.end());
+            faces.push_back({sorted, face});
+        }
+    }
+    std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+        return a.sorted != b.sorted ? a.sorted < b.sorted : a.corners < b.corners;
+    });
+    std::vector<Vec3I> boundary;
+    for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
+        while (end < faces.size() && faces[end].sorted == faces[i].sorted)
+            ++end;
+        if (end == i + 1)
+            boundary.push_back(faces[i].corners);
+    }
+    std::sort(boundary.begin(), boundary.end());
+    return boundary;
+}
+
+void write_usd(const fs::path& path, const Samples& samples, const UsdOptions& options)
+{
+    require_fitting(path, samples);
+    require_positive(path, "metres per unit", options.meters_per_unit);
+    require_positive(path, "frames per second", options.frames_per_second);
+    write_stream_atomically(path, [&](std::ostream& out) {
+        Stage stage(out, samples);
+        write_header(stage, samples, options);
+        stage.open("def Xform \"shell\" (\n    kind = \"component\"\n)");
+        write_surface(stage);
+        stage.line("");
+        write_tets(stage);
+        if (!samples.front().volume.empty()) {
+            stage.line("");
+            write_grids(stage, path);
+        }
+        stage.close();
+    });
+}
+
+} // namespace vdb_shell

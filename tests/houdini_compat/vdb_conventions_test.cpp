@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/vdb_conventions.h"
+#include "vdb_shell/write/vdb_file.h"
+
+#include "command/exit_code.h"
+#include "support/files.h"
+#include "support/shapes.h"
+#include "write/hand_made.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/io/File.h>
+#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/PointConversion.h>
+#include <openvdb/points/PointGroup.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <set>
+
+// A file that keeps every rule, then one change for each way to break one.
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+using namespace openvdb;
+using points::PointDataGrid;
+
+PointDataGrid::Ptr make_points(const char* name)
+{
+    const std::vector<Vec3s> places{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    auto grid = points::createPointDataGrid<points::NullCodec, PointDataGrid>(
+        places, *math::Transform::createLinearTransform(0.5));
+    grid->setName(name);
+    points::appendAttribute<std::int32_t>(grid->tree(), "tet", 0, 4);
+    points::appendAttribute<Vec3s>(grid->tree(), "N", Vec3s(0, 0, 1));
+    points::appendGroup(grid->tree(), "outer");
+    grid->insertMeta("global:count", Int32Metadata(3));
+    grid->insertMeta("global:size[0]", FloatMetadata(1));
+    grid->insertMeta("global:size[1]", FloatMetadata(2));
+    grid->insertMeta("group_viewport", StringMetadata("outer"));
+    return grid;
+}
+
+/// Grids that keep every rule, and so does the file's metadata.
+struct Scene {
+    FloatGrid::Ptr surface, density;
+    Vec3SGrid::Ptr velocity;
+    PointDataGrid::Ptr points, more_points;
+    GridPtrVec extra;
+    MetaMap metadata;
+
+    Scene()
+    {
+        initialize();
+        surface = tools::createLevelSetSphere<FloatGrid>(1.0f, Vec3f(0.0f), 0.25f, 3.0f);
+        surface->setName("surface");
+        surface->insertMeta("dict_report", StringMetadata("{\"fill\": 0.5}"));
+        surface->insertMeta("is_closed", BoolMetadata(true));
+        surface->insertMeta("value_type", StringMetadata("float"));
+        density = FloatGrid::create(0.0f);
+        density->setName("density");
+        density->setGridClass(GRID_FOG_VOLUME);
+        density->setSaveFloatAsHalf(true);
+        density->tree().setValue(Coord(1, 2, 3), 65504.0f);
+        velocity = Vec3SGrid::create();
+        velocity->setName("v");
+        velocity->setGridClass(GRID_STAGGERED);
+        velocity->setVectorType(VEC_CONTRAVARIANT_RELATIVE);
+        velocity->insertMeta("gravity", Vec3SMetadata(Vec3s(0, -9.81f, 0)));
+        points = make_points("points");
+        more_points = make_points("more_points");
+        metadata.insertMeta("creator", StringMetadata("a test"));
+        metadata.insertMeta("frame", Int32Metadata(7));
+    }
+
+    void write(const std::filesystem::path& path) const
+    {
+        GridPtrVec all{surface, density, velocity, points, more_points};
+        all.insert(all.end(), extra.begin(), extra.end());
+        io::File(path.string()).write(all, metadata);
+    }
+};
+
+struct Wrong {
+    std::string rule, grid, element;
+    std::function<void(Scene&)> change;
+};
+
+template <typename Grid> typename Grid::Ptr named(const char* name)
+{
+    auto grid = Grid::create();
+    grid->setName(name);
+    return grid;
+}
+
+Metadata::Ptr half_vector()
+{
+    // Of a type that no table of Houdini has.
+    auto unknown = std::make_shared<UnknownMetadata>("vec2h");
+    unknown->setValue({1, 2, 3, 4});
+    return unknown;
+}
+
+std::vector<Wrong> wrong_names_and_classes()
+{
+    return {
+        {"creator", "", "creator", [](Scene& s) { s.metadata.removeMeta("creator"); }},
+        {"name", "", "", [](Scene& s) { s.more_points->setName(""); }},
+        {"name", "two words", "", [](Scene& s) { s.more_points->setName("two words"); }},
+        {"name", "a*", "", [](Scene& s) { s.more_points->setName("a*"); }},
+        {"unique-name", "points", "", [](Scene& s) { s.more_points->setName("points"); }},
+        {"name-for-class", "surface", "", [](Scene& s) { s.surface->setGridClass(GRID_UNKNOWN); }},
+        {"name-for-class", "density", "", [](Scene& s) { s.density->setGridClass(GRID_UNKNOWN); }},
+        {"type", "inside", "", [](Scene& s) { s.extra.push_back(named<MaskGrid>("inside")); }},
+        {"class", "v", "class",
+         [](Scene& s) { s.velocity->insertMeta("class", StringMetadata("Staggered")); }},
+        {"level-set", "whole", "",
+         [](Scene& s) {
+             s.extra.push_back(named<Int32Grid>("whole"));
+             s.extra[0]->setGridClass(GRID_LEVEL_SET);
+         }},
+        {"level-set", "surface", "",
+         [](Scene& s) { s.surface->tree().root().setBackground(0.0f, false); }},
+        {"level-set", "surface", "",
+         [](Scene& s) {
+             s.surface->setTransform(math::Transform::createLinearTransform(
+                 Mat4d(1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)));
+         }},
+        {"fog-volume", "density", "",
+         [](Scene& s) { s.density->tree().root().setBackground(1.0f, false); }},
+        {"fog-volume", "whole", "",
+         [](Scene& s) {
+             s.extra.push_back(named<BoolGrid>("whole"));
+             s.extra[0]->setGridClass(GRID_FOG_VOLUME);
+         }},
+        {"staggered", "speed", "",
+         [](Scene& s) {
+             s.extra.push_back(named<FloatGrid>("speed"));
+             s.extra[0]->setGridClass(GRID_STAGGERED);
+         }},
+        {"vector-type", "surface", "vector_type",
+         [](Scene& s) { s.surface->setVectorType(VEC_COVARIANT); }},
+        {"vector-type", "v", "vector_type",
+         [](Scene& s) { s.velocity->insertMeta("vector_type", StringMetadata("sideways")); }},
+        {"vector-meaning", "v", "vector_type",
+         [](Scene& s) { s.velocity->setVectorType(VEC_COVARIANT); }},
+        {"vector-meaning", "gradient", "vector_type",
+         [](Scene& s) { s.extra.push_back(named<Vec3DGrid>("gradient")); }},
+        {"vector-meaning", "N", "vector_type",
+         [](Scene& s) { s.extra.push_back(named<Vec3SGrid>("N")); }},
+        {"half", "whole", "is_saved_as_half_float",
+         [](Scene& s) {
+             s.extra.push_back(named<Int32Grid>("whole"));
+             s.extra[0]->setSaveFloatAsHalf(true);
+         }},
+        {"half-range", "density", "is_saved_as_half_float",
+         [](Scene& s) { s.density->tree().setValue(Coord(1, 2, 3), 65536.0f); }},
+    };
+}
+
+std::vector<Wrong> wrong_metadata()
+{
+    return {
+        {"own-metadata", "v", "is_local_space",
+         [](Scene& s) { s.velocity->insertMeta("is_local_space", Int32Metadata(1)); }},
+        {"value-type", "surface", "value_type",
+         [](Scene& s) { s.surface->insertMeta("value_type", StringMetadata("double")); }},
+        {"metadata-type", "v", "size",
+         [](Scene& s) { s.velocity->insertMeta("size", *half_vector()); }},
+        {"metadata-type", "", "size",
+         [](Scene& s) { s.metadata.insertMeta("size", *half_vector()); }},
+        {"metadata-name", "v", "my size",
+         [](Scene& s) { s.velocity->insertMeta("my size", Int32Metadata(1)); }},
+        {"metadata-name", "", "2d",
+         [](Scene& s) { s.metadata.insertMeta("2d", Int32Metadata(1)); }},
+        {"metadata-clash", "v", "is_closed",
+         [](Scene& s) { s.velocity->insertMeta("is_closed", FloatMetadata(1)); }},
+        {"is-bool", "v", "is_open",
+         [](Scene& s) { s.velocity->insertMeta("is_open", Int32Metadata(1)); }},
+        {"dictionary", "v", "dict_a",
+         [](Scene& s) { s.velocity->insertMeta("dict_a", StringMetadata("[1, 2]")); }},
+        {"dictionary", "v", "dict_a",
+         [](Scene& s) { s.velocity->insertMeta("dict_a", Int32Metadata(1)); }},
+        {"global-metadata", "v", "global:a",
+         [](Scene& s) { s.velocity->insertMeta("global:a", Int32Metadata(1)); }},
+        {"global-metadata", "points", "global:a",
+         [](Scene& s) { s.points->insertMeta("global:a", Vec3IMetadata(Vec3i(1, 2, 3))); }},
+        {"metadata-name", "points", "global:a b",
+         [](Scene& s) { s.points->insertMeta("global:a b", Int32Metadata(1)); }},
+        {"global-tuple", "points", "global:size[3]",
+         [](Scene& s) { s.points->insertMeta("global:size[3]", FloatMetadata(1)); }},
+        {"global-tuple", "points", "global:size[x]",
+         [](Scene& s) { s.points->insertMeta("global:size[x]", FloatMetadata(1)); }},
+        {"viewport-group", "points", "group_viewport",
+         [](Scene& s) { s.points->insertMeta("group_viewport", StringMetadata("none")); }},
+    };
+}
+
+std::vector<Wrong> wrong_points()
+{
+    return {
+        {"attribute-type", "points", "Alpha",
+         [](Scene& s) {
+             points::TypedAttributeArray<std::uint8_t>::registerType();
+             points::appendAttribute<std::uint8_t>(s.points->tree(), "Alpha", 0);
+         }},
+        {"attribute-name", "points", "a|b",
+         [](Scene& s) { points::appendAttribute<float>(s.points->tree(), "a|b", 0.0f); }},
+        {"attribute-name", "points", "2nd",
+         [](Scene& s) { points::appendAttribute<float>(s.points->tree(), "2nd", 0.0f); }},
+        {"attribute-stride", "points", "uv",
+         [](Scene& s) { points::appendAttribute<Vec3s>(s.points->tree(), "uv", Vec3s(0.0f), 2); }},
+        {"attribute-clash", "points", "id",
+         [](Scene& s) {
+             points::appendAttribute<std::int32_t>(s.points->tree(), "id", 0);
+             points::appendAttribute<float>(s.more_points->tree(), "id", 0.0f);
+         }},
+        {"integer-vector", "points", "cell",
+         [](Scene& s) {
+             points::appendAttribute<Vec3i>(s.points->tree(), "cell", Vec3i(0, (1 << 24) + 1, 0));
+         }},
+        {"position", "points", "P",
+         [](Scene& s) { points::renameAttribute(s.points->tree(), "P", "Q"); }},
+        {"role", "points", "Cd",
+         [](Scene& s) { points::appendAttribute<float>(s.points->tree(), "Cd", 0.0f); }},
+        {"group-name", "points", "no:group",
+         [](Scene& s) { points::appendGroup(s.points->tree(), "no:group"); }},
+    };
+}
+
+std::vector<Wrong> all_wrong()
+{
+    std::vector<Wrong> all = wrong_names_and_classes();
+    for (const auto& more : {wrong_metadata(), wrong_points()})
+        all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+TEST(VdbConventions, AFileThatKeepsThemAllHasNoViolation)
+{
+    const TemporaryFolder folder;
+    Scene().write(folder / "good.vdb");
+    for (const VdbViolation& violation : check_vdb_conventions(folder / "good.vdb"))
+        ADD_FAILURE() << to_text(violation);
+}
+
+TEST(VdbConventions, EachWrongFileIsFoundOutAndNothingElseInIt)
+{
+    const TemporaryFolder folder;
+    for (const Wrong& wrong : all_wrong()) {
+        Scene scene;
+        wrong.change(scene);
+        scene.write(folder / "wrong.vdb");
+        const auto found = check_vdb_conventions(folder / "wrong.vdb");
+        ASSERT_FALSE(found.empty()) << wrong.rule << ", " << wrong.grid << ", " << wrong.element;
+        for (const VdbViolation& violation : found) {
+            EXPECT_EQ(violation.rule, wrong.rule) << to_text(violation);
+            EXPECT_EQ(violation.grid, wrong.grid) << to_text(violation);
+            EXPECT_EQ(violation.element, wrong.element) << to_text(violation);
+            EXPECT_FALSE(violation.detail.empty());
+        }
+    }
+}
+
+TEST(VdbConventions, AFileWithoutGridsIsOne)
+{
+    const TemporaryFolder folder;
+    openvdb::initialize();
+    MetaMap metadata;
+    metadata.insertMeta("creator", StringMetadata("a test"));
+    io::File((folder / "none.vdb").string()).write(GridPtrVec(), metadata);
+    const auto found = check_vdb_conventions(folder / "none.vdb");
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].rule, "no-grids");
+}
+
+TEST(VdbConventions, EveryRuleHasAFileThatBreaksIt)
+{
+    std::set<std::string> broken{"no-grids"};
+    for (const Wrong& wrong : all_wrong())
+        broken.insert(wrong.rule);
+    const auto& rules = vdb_convention_rules();
+    EXPECT_EQ(broken, std::set<std::string>(rules.begin(), rules.end()));
+}
+
+TEST(VdbConventions, TheyHoldForEveryFileThatWeWrite)
+{
+    const TemporaryFolder folder;
+    const std::vector<HandMade> shells{hand_made_shell(icosphere(1.0, 2), 0.7),
+                                       hand_made_shell(unit_tetrahedron(), 0.5, {0, 2}),
+                                       hand_made_shell(unit_tetrahedron(), 0.5, {0, 1, 2, 3})};
+    for (const HandMade& made : shells) {
+        for (const PointPlacement points : {PointPlacement::same_file, PointPlacement::beside}) {
+            for (const bool half : {false, true}) {
+                write_shell_vdb(folder / "shell.vdb", hand_made_file(made, 0.1), {points, half});
+                auto found = check_vdb_conventions(folder / "shell.vdb");
+                if (points == PointPlacement::beside)
+                    for (const auto& more : check_vdb_conventions(folder / "shell.points.vdb"))
+                        found.push_back(more);
+                for (const VdbViolation& violation : found)
+                    ADD_FAILURE() << to_text(violation);
+            }
+        }
+    }
+}
+
+TEST(VdbConventions, WhatCannotBeReadIsSaid)
+{
+    const TemporaryFolder folder;
+    EXPECT_THROW(check_vdb_conventions(folder / "none.vdb"), ReadError);
+    write_bytes(folder / "text.vdb", "not a volume at all");
+    EXPECT_THROW(check_vdb_conventions(folder / "text.vdb"), ReadError);
+    Scene().write(folder / "good.vdb");
+    const std::string bytes = read_bytes(folder / "good.vdb");
+    write_bytes(folder / "short.vdb", bytes.substr(0, bytes.size() / 2));
+    EXPECT_THROW(check_vdb_conventions(folder / "short.vdb"), ReadError);
+}
+
+TEST(HalfFloats, RoundVolumesAndLeaveTheShellExact)
+{
+    const TemporaryFolder folder;
+    const HandMade made = hand_made_shell(icosphere(1.0, 2), 0.7);
+    const ShellFile exact = hand_made_file(made, 0.1);
+    write_shell_vdb(folder / "half.vdb", exact, {PointPlacement::same_file, true});
+    write_shell_vdb(folder / "full.vdb", exact);
+    const ShellFile read = read_shell_vdb(folder / "half.vdb");
+    EXPECT_TRUE(same_bits(read.shell.inner, made.shell.inner));
+    EXPECT_TRUE(same_bits(read.tets.tets, made.tets.tets));
+    EXPECT_TRUE(read.surface->saveFloatAsHalf() && read.depth->saveFloatAsHalf());
+    EXPECT_FALSE(exact.surface->saveFloatAsHalf()) << "the caller's grid was changed";
+    EXPECT_TRUE(read.depth->tree().hasSameTopology(exact.depth->tree()));
+    for (const auto& [rounded, full] :
+         {std::pair(read.surface, exact.surface), std::pair(read.depth, exact.depth)}) {
+        std::size_t differ = 0;
+        for (auto value = full->cbeginValueOn(); value; ++value) {
+            const double stored = rounded->tree().getValue(value.getCoord());
+            // Half floats have eleven bits, subnormal ones end at 2^-24.
+            EXPECT_NEAR(stored, *value, std::ldexp(std::abs(*value), -11) + std::ldexp(1.0, -25));
+            differ += stored != double(*value);
+        }
+        EXPECT_GT(differ, 0u) << "nothing was rounded";
+    }
+    EXPECT_LT(std::filesystem::file_size(folder / "half.vdb"),
+              std::filesystem::file_size(folder / "full.vdb"));
+    const auto thickness = read_float_grid(folder / "half.vdb", "depth");
+    EXPECT_TRUE(same_grid(*thickness, *read.depth));
+}
+
+TEST(HalfFloats, AreRefusedForDistancesBeyondThem)
+{
+    const TemporaryFolder folder;
+    ShellFile file = hand_made_file(hand_made_shell(icosphere(1.0, 1), 0.7), 0.1);
+    file.surface->tree().setValue(Coord(0), -65536.0f);
+    EXPECT_NO_THROW(write_shell_vdb(folder / "full.vdb", file));
+    try {
+        write_shell_vdb(folder / "half.vdb", file, {PointPlacement::same_file, true});
+        ADD_FAILURE() << "written";
+    } catch (const InvalidOption& error) {
+        for (const char* word : {"surface", "65536", "65504"})
+            EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "half.vdb"));
+}
+
+/// The program's exit status; what it printed in `out`.
+int run_check_vdb(const std::string& arguments, const std::filesystem::path& out)
+{
+    const std::string line =
+        std::string(VDB_SHELL_CHECK_VDB) + " " + arguments + " >" + out.string() + " 2>&1";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(CheckVdb, ExitStatusAndNames)
+{
+    const TemporaryFolder folder;
+    const std::filesystem::path out = folder / "out";
+    const std::string good = (folder / "good.vdb").string(),
+                      wrong = (folder / "wrong.vdb").string();
+    Scene().write(good);
+    Scene scene;
+    points::appendAttribute<float>(scene.points->tree(), "a|b", 0.0f);
+    scene.write(wrong);
+    EXPECT_EQ(run_check_vdb(good, out), command::success);
+    EXPECT_EQ(run_check_vdb(wrong + " " + good, out), command::check_failed);
+    const std::string text = read_bytes(out);
+    for (const char* word : {"\"points\"", "\"a|b\"", "attribute-name", "good.vdb: keeps"})
+        EXPECT_NE(text.find(word), std::string::npos) << word << " is not in " << text;
+    EXPECT_EQ(run_check_vdb((folder / "none.vdb").string(), out), command::read_error);
+    EXPECT_EQ(run_check_vdb("", out), command::usage_error);
+    EXPECT_EQ(run_check_vdb("--help", out), command::success);
+}
+
+} // namespace
+} // namespace vdb_shell::test
