@@ -138,6 +138,7 @@ std::string options_json(const ShellOptions& options)
                          {"distance_threshold_voxels", options.line_step.distance_threshold_voxels},
                          {"bisection_iterations", options.line_step.bisection_iterations},
                          {"reference_voxels", options.line_step.reference_voxels},
+                         {"sheet_angle_radians", options.line_step.sheet_angle_radians},
                          {"thickness", or_null(options.line_step.thickness)}};
     json["limits"] = {{"limit", name_in_table(options.limits.limit)}};
     json["grow"] = {{"method", name_in_table(options.grow.method)},

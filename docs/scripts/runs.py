@@ -47,7 +47,7 @@ def figures(report):
     failed = {name: value for name, value in certificate.items() if isinstance(value, dict) and value.get("count")}
     return {"certified": certificate["certified"], "failed": failed, "fill": report["volume"]["fill"],
             "inverted": report["tets"]["inverted"], "triangles": report["mesh"]["triangles"],
-            "samples": coverage["samples"], "in_several": coverage["in_several"],
+            "samples": coverage["samples"], "in_several": coverage["in_several"], "in_none": coverage["in_none"],
             "pinned": report["prisms"]["pinned_vertices"]}
 
 

@@ -83,7 +83,11 @@ void add_line_options(CLI::App& app, BuildArguments& arguments)
         ->capture_default_str()
         ->group("Lines");
     app.add_option("--reference", shell.line_step.reference_voxels,
-                   "Where relative-normal takes its reference slope, voxels from the start")
+                   "Where relative-normal and own-sheet begin to compare, voxels from the start")
+        ->capture_default_str()
+        ->group("Lines");
+    app.add_option("--sheet-angle", shell.line_step.sheet_angle_radians,
+                   "own-sheet: surfaces that meet at less than this are one, radians")
         ->capture_default_str()
         ->group("Lines");
     app.add_option("--thickness", shell.line_step.thickness,

@@ -36,7 +36,8 @@ inline const NameTable<StopTest>& names(StopTest)
                                            {"start-gradient", StopTest::start_gradient},
                                            {"distance", StopTest::distance},
                                            {"bisection", StopTest::bisection},
-                                           {"relative-normal", StopTest::relative_normal}};
+                                           {"relative-normal", StopTest::relative_normal},
+                                           {"own-sheet", StopTest::own_sheet}};
     return table;
 }
 

@@ -6,6 +6,7 @@
 #include "shell/grow/directions.h"
 #include "shell/grow/free_moves.h"
 #include "shell/grow/lines.h"
+#include "shell/grow/pins.h"
 #include "shell/grow/start.h"
 #include "shell/grow/stops.h"
 
@@ -68,19 +69,20 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
     s.pinned = thin_pinned;
 }
 
-void move_off_the_lines(GrowState& s, const GrowOptions& options, const StageProgress& progress,
-                        GrowReport& report)
+void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOptions& options,
+                        const StageProgress& progress, GrowReport& report)
 {
     const bool thickest = options.method == Method::thickest;
     const int twelve_rounds =
         thickest ? std::min(kTwelveRoundsFirst, options.free_rounds) : options.free_rounds;
-    growth::move_freely(s, options, {twelve_rounds, growth::kTwelveSoftness}, progress, report);
+    growth::move_freely(s, directions.visibility, options, {twelve_rounds, growth::kTwelveSoftness},
+                        progress, report);
     if (!thickest)
         return;
     s.twelve = false;
     growth::order_by_length(s);
-    growth::move_freely(s, options, {options.free_rounds, growth::kThreeSoftness}, progress,
-                        report);
+    growth::move_freely(s, directions.visibility, options,
+                        {options.free_rounds, growth::kThreeSoftness}, progress, report);
 }
 
 PrismShell shell_of(const TriangleMesh& mesh, GrowState& s)
@@ -131,11 +133,12 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     GrowResult result;
 
     settle(s, lines, start, options, progress);
+    result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     if (options.grow_lines)
         growth::lengthen_lines(s, lines, progress);
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)
-        move_off_the_lines(s, options, progress, result.report);
+        move_off_the_lines(s, lines, options, progress, result.report);
     result.shell = shell_of(mesh, s);
     result.split = split_of(s, result.shell, options, split, result.report);
     return result;

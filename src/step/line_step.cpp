@@ -49,6 +49,8 @@ void check_options(const LineStepOptions& options)
             "positive");
     require(positive(options.reference_voxels), "reference_voxels", options.reference_voxels,
             "positive and finite");
+    require(options.sheet_angle_radians > 0 && options.sheet_angle_radians < 1.5,
+            "sheet_angle_radians", options.sheet_angle_radians, "in (0, 1.5)");
     if (options.thickness)
         require(positive(*options.thickness), "thickness", *options.thickness,
                 "positive and finite");
@@ -61,6 +63,7 @@ MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_se
     MarchRules rules;
     rules.test = options.test;
     rules.rho = options.rho;
+    rules.sheet_cosine = std::cos(options.sheet_angle_radians);
     rules.step = options.step_voxels * voxel;
     rules.distance_threshold = options.distance_threshold_voxels * voxel;
     rules.reference = options.reference_voxels * voxel;
@@ -125,15 +128,20 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
         return lengths;
     const MarchRules rules = rules_of(mesh, level_set, options);
     const std::vector<double> thickest = largest_lengths(mesh, options, thickness_grid);
+    std::vector<double> own_slopes(count, 1.0);
+    if (options.test == StopTest::own_sheet)
+        own_slopes = own_sheet_slopes(mesh, directions);
 
     for (std::size_t block = 0; block < count; block += kBlock) {
         progress.stop_if_interrupted(static_cast<int>(100 * block / count));
         for_each_range(std::min(kBlock, count - block), [&](std::size_t begin, std::size_t end) {
             FieldSampler field(level_set);
             for (std::size_t v = block + begin; v < block + end; ++v) {
-                const LineEnd line_end = step_one(
-                    field, {openvdb::Vec3d(mesh.points[v]), directions.inward[v], thickest[v]},
-                    rules);
+                const LineEnd line_end =
+                    step_one(field,
+                             {openvdb::Vec3d(mesh.points[v]), directions.inward[v], thickest[v],
+                              own_slopes[v]},
+                             rules);
                 lengths.length[v] = line_end.length;
                 lengths.steps[v] = line_end.steps;
                 lengths.reason[v] = line_end.reason;

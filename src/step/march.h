@@ -17,10 +17,11 @@ namespace vdb_shell
 struct MarchRules {
     StopTest test = StopTest::normal;
     double rho = 0.9;
+    double sheet_cosine = 0.985;
     double step = 0;
     double distance_threshold = 0;
-    double reference = 0;    ///< relative_normal measures s0 from here on...
-    double period = 0;       ///< ...over this distance, within which it stops only at slope zero
+    double reference = 0;    ///< relative_normal measures s0 from here on, own_sheet compares;
+    double period = 0;       ///< s0 is taken over this distance
     double entry = 0;        ///< a line that is not inside by here has missed the solid
     double search_depth = 0; ///< bisection looks no deeper: half the diagonal
     double interval = 0;     ///< bisection has converged when its interval is this short
@@ -31,6 +32,7 @@ struct Line {
     openvdb::Vec3d start{0.0};
     openvdb::Vec3d inward{0.0}; ///< unit length
     double max_length = std::numeric_limits<double>::infinity();
+    double own_slope = 1; ///< own_sheet_slopes
 };
 
 struct LineEnd {
@@ -38,6 +40,16 @@ struct LineEnd {
     std::uint32_t steps = 0;
     StopReason reason = StopReason::none;
 };
+
+/// The slope below which a line is no longer on its own sheet. On a sheet the interpolated slope
+/// swings with the position in the cell, by a share of how far the sheet's gradients are apart: up
+/// to 0.15 between two planes and 0.31 between three, over random lattices.
+inline double sheet_threshold(double own_slope, double sheet_cosine)
+{
+    constexpr double kSwing = 0.31;
+    const double apart = std::sqrt(std::max(0.0, 1 - own_slope * own_slope));
+    return std::max(0.0, sheet_cosine * own_slope - kSwing * apart);
+}
 
 /// Bisection on eq. 1: the largest length at which e = -phi(q) up to the threshold, taking for
 /// granted that it holds up to some length and fails beyond.
@@ -88,6 +100,7 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
             reference_slope = std::min(reference_slope, slope);
         return slope > 0;
     };
+    const double threshold = sheet_threshold(line.own_slope, rules.sheet_cosine);
     const auto holds = [&](double e, const auto& sample) {
         switch (rules.test) {
         case StopTest::normal:
@@ -98,6 +111,8 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
             return std::abs(e + sample.phi) < rules.distance_threshold;
         case StopTest::relative_normal:
             return relative_holds(e, slope_of(sample));
+        case StopTest::own_sheet:
+            return slope_of(sample) > (e < rules.reference ? 0.0 : threshold);
         case StopTest::none:
         case StopTest::bisection:
             break;

@@ -101,6 +101,7 @@ ordered_json growth_json(const GrowReport& grow)
 {
     return {{"rounds", grow.rounds},
             {"flips", grow.flips},
+            {"released_pins", grow.released},
             {"fill_after_lines", grow.fill_after_lines}};
 }
 

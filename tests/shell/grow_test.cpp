@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/grow.h"
 
+#include "core/stage_progress.h"
+#include "shell/grow/candidates.h"
+#include "shell/grow/move_tests.h"
+#include "shell/grow/pins.h"
 #include "shell/grow/predicates.h"
+#include "shell/grow/start.h"
 #include "support/files.h"
 #include "support/shapes.h"
 #include "vdb_shell/certify/certificate.h"
@@ -435,6 +440,30 @@ TEST(Grow, FillsRealMeshes)
         EXPECT_EQ(result.report.coverage.outside_covered, 0U);
         EXPECT_GT(result.report.fill, 0.95);
     }
+}
+
+TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
+{
+    const Case c = case_of(test::icosphere(1, 1));
+    const growth::Connectivity mesh = growth::connect(c.mesh.points.size(), c.mesh.triangles);
+    growth::GrowState s = growth::make_state(mesh, c.mesh.points, c.cap);
+    growth::settle_start(s, c.directions, std::vector<double>(s.b.size(), 0.5),
+                         StageProgress(nullptr, "test"));
+    // Neighbours too: each is released beside pins that are not yet.
+    for (const int v : {0, 1, 11}) {
+        s.pinned[v] = 1;
+        s.b[v] = s.a[v];
+    }
+    EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0)), 0);
+    EXPECT_EQ(growth::release_pins(s, c.directions.visibility), 3);
+    growth::rebuild_candidates(s);
+    std::vector<int> touched;
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        EXPECT_TRUE(growth::prism_valid(s, f));
+        EXPECT_TRUE(growth::inner_triangle_clear(s, f, touched));
+    }
+    for (const int v : {0, 1, 11})
+        EXPECT_NE(s.b[v], s.a[v]);
 }
 
 } // namespace

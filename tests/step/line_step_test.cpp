@@ -84,8 +84,8 @@ const Line kDown{Vec3d(0, 0, 1), Vec3d(0, 0, -1)};
 TEST(MarchLine, StopsAtTheLastStepBeforeTheMiddleOfASlab)
 {
     Slab slab;
-    for (const auto test :
-         {StopTest::normal, StopTest::start_gradient, StopTest::relative_normal}) {
+    for (const auto test : {StopTest::normal, StopTest::start_gradient, StopTest::relative_normal,
+                            StopTest::own_sheet}) {
         const LineEnd end = step_one(slab, kDown, rules_of_slab(test));
         EXPECT_EQ(end.length, 1 - 0.0625);
         EXPECT_EQ(end.steps, 16u);
@@ -120,7 +120,7 @@ TEST(MarchLine, ReachesAThicknessExactly)
     Line line = kDown;
     line.max_length = 0.7;
     for (const auto test : {StopTest::normal, StopTest::distance, StopTest::bisection,
-                            StopTest::relative_normal, StopTest::none}) {
+                            StopTest::relative_normal, StopTest::own_sheet, StopTest::none}) {
         const LineEnd end = step_one(slab, line, rules_of_slab(test));
         EXPECT_EQ(end.length, 0.7);
         EXPECT_EQ(end.reason, StopReason::thickness);
@@ -173,11 +173,13 @@ TEST(FieldSampler, IsExactOnALinearField)
 TEST(LineStep, ReachesTheCentreOfASphere)
 {
     const Stage stage = stage_of(test::icosphere(1, 3), 64);
-    for (const auto test :
-         {StopTest::normal, StopTest::start_gradient, StopTest::relative_normal}) {
+    for (const auto test : {StopTest::normal, StopTest::start_gradient, StopTest::relative_normal,
+                            StopTest::own_sheet}) {
+        // The narrowest test feels the turning gradient first.
+        const double early = (test == StopTest::own_sheet ? 4 : 3) * stage.voxel;
         const LineLengths lengths = stage.step(test);
         for (const double length : lengths.length) {
-            EXPECT_GT(length, 1 - 3 * stage.voxel);
+            EXPECT_GT(length, 1 - early);
             EXPECT_LT(length, 1 + 0.5 * stage.voxel);
         }
         EXPECT_THAT(lengths.reason, ::testing::Each(StopReason::stop_test));
@@ -292,7 +294,8 @@ TEST(LineStep, SameBitsForAnyNumberOfThreads)
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         return stage.step(test);
     };
-    for (const auto test : {StopTest::normal, StopTest::relative_normal, StopTest::bisection}) {
+    for (const auto test :
+         {StopTest::normal, StopTest::relative_normal, StopTest::bisection, StopTest::own_sheet}) {
         const LineLengths one = made_by(1, test);
         for (const std::size_t threads : {2, 7}) {
             const LineLengths other = made_by(threads, test);
@@ -323,6 +326,8 @@ TEST(LineStep, RefusesOptionsOutOfRange)
     EXPECT_THAT(refused([](auto& o) { o.bisection_iterations = 0; }), HasSubstr("iterations is 0"));
     EXPECT_THAT(refused([](auto& o) { o.reference_voxels = -1; }), HasSubstr("voxels is -1"));
     EXPECT_THAT(refused([](auto& o) { o.thickness = -2; }), HasSubstr("thickness is -2"));
+    EXPECT_THAT(refused([](auto& o) { o.sheet_angle_radians = 0; }), HasSubstr("radians is 0"));
+    EXPECT_THAT(refused([](auto& o) { o.sheet_angle_radians = 1.5; }), HasSubstr("radians is 1.5"));
 }
 
 struct StopsAtOnce : Interrupter {

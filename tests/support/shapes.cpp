@@ -146,6 +146,44 @@ TriangleMesh torus(double major, double minor, int around, int across)
     return mesh;
 }
 
+TriangleMesh extruded(const std::vector<openvdb::Vec2d>& polygon,
+                      const std::vector<double>& heights)
+{
+    TriangleMesh mesh;
+    Vec3d middle(0.0);
+    for (const double z : heights)
+        for (const auto& p : polygon)
+            mesh.points.emplace_back(Vec3d(p[0], p[1], z));
+    for (const auto& p : polygon)
+        middle += Vec3d(p[0], p[1], 0) / double(polygon.size());
+    const auto n = static_cast<std::uint32_t>(polygon.size());
+    const auto rows = static_cast<std::uint32_t>(heights.size());
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t j = (i + 1) % n;
+        for (std::uint32_t r = 0; r + 1 < rows; ++r) {
+            const std::uint32_t a = r * n + i, b = r * n + j;
+            mesh.triangles.emplace_back(a, b, b + n);
+            mesh.triangles.emplace_back(a, b + n, a + n);
+        }
+        mesh.triangles.emplace_back(j, i, rows * n);
+        mesh.triangles.emplace_back((rows - 1) * n + i, (rows - 1) * n + j, rows * n + 1);
+    }
+    mesh.points.emplace_back(middle + Vec3d(0, 0, heights.front()));
+    mesh.points.emplace_back(middle + Vec3d(0, 0, heights.back()));
+    return mesh;
+}
+
+TriangleMesh turned(TriangleMesh mesh, const Vec3d& axis, double angle_radians)
+{
+    const Vec3d k = axis.unit();
+    const double c = std::cos(angle_radians), s = std::sin(angle_radians);
+    for (Vec3s& point : mesh.points) {
+        const Vec3d p(point);
+        point = Vec3s(c * p + s * k.cross(p) + (1 - c) * k.dot(p) * k);
+    }
+    return mesh;
+}
+
 TriangleMesh translated(TriangleMesh mesh, const Vec3d& by)
 {
     for (Vec3s& p : mesh.points)

@@ -17,8 +17,14 @@ TriangleMesh torus(double major, double minor, int around, int across);
 /// A box whose faces are split into n x n quads (2 triangles each): flat vertices as well as
 /// corners.
 TriangleMesh gridded_box(const openvdb::Vec3d& low, const openvdb::Vec3d& high, int n);
+/// A convex polygon (x, y counter-clockwise) pulled along z in rows of vertices at the heights
+/// given, which rise: row r, corner i is vertex r * n + i; then the middles of the two ends.
+TriangleMesh extruded(const std::vector<openvdb::Vec2d>& polygon,
+                      const std::vector<double>& heights);
 
 TriangleMesh translated(TriangleMesh mesh, const openvdb::Vec3d& by);
+/// Turned about an axis through the origin.
+TriangleMesh turned(TriangleMesh mesh, const openvdb::Vec3d& axis, double angle_radians);
 TriangleMesh reversed(TriangleMesh mesh); ///< every triangle turned round
 TriangleMesh joined(TriangleMesh first, const TriangleMesh& second);    ///< both, not welded
 TriangleMesh without_triangle(TriangleMesh mesh, std::size_t triangle); ///< an open surface

@@ -39,6 +39,7 @@ struct GrowOptions {
 struct GrowReport {
     std::size_t rounds = 0;      ///< rounds of free moves
     std::size_t flips = 0;       ///< diagonals turned
+    std::size_t released = 0;    ///< pins of the start that growth could release
     double fill_after_lines = 0; ///< shell volume / solid volume before the first free move
 };
 

@@ -24,6 +24,8 @@ enum class StopTest {
     bisection,       ///< eq. 1 by bisection on e = -phi(q): the paper's baseline
     relative_normal, ///< go on while g(q) . n > rho * s0, where s0 is the smallest slope g . n over
                      ///< one cell diagonal from reference_voxels on; up to there while g . n > 0
+    own_sheet,       ///< go on while g(q) . n is what the vertex's own triangles make it, up to
+               ///< sheet_angle_radians: see own_sheet_slopes; up to reference_voxels while > 0
 };
 
 /// Why a line ended where it did.
@@ -57,9 +59,12 @@ struct LineStepOptions {
     double distance_threshold_voxels = 1.0;
     int bisection_iterations = 1000;
     /// relative_normal measures its reference slope s0 from this distance on, where the stencil is
-    /// clear of the start, over sqrt(3) voxels: on a crease of the field the interpolated slope
-    /// swings with the position in the cell, and s0 has to be its low.
+    /// clear of the start, over sqrt(3) voxels (own_sheet begins here): on a crease of the field
+    /// the interpolated slope swings with the position in the cell, and s0 has to be its low.
     double reference_voxels = 1.5;
+    /// own_sheet takes parts of the surface that meet at less than this angle for one smooth part:
+    /// their symmetry sheets do not stop a line.
+    double sheet_angle_radians = 0.1745;
     /// Largest length of any line, world units (epsilon_user of eq. 1). Unset: no such bound.
     std::optional<double> thickness;
 };
@@ -70,6 +75,13 @@ struct LineLengths {
     std::vector<std::uint32_t> steps;
     std::vector<StopReason> reason;
 };
+
+/// Per vertex, how fast the distance to the planes and edges of its own triangles grows along its
+/// direction, if they went on for ever: 1 on a flat or hollow surface, the cosine of the angle to
+/// the steepest triangle on a ridge or corner. While nothing else is nearer, -phi at length e is e
+/// times this, and the line walks along the crease's own symmetry sheet (the paper, figure 2c).
+/// Not positive where the direction leaves the solid; 0 where there is no direction.
+std::vector<double> own_sheet_slopes(const TriangleMesh& mesh, const Directions& directions);
 
 /// Steps from every vertex inward along its direction, in parallel over VDB samplers.
 /// `thickness_grid` (may be null): a float grid of largest lengths, sampled at each vertex; a

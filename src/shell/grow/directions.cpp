@@ -102,14 +102,21 @@ std::vector<std::vector<Vec3d>> star_normals(const TriangleMesh& mesh)
 
 } // namespace
 
+Vec3d most_visible(const std::vector<Vec3d>& normals)
+{
+    if (normals.empty())
+        return Vec3d(0.0);
+    return normals.size() <= kSmallStar ? most_visible_of_few(normals)
+                                        : most_visible_of_many(normals);
+}
+
 void mend_directions(const TriangleMesh& mesh, Directions& directions)
 {
     const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
     for_each_index(mesh.points.size(), [&](std::size_t v) {
         if (normals[v].empty() || directions.visibility[v] > kPoorVisibility)
             return;
-        const Vec3d d = normals[v].size() <= kSmallStar ? most_visible_of_few(normals[v])
-                                                        : most_visible_of_many(normals[v]);
+        const Vec3d d = most_visible(normals[v]);
         const double visibility = smallest_dot(normals[v], d);
         if (visibility <= directions.visibility[v])
             return;

@@ -4,6 +4,7 @@
 #include "shell/grow/barrier.h"
 #include "shell/grow/candidates.h"
 #include "shell/grow/diagonals.h"
+#include "shell/grow/pins.h"
 #include "shell/grow/soft_contacts.h"
 #include "shell/grow/sweep.h"
 
@@ -137,14 +138,14 @@ double cooled(double softness, double gain)
 
 } // namespace
 
-void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stage,
-                 const StageProgress& progress, GrowReport& report)
+void move_freely(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,
+                 const FreeStage& stage, const StageProgress& progress, GrowReport& report)
 {
     const double per_tet =
         std::abs(volume6(s.a, s.mesh->faces)) / (3.0 * std::max(1, s.mesh->face_count()));
     const double first_fill = fill_of(s);
     const std::vector<Vec3d> first_b = s.b;
-    const std::vector<std::uint8_t> first_order = s.order;
+    const std::vector<std::uint8_t> first_order = s.order, first_pinned = s.pinned;
     for (int v = 0; v < s.mesh->vertices; ++v)
         s.reach[v] = first_reach(s, v);
     double fill = first_fill;
@@ -156,6 +157,9 @@ void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stag
     for (int round = 0; round < stage.rounds && fill < kEnoughFill; ++round) {
         progress.stop_if_interrupted(100 * round / stage.rounds);
         const MoveRules rules{options.soft_contacts, per_tet * softness, kLeastMove * s.diagonal};
+        // Seldom: a pin that cannot go now will hardly be able to in the next round.
+        if ((round & (round - 1)) == 0)
+            report.released += static_cast<std::size_t>(release_pins(s, visibility));
         rebuild_candidates(s);
         for (int i = 0; i < kSweepsPerRound; ++i)
             sweep(s, sweep_scratch, [&](int v, Vec3d& x) {
@@ -175,6 +179,7 @@ void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stag
     if (fill < first_fill) {
         s.b = first_b;
         s.order = first_order;
+        s.pinned = first_pinned;
     }
 }
 

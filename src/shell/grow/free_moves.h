@@ -22,7 +22,8 @@ struct FreeStage {
 /// Inner vertices leave their lines: each minimises the inner volume with an interior barrier on
 /// the tets around it and on near triangles, and every move is tested exactly before it is made.
 /// Never ends with less fill than it began with. Adds to the report's rounds and flips.
-void move_freely(GrowState& s, const GrowOptions& options, const FreeStage& stage,
-                 const StageProgress& progress, GrowReport& report);
+/// Pinned vertices of positive `visibility` are tried again on the way.
+void move_freely(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,
+                 const FreeStage& stage, const StageProgress& progress, GrowReport& report);
 
 } // namespace vdb_shell::growth
