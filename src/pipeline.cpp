@@ -6,12 +6,10 @@
 #include "core/option_names.h"
 #include "core/stage_clock.h"
 #include "pipeline_figures.h"
-#include "step/thickness.h"
+#include "pipeline_sides.h"
 
 #include <nlohmann/json.hpp>
-#include <openvdb/tools/Count.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace vdb_shell
@@ -21,53 +19,18 @@ namespace
 
 void require_a_bound(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
 {
-    if (options.line_step.test == StopTest::none && options.limits.limit == Limit::none &&
-        !options.line_step.thickness && !thickness_grid)
+    if (options.side != Side::outward && options.line_step.test == StopTest::none &&
+        options.limits.limit == Limit::none && !options.line_step.thickness && !thickness_grid)
         throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "
                             "would end the lines");
 }
 
-/// A band no deeper than the longest line that the user allows.
-LevelSetOptions band_for(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
+void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* interrupter)
 {
-    LevelSetOptions band = options.level_set;
-    if (band.interior_depth)
-        return band;
-    if (options.line_step.thickness)
-        band.interior_depth = options.line_step.thickness;
-    if (thickness_grid) {
-        const double painted = openvdb::tools::minMax(thickness_grid->tree()).max();
-        const double background = thickness_grid->background();
-        const double deepest = std::max(painted, background);
-        if (deepest > 0.0)
-            band.interior_depth = std::min(band.interior_depth.value_or(deepest), deepest);
-    }
-    return band;
-}
-
-/// Growth, or for Method::raw the prisms straight from the lengths.
-void make_shell(ShellResult& r, const ShellOptions& options,
-                const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
-{
-    if (options.grow.method == Method::raw) {
-        r.shell = extrude(r.surface, r.directions, r.lengths);
-        r.split = split_prisms(r.shell, options.split);
-        return;
-    }
-    GrowResult grown = grow_shell(r.surface, r.directions, r.lengths,
-                                  largest_lengths(r.surface, options.line_step, thickness_grid),
-                                  options.grow, options.split, interrupter);
-    r.shell = std::move(grown.shell);
-    r.split = std::move(grown.split);
-    r.report.grow = grown.report;
-}
-
-/// The twelve tets are what growth keeps positive by default, and what the raw shells are held
-/// against; the thickest shells stand by their chosen tets alone.
-PrismTest prism_test(const ShellOptions& options)
-{
-    return options.grow.method == Method::thickest ? PrismTest::chosen_tets
-                                                   : PrismTest::twelve_tets;
+    LayerResult cut = cut_layers(r.stack, options.layers, prism_test(options), interrupter);
+    r.stack = std::move(cut.stack);
+    if (options.layers.layers > 1)
+        r.report.cut = cut.report;
 }
 
 } // namespace
@@ -77,6 +40,8 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         Interrupter* interrupter)
 {
     require_a_bound(options, thickness_grid);
+    require_sensible(options.scale);
+    require_sensible(options.layers);
     ShellResult r;
     r.report.source = name;
     StageClock clock(r.report.stages);
@@ -87,31 +52,26 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
         r.surface = turn_outward(mesh, r.report.mesh);
     });
     clock.run("level set", [&] {
-        r.level_set = mesh_to_level_set(r.surface, band_for(options, thickness_grid), interrupter);
+        r.level_set =
+            mesh_to_level_set(r.surface, band_for(options, r.surface, thickness_grid), interrupter);
     });
     clock.run("smooth", [&] {
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
     });
-    clock.run("directions", [&] {
-        r.directions = compute_directions(r.surface, *r.level_set, options.directions);
-    });
-    clock.run("line stepping", [&] {
-        r.lengths = line_step(r.surface, *r.level_set, r.directions, options.line_step,
-                              thickness_grid, interrupter);
-    });
-    clock.run("limits", [&] {
-        apply_limits(r.lengths, vertex_limits(r.surface, r.directions, options.limits.limit));
-    });
-    clock.run(options.grow.method == Method::raw ? "prisms" : "growth",
-              [&] { make_shell(r, options, thickness_grid, interrupter); });
-    clock.run("tets", [&] { r.tets = make_tets(r.shell, r.split); });
+    build_sides(r, options, thickness_grid, clock, interrupter);
+    clock.run("layers", [&] { make_layers(r, options, interrupter); });
+    clock.run("tets", [&] { r.tets = make_tets(r.stack); });
     clock.run("certificate", [&] {
-        r.report.certificate = certify_shell(r.shell, r.split, prism_test(options), interrupter);
+        r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
     });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
-        r.report.coverage = estimate_coverage(r.surface, r.tets, options.coverage, interrupter);
+        // Layers outside are held against what the outermost surface encloses.
+        const TriangleMesh solid = options.side == Side::inward
+                                       ? r.surface
+                                       : TriangleMesh{r.stack.surface(0), r.stack.triangles()};
+        r.report.coverage = estimate_coverage(solid, r.tets, options.coverage, interrupter);
     });
     return r;
 }
@@ -122,11 +82,13 @@ std::string options_json(const ShellOptions& options)
         return optional ? nlohmann::ordered_json(*optional) : nlohmann::ordered_json(nullptr);
     };
     nlohmann::ordered_json json;
+    json["side"] = name_in_table(options.side);
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
                      {"turn_inside_out", options.check.turn_inside_out}};
     json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},
                          {"resolution", options.level_set.resolution},
                          {"exterior_voxels", options.level_set.exterior_voxels},
+                         {"exterior_depth", or_null(options.level_set.exterior_depth)},
                          {"interior_depth", or_null(options.level_set.interior_depth)}};
     json["smooth"] = {{"iterations", options.smooth.iterations}};
     json["directions"] = {{"source", name_in_table(options.directions.source)},
@@ -149,7 +111,10 @@ std::string options_json(const ShellOptions& options)
                     {"free_moves", options.grow.free_moves},
                     {"soft_contacts", options.grow.soft_contacts},
                     {"flips", options.grow.flips},
-                    {"free_rounds", options.grow.free_rounds}};
+                    {"free_rounds", options.grow.free_rounds},
+                    {"min_quality", options.grow.min_quality}};
+    json["scale"] = {{"factor", options.scale.factor}};
+    json["layers"] = {{"layers", options.layers.layers}, {"grading", options.layers.grading}};
     json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};
     json["coverage"] = {{"samples", options.coverage.samples}, {"seed", options.coverage.seed}};
     return json.dump(2);

@@ -5,14 +5,17 @@
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
-#include "vdb_shell/shell/prism_shell.h"
-#include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/shell/scale_thickness.h"
+#include "vdb_shell/shell/shell_stack.h"
+#include "vdb_shell/shell/sides.h"
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/limits.h"
 #include "vdb_shell/step/line_step.h"
 #include "vdb_shell/write/report.h"
 
+#include <optional>
 #include <string>
 
 namespace vdb_shell
@@ -21,6 +24,9 @@ namespace vdb_shell
 /// The options of every stage, in the order of the data. The command's flags bind to these very
 /// fields.
 struct ShellOptions {
+    /// Where the shell lies. Outward lines without any thickness of the user's get
+    /// default_outward_thickness.
+    Side side = Side::inward;
     CheckOptions check;
     LevelSetOptions level_set;
     SmoothOptions smooth;
@@ -28,26 +34,37 @@ struct ShellOptions {
     LineStepOptions line_step;
     LimitOptions limits;
     GrowOptions grow;
+    ScaleOptions scale;
+    LayerOptions layers;
     SplitOptions split;
     CoverageOptions coverage;
+};
+
+/// The lines of one side, towards which they grow: Directions::inward of an outward line is the
+/// surface's outward direction.
+struct SideLines {
+    Directions directions;
+    LineLengths lengths;
 };
 
 /// What the stages made.
 struct ShellResult {
     TriangleMesh surface; ///< the input, turned outward when asked
     openvdb::FloatGrid::Ptr level_set;
-    Directions directions;
-    LineLengths lengths;
-    PrismShell shell;
-    PrismSplit split;
+    Directions directions;            ///< of the side that the shell lies on; of both sides, inward
+    LineLengths lengths;              ///< likewise
+    std::optional<SideLines> outside; ///< the lines outward, where the shell lies on both sides
+    ShellStack stack;                 ///< one layer a side unless more were asked for
     TetMesh tets;
     ShellReport report;
 };
 
 /// The whole job on a mesh in memory: check, level set, smooth, directions, line stepping, limits,
-/// growth (Method::raw: prisms straight from the lengths), tets, certificate, figures. `name` is
-/// what messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the
-/// stages throw. Same result for any number of threads (costs in the report aside).
+/// growth (Method::raw: prisms straight from the lengths), scale, layers, tets, certificate,
+/// figures. For an outward shell the stages from directions to scale run on the reversed surface
+/// (shell/sides.h), for both sides once for each. `name` is what messages and the report call the
+/// mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for any number
+/// of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

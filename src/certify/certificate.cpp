@@ -12,20 +12,6 @@
 
 namespace vdb_shell
 {
-namespace
-{
-
-std::string index_text(std::uint32_t index)
-{
-    return std::to_string(index);
-}
-std::string index_text(const std::array<std::uint32_t, 2>& pair)
-{
-    return std::to_string(pair[0]) + "-" + std::to_string(pair[1]);
-}
-
-} // namespace
-
 bool Certificate::certified() const
 {
     std::size_t failures = 0;
@@ -44,12 +30,8 @@ std::vector<std::string> Certificate::failures() const
 {
     std::vector<std::string> lines;
     for_each_kind(*this, [&](const char* name, const auto& defect) {
-        if (defect.count == 0)
-            return;
-        std::string line = std::string(name) + " " + std::to_string(defect.count) + " (first";
-        for (const auto& element : defect.first)
-            line += " " + index_text(element);
-        lines.push_back(line + ")");
+        if (defect.count > 0)
+            lines.push_back(failure_line(name, defect));
     });
     return lines;
 }

@@ -3,6 +3,8 @@
 
 #include "vdb_shell/certify/certificate.h"
 
+#include <array>
+#include <string>
 #include <vector>
 
 namespace vdb_shell
@@ -22,6 +24,25 @@ inline Defect<std::uint32_t> raised(const std::vector<char>& flags)
         if (flags[i])
             add_to(defect, i);
     return defect;
+}
+
+inline std::string index_text(std::uint32_t index)
+{
+    return std::to_string(index);
+}
+inline std::string index_text(const std::array<std::uint32_t, 2>& pair)
+{
+    return std::to_string(pair[0]) + "-" + std::to_string(pair[1]);
+}
+
+/// "name COUNT (first I J K)".
+template <typename Element>
+std::string failure_line(const char* name, const Defect<Element>& defect)
+{
+    std::string line = std::string(name) + " " + std::to_string(defect.count) + " (first";
+    for (const Element& element : defect.first)
+        line += " " + index_text(element);
+    return line + ")";
 }
 
 /// visit(name, defect) for each kind of failure. The names are those of messages and of JSON.

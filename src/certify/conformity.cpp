@@ -49,22 +49,40 @@ FaceSide side_of(const Vec3I& face, std::uint32_t owner, bool of_surface)
 
 constexpr std::uint32_t kNoPoint = ~std::uint32_t(0);
 
+/// The two free surfaces of a shell or of a stack.
+struct FreeSurfaces {
+    const std::vector<Vec3I>* triangles;
+    std::vector<std::uint8_t> pinned; ///< by vertex: no length in any layer
+};
+
+FreeSurfaces free_surfaces(const PrismShell* layers, std::size_t count)
+{
+    FreeSurfaces free{&layers->triangles, std::vector<std::uint8_t>(layers->outer.size(), 1)};
+    for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t v = 0; v < free.pinned.size(); ++v)
+            free.pinned[v] = free.pinned[v] && layers[k].pinned(v);
+    return free;
+}
+
 struct PointIndex {
     std::vector<std::uint32_t> outer, inner;
 };
 
-PointIndex index_points(const PrismShell& shell, const TetMesh& mesh)
+/// The inner point of a pillar is its last one: where it is pinned in the last layer that of a
+/// surface above.
+PointIndex index_points(const FreeSurfaces& free, const TetMesh& mesh)
 {
     PointIndex index;
-    index.outer.assign(shell.outer.size(), kNoPoint);
-    index.inner.assign(shell.outer.size(), kNoPoint);
+    const std::size_t vertices = free.pinned.size();
+    index.outer.assign(vertices, kNoPoint);
+    index.inner.assign(vertices, kNoPoint);
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-        if (mesh.source_vertex[p] < shell.outer.size())
+        if (mesh.source_vertex[p] < vertices)
             (mesh.layer[p] ? index.inner : index.outer)[mesh.source_vertex[p]] =
                 static_cast<std::uint32_t>(p);
     }
-    for (std::size_t v = 0; v < shell.outer.size(); ++v)
-        if (shell.pinned(v))
+    for (std::size_t v = 0; v < vertices; ++v)
+        if (free.pinned[v])
             index.inner[v] = index.outer[v];
     return index;
 }
@@ -95,19 +113,19 @@ struct Findings {
 
 /// The sides that the surfaces should find a tet at. A triangle with three pinned corners has no
 /// prism: its outer and inner triangle are one, and no tet is expected there.
-void append_surface_sides(const PrismShell& shell, const TetMesh& mesh,
+void append_surface_sides(const FreeSurfaces& free, const TetMesh& mesh,
                           std::vector<FaceSide>& sides, Findings& findings)
 {
-    const PointIndex index = index_points(shell, mesh);
+    const PointIndex index = index_points(free, mesh);
     auto append = [&](const Vec3I& face, std::uint32_t triangle) {
         if (face[0] == kNoPoint || face[1] == kNoPoint || face[2] == kNoPoint)
             findings.missing.add(triangle);
         else
             sides.push_back(side_of(face, triangle, true));
     };
-    for (std::uint32_t t = 0; t < shell.triangles.size(); ++t) {
-        const Vec3I& v = shell.triangles[t];
-        if (shell.pinned(v[0]) && shell.pinned(v[1]) && shell.pinned(v[2]))
+    for (std::uint32_t t = 0; t < free.triangles->size(); ++t) {
+        const Vec3I& v = (*free.triangles)[t];
+        if (free.pinned[v[0]] && free.pinned[v[1]] && free.pinned[v[2]])
             continue;
         append({index.outer[v[0]], index.outer[v[2]], index.outer[v[1]]}, t);
         append({index.inner[v[0]], index.inner[v[1]], index.inner[v[2]]}, t);
@@ -132,17 +150,15 @@ void judge_face(const FaceSide* first, const FaceSide* last, Findings& findings)
         findings.missing.add(side->owner);
 }
 
-} // namespace
-
-Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh)
+Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
 {
     Findings findings;
     std::vector<FaceSide> sides;
-    sides.reserve(4 * mesh.tets.size() + 2 * shell.triangles.size());
+    sides.reserve(4 * mesh.tets.size() + 2 * free.triangles->size());
     for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
         for (std::size_t corner = 0; corner < 4; ++corner)
             sides.push_back(side_of(tet_face(mesh.tets[i], corner), i, false));
-    append_surface_sides(shell, mesh, sides, findings);
+    append_surface_sides(free, mesh, sides, findings);
     tbb::parallel_sort(sides.begin(), sides.end());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
@@ -151,6 +167,18 @@ Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh)
     }
     return {findings.crowded.listed(), findings.misoriented.listed(), findings.stray.listed(),
             findings.missing.listed()};
+}
+
+} // namespace
+
+Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh)
+{
+    return judge(free_surfaces(&shell, 1), mesh);
+}
+
+Conformity check_conformity(const ShellStack& stack, const TetMesh& mesh)
+{
+    return judge(free_surfaces(stack.layers.data(), stack.layers.size()), mesh);
 }
 
 } // namespace vdb_shell

@@ -81,6 +81,7 @@ Spread spread_of(std::vector<double> values)
         return values[static_cast<std::size_t>(std::floor(share * last + 0.5))];
     };
     spread.min = values.front();
+    spread.p1 = at(0.01);
     spread.p5 = at(0.05);
     spread.median = at(0.5);
     spread.p95 = at(0.95);

@@ -44,6 +44,9 @@ void add_field_options(CLI::App& app, ShellOptions& shell)
                    "Width of the band outside the surface")
         ->capture_default_str()
         ->group("Level set");
+    app.add_option("--exterior-depth", shell.level_set.exterior_depth,
+                   "Depth of the band outside, world units [outward: the thickness]")
+        ->group("Level set");
     app.add_option("--interior-depth", shell.level_set.interior_depth,
                    "Depth of the band inside, world units [the thickness, else half the diagonal]")
         ->group("Level set");
@@ -58,6 +61,8 @@ void add_field_options(CLI::App& app, ShellOptions& shell)
 void add_line_options(CLI::App& app, BuildArguments& arguments)
 {
     ShellOptions& shell = arguments.shell;
+    bind_enum(app, "--side", shell.side, "Side of the surface that the shell lies on")
+        ->group("Lines");
     bind_enum(app, "--directions", shell.directions.source, "Where the lines' directions come from")
         ->group("Lines");
     app.add_option("--perturb", shell.directions.perturbation_radians,
@@ -91,7 +96,7 @@ void add_line_options(CLI::App& app, BuildArguments& arguments)
         ->capture_default_str()
         ->group("Lines");
     app.add_option("--thickness", shell.line_step.thickness,
-                   "Largest length of any line, world units")
+                   "Largest length of any line, world units [outward: a tenth of the diagonal]")
         ->group("Lines");
     app.add_option("--thickness-grid", arguments.thickness_grid,
                    "Float grid of largest lengths: FILE.vdb or FILE.vdb:GRID")
@@ -128,6 +133,25 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str()
         ->group("Growth");
+    app.add_option("--min-quality", grow.min_quality,
+                   "Mean ratio that tets should reach, at a cost in thickness; 0 asks for none")
+        ->capture_default_str()
+        ->group("Growth");
+}
+
+void add_layer_options(CLI::App& app, ShellOptions& shell)
+{
+    app.add_option("--thickness-scale", shell.scale.factor,
+                   "Share of each pillar's length to keep after growth")
+        ->capture_default_str()
+        ->group("Layers");
+    app.add_option("--layers", shell.layers.layers, "Layers that each pillar is cut into")
+        ->capture_default_str()
+        ->group("Layers");
+    app.add_option("--layer-grading", shell.layers.grading,
+                   "Thickness of each layer over that of the one nearer to the surface")
+        ->capture_default_str()
+        ->group("Layers");
 }
 
 void add_shell_options(CLI::App& app, ShellOptions& shell)
@@ -168,8 +192,7 @@ ShellFile to_file(const ShellResult& result, const BuildArguments& arguments,
                   Interrupter* interrupter)
 {
     ShellFile file;
-    file.shell = result.shell;
-    file.split = result.split;
+    file.stack = result.stack;
     file.tets = result.tets;
     file.parameters_json = options_json(arguments.shell);
     file.report_json = report_json(result.report, false);
@@ -204,6 +227,7 @@ void add_build_command(CLI::App& app, BuildArguments& arguments)
     add_field_options(app, arguments.shell);
     add_line_options(app, arguments);
     add_growth_options(app, arguments.shell.grow);
+    add_layer_options(app, arguments.shell);
     add_shell_options(app, arguments.shell);
 }
 

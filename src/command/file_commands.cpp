@@ -70,10 +70,12 @@ int run_info(const FileArguments& arguments)
         std::cout << json.dump(2) << '\n';
         return success;
     }
-    std::cout << arguments.file.string() << ": shell, schema " << kShellSchema << "\n  "
-              << file.shell.outer.size() << " surface vertices, " << file.shell.triangles.size()
-              << " prisms, " << file.tets.points.size() << " points, " << file.tets.tets.size()
-              << " tets\n";
+    const std::size_t layers = file.stack.layers.size();
+    std::cout << arguments.file.string() << ": shell, schema "
+              << read_shell_info(arguments.file).schema << "\n  " << file.stack.surface(0).size()
+              << " surface vertices, " << layers << (layers == 1 ? " layer, " : " layers, ")
+              << layers * file.stack.triangles().size() << " prisms, " << file.tets.points.size()
+              << " points, " << file.tets.tets.size() << " tets\n";
     for (const openvdb::FloatGrid::Ptr& grid : {file.surface, file.depth})
         if (grid)
             print_grid(*grid);

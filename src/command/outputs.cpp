@@ -65,6 +65,13 @@ fs::path first_vdb(const Outputs& outputs)
     return {};
 }
 
+/// The end of the shell that is not the input.
+TriangleMesh grown_surface(const ShellStack& stack)
+{
+    const bool outward = stack.skin == stack.layers.size();
+    return {stack.surface(outward ? 0 : stack.layers.size()), stack.triangles()};
+}
+
 } // namespace
 
 void add_output_options(CLI::App& app, Outputs& outputs)
@@ -74,8 +81,8 @@ void add_output_options(CLI::App& app, Outputs& outputs)
            "File to write; give it once for each file wanted. By extension: .vdb (everything), "
            ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .usda (surface, tets, and the "
            "volumes of the .vdb written with it), .vtu .node .ele .mesh .msh (tets), .obj .ply "
-           ".off "
-           ".stl (inner surface), .png (picture of a cross-section)")
+           ".off .stl (inner surface; the outer one of an outward shell), .png (picture of a "
+           "cross-section)")
         ->allow_extra_args(false)
         ->group("Output");
     bind_enum(app, "--points", outputs.vdb.points,
@@ -141,10 +148,10 @@ void write_outputs(const Outputs& outputs, const ShellFile& file)
             write_tets(path, file.tets);
             break;
         case Kind::surface:
-            write_mesh(path, inner_surface(file.shell));
+            write_mesh(path, grown_surface(file.stack));
             break;
         case Kind::picture:
-            write_cross_section(path, file.shell, file.tets, outputs.picture);
+            write_cross_section(path, hull_of(file.stack), file.tets, outputs.picture);
             break;
         case Kind::usd:
             write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd);

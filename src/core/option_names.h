@@ -5,6 +5,7 @@
 
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/shell/grow.h"
+#include "vdb_shell/shell/sides.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/limits.h"
@@ -45,6 +46,13 @@ inline const NameTable<Limit>& names(Limit)
 {
     static const NameTable<Limit> table{
         {"none", Limit::none}, {"uniform", Limit::uniform}, {"adaptive", Limit::adaptive}};
+    return table;
+}
+
+inline const NameTable<Side>& names(Side)
+{
+    static const NameTable<Side> table{
+        {"inward", Side::inward}, {"outward", Side::outward}, {"both", Side::both}};
     return table;
 }
 

@@ -17,7 +17,7 @@ class StageClock
 public:
     explicit StageClock(std::vector<StageCost>& costs) : costs_(costs) {}
 
-    template <typename Stage> void run(const char* name, Stage&& stage)
+    template <typename Stage> void run(const std::string& name, Stage&& stage)
     {
         const auto start = std::chrono::steady_clock::now();
         std::forward<Stage>(stage)();

@@ -61,7 +61,11 @@ BandVoxels band_of(const TriangleMesh& mesh, double voxel, const LevelSetOptions
 {
     const double deepest = 0.5 * diagonal_of(bounds_of(mesh.points));
     const double depth = std::min(options.interior_depth.value_or(deepest), deepest);
-    return {options.exterior_voxels, depth / voxel + kStencilVoxels};
+    const double exterior =
+        options.exterior_depth
+            ? std::max(options.exterior_voxels, *options.exterior_depth / voxel + kStencilVoxels)
+            : options.exterior_voxels;
+    return {exterior, depth / voxel + kStencilVoxels};
 }
 
 void check_mesh_and_options(const TriangleMesh& mesh, const LevelSetOptions& options)
@@ -77,6 +81,9 @@ void check_mesh_and_options(const TriangleMesh& mesh, const LevelSetOptions& opt
     };
     if (!positive(options.interior_depth))
         fail<InvalidOption>("interior_depth is ", *options.interior_depth,
+                            ", must be positive and finite");
+    if (!positive(options.exterior_depth))
+        fail<InvalidOption>("exterior_depth is ", *options.exterior_depth,
                             ", must be positive and finite");
     if (!positive(options.max_memory_gib))
         fail<InvalidOption>("max_memory_gib is ", *options.max_memory_gib,
@@ -117,9 +124,10 @@ void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions&
     const double estimate = estimate_level_set_bytes(mesh, voxel, options);
     const double limit = options.max_memory_gib ? *options.max_memory_gib * kGib : free_memory();
     if (!(estimate <= limit))
-        fail<GeometryError>("voxel size ", voxel, " needs an estimated ", estimate / kGib,
-                            " GiB, over the limit of ", limit / kGib,
-                            " GiB; enlarge the voxels or bound the interior depth");
+        fail<GeometryError>(
+            "voxel size ", voxel, " needs an estimated ", estimate / kGib,
+            " GiB, over the limit of ", limit / kGib,
+            " GiB; enlarge the voxels or bound the depth of the band (a thickness does)");
 }
 
 openvdb::FloatGrid::Ptr convert(const TriangleMesh& mesh, const openvdb::math::Transform& transform,

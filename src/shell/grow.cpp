@@ -7,6 +7,7 @@
 #include "shell/grow/free_moves.h"
 #include "shell/grow/lines.h"
 #include "shell/grow/pins.h"
+#include "shell/grow/quality.h"
 #include "shell/grow/start.h"
 #include "shell/grow/stops.h"
 
@@ -85,9 +86,9 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOp
                         {options.free_rounds, growth::kThreeSoftness}, progress, report);
 }
 
-PrismShell shell_of(const TriangleMesh& mesh, GrowState& s)
+PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s)
 {
-    PrismShell shell{mesh.points, mesh.points, mesh.triangles, growth::probe_stops(s)};
+    PrismShell shell{mesh.points, mesh.points, mesh.triangles, {}};
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
         if (!s.pinned[v])
             shell.inner[v] = openvdb::Vec3s(s.b[v]);
@@ -95,22 +96,44 @@ PrismShell shell_of(const TriangleMesh& mesh, GrowState& s)
 }
 
 /// Under the twelve-tet test any rule of the user's will do; otherwise growth has its own orders.
-PrismSplit split_of(GrowState& s, const PrismShell& shell, const GrowOptions& options,
-                    const SplitOptions& split, GrowReport& report)
+bool may_turn_diagonals(const GrowState& s, const GrowOptions& options, const SplitOptions& split)
 {
-    PrismSplit result;
+    return options.flips && (!s.twelve || split.rule == SplitRule::length_descending);
+}
+
+/// Settles the diagonals; gives back the ripples.
+std::size_t choose_diagonals(GrowState& s, const PrismShell& shell, const GrowOptions& options,
+                             const SplitOptions& split, GrowReport& report)
+{
+    PrismSplit by_rule;
     if (s.twelve) {
-        result = split_prisms(shell, split);
-        for (std::size_t f = 0; f < result.order.size(); ++f)
-            s.order[f] = static_cast<std::uint8_t>(growth::order_index(result.order[f]));
+        by_rule = split_prisms(shell, split);
+        for (std::size_t f = 0; f < by_rule.order.size(); ++f)
+            s.order[f] = static_cast<std::uint8_t>(growth::order_index(by_rule.order[f]));
     }
-    const bool own_order = !s.twelve || split.rule == SplitRule::length_descending;
-    if (options.flips && own_order)
+    if (may_turn_diagonals(s, options, split))
         report.flips += growth::flip_for_quality(s);
-    result.order.clear();
+    return by_rule.ripples;
+}
+
+void hold_to_quality(GrowState& s, const GrowOptions& options, const SplitOptions& split,
+                     const StageProgress& progress, GrowReport& report)
+{
+    const growth::QualityResult raised = growth::raise_quality(
+        s, options.min_quality, may_turn_diagonals(s, options, split), progress);
+    report.quality_rounds = raised.rounds;
+    report.flips += raised.flips;
+    report.tets_below_quality = raised.tets_below;
+    report.vertices_below_quality = raised.vertices_below;
+}
+
+PrismSplit split_of(const GrowState& s, std::size_t ripples)
+{
+    PrismSplit split;
+    split.ripples = ripples;
     for (const std::uint8_t order : s.order)
-        result.order.push_back(growth::tables().order[order]);
-    return result;
+        split.order.push_back(growth::tables().order[order]);
+    return split;
 }
 
 } // namespace
@@ -124,6 +147,9 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     if (options.free_rounds < 0)
         throw InvalidOption("growth: free_rounds is " + std::to_string(options.free_rounds) +
                             ", must not be negative");
+    if (!(options.min_quality >= 0.0 && options.min_quality < 1.0))
+        throw InvalidOption("growth: min_quality is " + std::to_string(options.min_quality) +
+                            ", must be 0 or more and less than 1");
     assert(options.method != Method::raw);
     assert(directions.inward.size() == mesh.points.size());
     assert(start.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
@@ -139,8 +165,13 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)
         move_off_the_lines(s, lines, options, progress, result.report);
+    const std::size_t ripples =
+        choose_diagonals(s, shell_of(mesh, s), options, split, result.report);
+    if (options.min_quality > 0)
+        hold_to_quality(s, options, split, progress, result.report);
+    result.split = split_of(s, ripples);
     result.shell = shell_of(mesh, s);
-    result.split = split_of(s, result.shell, options, split, result.report);
+    result.shell.stop = growth::probe_stops(s);
     return result;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/tessellate.h"
 
+#include "vdb_shell/shell/shell_stack.h"
+
 #include "core/parallel.h"
 #include "shell/ripple.h"
 
@@ -43,48 +45,65 @@ std::vector<double> scaled_lengths(const PrismShell& shell, double factor)
     return lengths;
 }
 
-std::vector<std::uint8_t> pinned_vertices(const PrismShell& shell)
+using Flags = std::vector<std::uint8_t>;
+
+Flags pinned_vertices(const PrismShell& shell)
 {
-    std::vector<std::uint8_t> pinned(shell.outer.size());
+    Flags pinned(shell.outer.size());
     for_each_index(pinned.size(), [&](std::size_t v) { pinned[v] = shell.pinned(v) ? 1 : 0; });
     return pinned;
 }
 
-bool has_tets(const Vec3I& triangle, const std::vector<std::uint8_t>& pinned)
+bool has_tets(const Vec3I& triangle, const Flags& pinned)
 {
     return !(pinned[triangle[0]] && pinned[triangle[1]] && pinned[triangle[2]]);
 }
 
-/// Index of each vertex's outer and inner point in the tet mesh.
-struct PointIndex {
-    std::vector<std::uint32_t> outer, inner;
-};
+/// Index of each vertex's point on one surface.
+using PointIndex = std::vector<std::uint32_t>;
 
-/// Every point of a prism with tets is a corner of one of them: an un-pinned pillar's ends are both
-/// in the pillar's own tet, which also holds one end of each other pillar.
-PointIndex number_points(const PrismShell& shell, const std::vector<std::uint8_t>& pinned,
-                         TetMesh& mesh)
+/// Marks the corners of the prisms that have tets: each is a corner of one of them, for an
+/// un-pinned pillar's ends are both in the pillar's own tet, which also holds one end of each other
+/// pillar.
+void mark_used(const PrismShell& layer, const Flags& pinned, Flags& used)
 {
-    std::vector<std::uint8_t> used(shell.outer.size(), 0);
-    for (const Vec3I& triangle : shell.triangles)
+    for (const Vec3I& triangle : layer.triangles)
         if (has_tets(triangle, pinned))
             for (int corner = 0; corner < 3; ++corner)
                 used[triangle[corner]] = 1;
-    auto append = [&](const openvdb::Vec3s& point, std::size_t vertex, std::uint8_t layer) {
-        mesh.points.push_back(point);
-        mesh.source_vertex.push_back(static_cast<std::uint32_t>(vertex));
-        mesh.layer.push_back(layer);
-        return static_cast<std::uint32_t>(mesh.points.size() - 1);
-    };
-    PointIndex index;
-    index.outer.assign(shell.outer.size(), kNoPoint);
-    for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v])
-            index.outer[v] = append(shell.outer[v], v, 0);
-    index.inner = index.outer;
-    for (std::size_t v = 0; v < used.size(); ++v)
-        if (used[v] && !pinned[v])
-            index.inner[v] = append(shell.inner[v], v, 1);
+}
+
+/// A point for each vertex in use on each surface, but that of the surface above where the pillar
+/// between them is pinned.
+std::vector<PointIndex> number_points(const PrismShell* layers, const std::vector<Flags>& pinned,
+                                      TetMesh& mesh)
+{
+    const std::size_t vertices = layers->outer.size(), count = pinned.size();
+    std::vector<Flags> used(count + 1, Flags(vertices, 0));
+    for (std::size_t k = 0; k < count; ++k) {
+        mark_used(layers[k], pinned[k], used[k]);
+        mark_used(layers[k], pinned[k], used[k + 1]);
+    }
+    // A point that is shared is in use when any of the surfaces that share it uses it.
+    for (std::size_t k = count; k-- > 0;)
+        for (std::size_t v = 0; v < vertices; ++v)
+            if (pinned[k][v])
+                used[k][v] = used[k][v] | used[k + 1][v];
+    std::vector<PointIndex> index(count + 1, PointIndex(vertices, kNoPoint));
+    for (std::size_t k = 0; k <= count; ++k) {
+        const std::vector<openvdb::Vec3s>& points =
+            k < count ? layers[k].outer : layers[count - 1].inner;
+        for (std::size_t v = 0; v < vertices; ++v) {
+            if (k > 0 && pinned[k - 1][v]) {
+                index[k][v] = index[k - 1][v];
+            } else if (used[k][v]) {
+                index[k][v] = static_cast<std::uint32_t>(mesh.points.size());
+                mesh.points.push_back(points[v]);
+                mesh.source_vertex.push_back(static_cast<std::uint32_t>(v));
+                mesh.layer.push_back(static_cast<std::uint8_t>(k));
+            }
+        }
+    }
     return index;
 }
 
@@ -93,10 +112,9 @@ PointIndex number_points(const PrismShell& shell, const std::vector<std::uint8_t
 /// that is counter-clockwise from outside, (ax,ay,by,bz) is positive and the other two negative
 /// when x,y,z is an even permutation of the corners, and the reverse when it is odd.
 std::array<Vec4I, 3> tets_of(const Vec3I& triangle, const std::array<std::uint8_t, 3>& order,
-                             const PointIndex& index)
+                             const PointIndex& a, const PointIndex& b)
 {
     const std::uint32_t x = triangle[order[0]], y = triangle[order[1]], z = triangle[order[2]];
-    const std::vector<std::uint32_t>&a = index.outer, &b = index.inner;
     std::array<Vec4I, 3> tets{Vec4I(a[x], a[y], a[z], b[z]), Vec4I(a[x], a[y], b[y], b[z]),
                               Vec4I(a[x], b[x], b[y], b[z])};
     const bool even = (order[0] + 1) % 3 == order[1];
@@ -107,6 +125,41 @@ std::array<Vec4I, 3> tets_of(const Vec3I& triangle, const std::array<std::uint8_
         std::swap(tets[1][2], tets[1][3]);
     }
     return tets;
+}
+
+void append_tets(const PrismShell& layer, const PrismSplit& split, const Flags& pinned,
+                 const PointIndex& outer, const PointIndex& inner, TetMesh& mesh,
+                 std::uint8_t index)
+{
+    assert(split.order.size() == layer.triangles.size());
+    for (std::size_t t = 0; t < layer.triangles.size(); ++t) {
+        const Vec3I& triangle = layer.triangles[t];
+        const std::array<Vec4I, 3> tets = tets_of(triangle, split.order[t], outer, inner);
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (pinned[triangle[split.order[t][2 - i]]])
+                continue;
+            mesh.tets.push_back(tets[i]);
+            mesh.prism.push_back(static_cast<std::uint32_t>(t));
+            mesh.prism_layer.push_back(index);
+        }
+    }
+}
+
+TetMesh tets_of_layers(const PrismShell* layers, const PrismSplit* splits, std::size_t count)
+{
+    std::vector<Flags> pinned;
+    for (std::size_t k = 0; k < count; ++k)
+        pinned.push_back(pinned_vertices(layers[k]));
+    TetMesh mesh;
+    const std::vector<PointIndex> index = number_points(layers, pinned, mesh);
+    const std::size_t most = 3 * count * layers->triangles.size();
+    mesh.tets.reserve(most);
+    mesh.prism.reserve(most);
+    mesh.prism_layer.reserve(most);
+    for (std::size_t k = 0; k < count; ++k)
+        append_tets(layers[k], splits[k], pinned[k], index[k], index[k + 1], mesh,
+                    static_cast<std::uint8_t>(k));
+    return mesh;
 }
 
 } // namespace
@@ -129,23 +182,14 @@ PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options)
 
 TetMesh make_tets(const PrismShell& shell, const PrismSplit& split)
 {
-    assert(split.order.size() == shell.triangles.size());
-    const std::vector<std::uint8_t> pinned = pinned_vertices(shell);
-    TetMesh mesh;
-    const PointIndex index = number_points(shell, pinned, mesh);
-    mesh.tets.reserve(3 * shell.triangles.size());
-    mesh.prism.reserve(3 * shell.triangles.size());
-    for (std::size_t t = 0; t < shell.triangles.size(); ++t) {
-        const Vec3I& triangle = shell.triangles[t];
-        const std::array<Vec4I, 3> tets = tets_of(triangle, split.order[t], index);
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (pinned[triangle[split.order[t][2 - i]]])
-                continue;
-            mesh.tets.push_back(tets[i]);
-            mesh.prism.push_back(static_cast<std::uint32_t>(t));
-        }
-    }
-    return mesh;
+    return tets_of_layers(&shell, &split, 1);
+}
+
+TetMesh make_tets(const ShellStack& stack)
+{
+    assert(!stack.layers.empty() && stack.layers.size() <= ShellStack::kMostLayers);
+    assert(stack.splits.size() == stack.layers.size());
+    return tets_of_layers(stack.layers.data(), stack.splits.data(), stack.layers.size());
 }
 
 } // namespace vdb_shell

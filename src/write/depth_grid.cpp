@@ -45,7 +45,7 @@ struct IndexTet {
     bool flat = false;
 };
 
-IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size)
+IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double layers)
 {
     IndexTet tet;
     std::array<Vec3d, 4> corner;
@@ -72,7 +72,7 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size)
     for (std::size_t i = 0; i < 4; ++i) {
         if (i > 0)
             tet.barycentric[i] = {0.0, slopes[i - 1]};
-        const double layer = mesh.layer[mesh.tets[t][int(i)]];
+        const double layer = mesh.layer[mesh.tets[t][int(i)]] / layers;
         tet.depth.value += layer * tet.barycentric[i].value;
         tet.depth.slope += layer * tet.barycentric[i].slope;
     }
@@ -203,8 +203,10 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     const StageProgress progress(interrupter, "Shell depth");
     auto grid = empty_depth_grid(voxel_size);
     std::vector<IndexTet> placed(tets.tets.size());
+    const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
+    const double layers = deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
     for_each_index(placed.size(),
-                   [&](std::size_t t) { placed[t] = index_tet(tets, t, voxel_size); });
+                   [&](std::size_t t) { placed[t] = index_tet(tets, t, voxel_size, layers); });
     const std::vector<Job> jobs = make_jobs(placed);
     const std::vector<std::size_t> starts = column_starts(jobs);
     const std::size_t columns = starts.size() - 1;

@@ -129,61 +129,101 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
     return Vec3s(sum / double(count));
 }
 
-PointDataGrid::Ptr make_points(const PrismShell& shell, const ShellPoints& points)
+/// The next point of the pillar: below, or above where there is nothing below.
+const Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex)
+{
+    const bool last = surface == stack.layers.size();
+    return stack.surface(last ? surface - 1 : surface + 1)[vertex];
+}
+
+float thickness_of(const ShellStack& stack, std::size_t vertex)
+{
+    double sum = 0.0;
+    for (const PrismShell& layer : stack.layers)
+        sum += layer.length(vertex);
+    return float(sum);
+}
+
+bool pinned_throughout(const ShellStack& stack, std::size_t vertex)
+{
+    return std::all_of(stack.layers.begin(), stack.layers.end(),
+                       [&](const PrismShell& layer) { return layer.pinned(vertex); });
+}
+
+void add_stop_reasons(Builder& builder, const ShellStack& stack, const ShellPoints& points)
+{
+    const auto add = [&](const char* name, const PrismShell& layer) {
+        builder.add_integer(
+            name, [&](std::size_t i) { return std::int32_t(layer.stop[points.vertex[i]]); });
+    };
+    add("stop_reason", stack.layers.back());
+    if (on_both_sides(stack))
+        add(kOuterStop, stack.layers.front());
+}
+
+PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& points)
 {
     Builder builder(kPointsGrid, points.position);
-    const std::size_t count = points.position.size();
+    const std::size_t count = points.position.size(), last = stack.layers.size();
     const auto vertex = [&](std::size_t i) { return points.vertex[i]; };
-    const auto is_pinned = [&](std::size_t i) { return shell.pinned(vertex(i)); };
-    const auto outer_normals = layer_normals(shell.outer, shell.triangles);
-    const auto inner_normals = layer_normals(shell.inner, shell.triangles);
+    const auto layer = [&](std::size_t i) { return points.layer[i]; };
+    const auto is_pinned = [&](std::size_t i) { return pinned_throughout(stack, vertex(i)); };
+    std::vector<std::vector<Vec3s>> normals;
+    for (std::size_t k = 0; k <= last; ++k)
+        normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
     builder.add_integer("id", [](std::size_t i) { return i; });
     builder.add_integer("tet_point", [&](std::size_t i) { return points.tet_point[i]; });
-    builder.add_integer("layer", [&](std::size_t i) { return points.layer[i]; });
+    builder.add_integer("layer", layer);
     builder.add_integer("source_vertex", vertex);
-    builder.add_integer("stop_reason",
-                        [&](std::size_t i) { return std::int32_t(shell.stop[vertex(i)]); });
+    add_stop_reasons(builder, stack, points);
     builder.add_integer("pinned", is_pinned);
     builder.add<Vec3s>("rest", 1,
                        [&](std::size_t i, openvdb::Index) { return points.position[i]; });
     builder.add<Vec3s>("opposite", 1, [&](std::size_t i, openvdb::Index) {
-        return points.layer[i] == 0 ? shell.inner[vertex(i)] : shell.outer[vertex(i)];
+        return opposite_of(stack, layer(i), vertex(i));
     });
-    builder.add<Vec3s>("N", 1, [&](std::size_t i, openvdb::Index) {
-        return (points.layer[i] == 0 ? outer_normals : inner_normals)[vertex(i)];
-    });
+    builder.add<Vec3s>("N", 1,
+                       [&](std::size_t i, openvdb::Index) { return normals[layer(i)][vertex(i)]; });
     builder.add<float>("thickness", 1, [&](std::size_t i, openvdb::Index) {
-        return float(shell.length(vertex(i)));
+        return thickness_of(stack, vertex(i));
     });
-    builder.add_group("outer", count, [&](std::size_t i) { return points.layer[i] == 0; });
-    builder.add_group("inner", count, [&](std::size_t i) { return points.layer[i] == 1; });
+    builder.add_group("outer", count, [&](std::size_t i) { return layer(i) == 0; });
+    builder.add_group("inner", count, [&](std::size_t i) { return layer(i) == last; });
     builder.add_group("pinned", count, is_pinned);
     return builder.take();
 }
 
-PointDataGrid::Ptr make_prisms(const PrismShell& shell, const PrismSplit& split,
-                               const ShellPoints& points)
+PointDataGrid::Ptr make_prisms(const ShellStack& stack, const ShellPoints& points)
 {
-    std::vector<Vec3s> centres(shell.triangles.size());
+    const std::vector<Vec3I>& triangles = stack.triangles();
+    const std::size_t faces = triangles.size();
+    std::vector<Vec3s> centres(stack.layers.size() * faces);
     for (std::size_t p = 0; p < centres.size(); ++p) {
-        const Vec3I t = shell.triangles[p];
+        const Vec3I t = triangles[p % faces];
+        const PrismShell& layer = stack.layers[p / faces];
         centres[p] =
-            mean_of(6, [&](int i) { return i < 3 ? shell.outer[t[i]] : shell.inner[t[i - 3]]; });
+            mean_of(6, [&](int i) { return i < 3 ? layer.outer[t[i]] : layer.inner[t[i - 3]]; });
     }
     Builder builder(kPrismsGrid, centres);
     builder.add_integer("id", [](std::size_t p) { return p; });
     builder.add_tuple("prism_pts", 6, [&](std::size_t p, openvdb::Index i) {
-        const Vec3I t = shell.triangles[p];
-        return std::int32_t(i < 3 ? t[int(i)] : points.inner_id[t[int(i) - 3]]);
+        const std::size_t surface = p / faces + (i < 3 ? 0 : 1);
+        return std::int32_t(points.id[surface][triangles[p % faces][int(i % 3)]]);
     });
     builder.add_tuple("split_order", 3, [&](std::size_t p, openvdb::Index i) {
-        return std::int32_t(split.order[p][i]);
+        return std::int32_t(stack.splits[p / faces].order[p % faces][i]);
     });
+    if (stack.layers.size() > 1) {
+        builder.add_integer("layer", [&](std::size_t p) { return p / faces; });
+        builder.add_integer("triangle", [&](std::size_t p) { return p % faces; });
+    }
     return builder.take();
 }
 
-PointDataGrid::Ptr make_tet_points(const TetMesh& tets, const ShellPoints& points)
+PointDataGrid::Ptr make_tet_points(const ShellStack& stack, const TetMesh& tets,
+                                   const ShellPoints& points)
 {
+    const std::size_t faces = stack.triangles().size();
     std::vector<Vec3s> centres(tets.tets.size());
     for (std::size_t t = 0; t < centres.size(); ++t)
         centres[t] = mean_of(4, [&](int i) { return tets.points[tets.tets[t][i]]; });
@@ -192,7 +232,10 @@ PointDataGrid::Ptr make_tet_points(const TetMesh& tets, const ShellPoints& point
     builder.add_tuple("tet", 4, [&](std::size_t t, openvdb::Index i) {
         return std::int32_t(points.id_of_tet_point[tets.tets[t][int(i)]]);
     });
-    builder.add_integer("prism", [&](std::size_t t) { return tets.prism[t]; });
+    builder.add_integer("prism",
+                        [&](std::size_t t) { return tets.prism_layer[t] * faces + tets.prism[t]; });
+    if (stack.layers.size() > 1)
+        builder.add_integer("layer", [&](std::size_t t) { return tets.prism_layer[t]; });
     return builder.take();
 }
 
@@ -215,46 +258,52 @@ std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
     return normals;
 }
 
-ShellPoints number_points(const PrismShell& shell, const TetMesh& tets)
+ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
 {
     ShellPoints points;
-    points.position = shell.outer;
-    points.layer.assign(shell.outer.size(), 0);
-    for (std::uint32_t v = 0; v < shell.outer.size(); ++v)
-        points.vertex.push_back(v);
-    points.inner_id = points.vertex;
-    for (std::uint32_t v = 0; v < shell.outer.size(); ++v) {
-        if (shell.pinned(v))
-            continue;
-        points.inner_id[v] = std::uint32_t(points.position.size());
-        points.position.push_back(shell.inner[v]);
-        points.vertex.push_back(v);
-        points.layer.push_back(1);
-    }
+    const auto vertices = std::uint32_t(stack.surface(0).size());
+    points.id.assign(stack.surfaces(), std::vector<std::uint32_t>(vertices));
+    for (std::size_t k = 0; k < stack.surfaces(); ++k)
+        for (std::uint32_t v = 0; v < vertices; ++v) {
+            if (k > 0 && stack.layers[k - 1].pinned(v)) {
+                points.id[k][v] = points.id[k - 1][v];
+                continue;
+            }
+            points.id[k][v] = std::uint32_t(points.position.size());
+            points.position.push_back(stack.surface(k)[v]);
+            points.vertex.push_back(v);
+            points.layer.push_back(std::uint8_t(k));
+        }
     points.tet_point.assign(points.position.size(), ShellPoints::kUnused);
     for (std::size_t i = 0; i < tets.points.size(); ++i) {
-        const std::uint32_t v = tets.source_vertex[i];
-        points.id_of_tet_point.push_back(tets.layer[i] == 0 ? v : points.inner_id[v]);
+        points.id_of_tet_point.push_back(points.id[tets.layer[i]][tets.source_vertex[i]]);
         points.tet_point[points.id_of_tet_point.back()] = std::int32_t(i);
     }
     return points;
 }
 
-ShellCounts counts_of(const PrismShell& shell, const TetMesh& tets)
+ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets)
 {
-    std::int64_t pillars = 0;
-    for (std::size_t v = 0; v < shell.outer.size(); ++v)
-        pillars += shell.pinned(v) ? 0 : 1;
-    const auto vertices = std::int64_t(shell.outer.size());
-    return {vertices, vertices + pillars, std::int64_t(tets.points.size()),
-            std::int64_t(shell.triangles.size()), std::int64_t(tets.tets.size())};
+    const auto vertices = std::int64_t(stack.surface(0).size());
+    std::int64_t points = vertices;
+    for (const PrismShell& layer : stack.layers)
+        for (std::size_t v = 0; v < layer.outer.size(); ++v)
+            points += layer.pinned(v) ? 0 : 1;
+    const auto layers = std::int64_t(stack.layers.size());
+    return {vertices,
+            points,
+            std::int64_t(tets.points.size()),
+            layers * std::int64_t(stack.triangles().size()),
+            std::int64_t(tets.tets.size()),
+            layers,
+            std::int64_t(stack.skin)};
 }
 
-PointGrids make_point_grids(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets)
 {
-    const ShellPoints points = number_points(shell, tets);
-    return {make_points(shell, points), make_prisms(shell, split, points),
-            make_tet_points(tets, points)};
+    const ShellPoints points = number_points(stack, tets);
+    return {make_points(stack, points), make_prisms(stack, points),
+            make_tet_points(stack, tets, points)};
 }
 
 } // namespace vdb_shell

@@ -49,37 +49,83 @@ bool is_permutation(const std::array<std::uint8_t, 3>& order)
     return seen == 7u;
 }
 
-void require_sizes(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+void require_sizes(const ShellStack& stack, const TetMesh& tets)
 {
-    require_size(shell.inner.size(), shell.outer.size(), "inner");
-    require_size(shell.stop.size(), shell.outer.size(), "stop");
-    require_size(split.order.size(), shell.triangles.size(), "split.order");
+    if (stack.layers.empty() || stack.layers.size() > ShellStack::kMostLayers)
+        refuse("it has " + std::to_string(stack.layers.size()) + " layers, expected 1 to " +
+               std::to_string(ShellStack::kMostLayers));
+    require_size(stack.splits.size(), stack.layers.size(), "splits");
+    require(stack.skin <= stack.layers.size(), "the skin is no surface of the stack", stack.skin);
+    const std::size_t vertices = stack.surface(0).size(), triangles = stack.triangles().size();
+    for (std::size_t k = 0; k < stack.layers.size(); ++k) {
+        const PrismShell& layer = stack.layers[k];
+        require_size(layer.outer.size(), vertices, "outer");
+        require_size(layer.inner.size(), vertices, "inner");
+        require_size(layer.stop.size(), vertices, "stop");
+        require_size(layer.triangles.size(), triangles, "triangles");
+        require_size(stack.splits[k].order.size(), triangles, "split.order");
+    }
     require_size(tets.source_vertex.size(), tets.points.size(), "source_vertex");
     require_size(tets.layer.size(), tets.points.size(), "layer");
     require_size(tets.prism.size(), tets.tets.size(), "tets.prism");
+    require_size(tets.prism_layer.size(), tets.tets.size(), "tets.prism_layer");
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
     for (const std::size_t count :
-         {2 * shell.outer.size(), tets.tets.size(), shell.triangles.size()})
+         {stack.surfaces() * vertices, tets.tets.size(), stack.layers.size() * triangles})
         require(count <= kMost, "more elements than int32 can number", count);
 }
 
-/// Every point of the tets is an end of a pillar, and no end is there twice.
-void require_points(const PrismShell& shell, const TetMesh& tets)
+/// What the layers have in common is the same in all: the surface between two of them, triangles,
+/// and on each side of the skin the reasons.
+void require_layers_fit(const ShellStack& stack)
 {
-    std::array<std::vector<bool>, 2> seen;
-    for (std::vector<bool>& layer : seen)
-        layer.assign(shell.outer.size(), false);
+    for (std::size_t k = 1; k < stack.layers.size(); ++k) {
+        const PrismShell &above = stack.layers[k - 1], &layer = stack.layers[k];
+        for (std::size_t t = 0; t < layer.triangles.size(); ++t)
+            require(layer.triangles[t] == above.triangles[t],
+                    "a layer's triangle is not that of the layer above", t);
+        for (std::size_t v = 0; v < layer.outer.size(); ++v) {
+            require(same_bits(above.inner[v], layer.outer[v]),
+                    "a layer does not begin where the one above ends", v);
+            require(!above.pinned(v) || !layer.pinned(v) ||
+                        same_bits(layer.outer[v], layer.inner[v]),
+                    "a pinned pillar's ends differ in the sign of a zero", v);
+            require(k == stack.skin || above.stop[v] == layer.stop[v],
+                    "a pillar has two reasons to end on one side of the skin", v);
+        }
+    }
+}
+
+/// Every point of the tets is an end of a pillar, and no end is there twice.
+void require_points(const ShellStack& stack, const TetMesh& tets)
+{
+    std::vector<std::vector<bool>> seen(stack.surfaces(),
+                                        std::vector<bool>(stack.surface(0).size(), false));
     for (std::size_t i = 0; i < tets.points.size(); ++i) {
         const std::uint32_t v = tets.source_vertex[i];
-        const std::size_t layer = tets.layer[i];
-        require(v < shell.outer.size() && layer < 2 && !(layer == 1 && shell.pinned(v)),
+        const std::size_t k = tets.layer[i];
+        require(v < stack.surface(0).size() && k < stack.surfaces() &&
+                    !(k > 0 && stack.layers[k - 1].pinned(v)),
                 "a point of the tets belongs to no end of a pillar", i);
-        const Vec3s& end = layer == 0 ? shell.outer[v] : shell.inner[v];
-        require(same_bits(end, tets.points[i]), "a point of the tets is not where its pillar ends",
-                i);
-        require(!seen[layer][v], "a point of the tets is there twice", i);
-        seen[layer][v] = true;
+        require(same_bits(stack.surface(k)[v], tets.points[i]),
+                "a point of the tets is not where its pillar ends", i);
+        require(!seen[k][v], "a point of the tets is there twice", i);
+        seen[k][v] = true;
     }
+}
+
+void require_layer(const PrismShell& layer, const PrismSplit& split)
+{
+    require_finite(layer.outer, "an outer coordinate is not finite");
+    require_finite(layer.inner, "an inner coordinate is not finite");
+    for (std::size_t p = 0; p < layer.triangles.size(); ++p) {
+        for (int corner = 0; corner < 3; ++corner)
+            require(layer.triangles[p][corner] < layer.outer.size(),
+                    "a triangle's vertex is out of range", p);
+        require(is_permutation(split.order[p]), "a split order is no permutation of 0, 1, 2", p);
+    }
+    for (std::size_t v = 0; v < layer.stop.size(); ++v)
+        require(int(layer.stop[v]) < kStopReasonCount, "a stop reason is out of range", v);
 }
 
 class Fnv1a
@@ -119,39 +165,41 @@ bool same_bits(const Vec3s& a, const Vec3s& b)
     return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
 }
 
-void require_consistent(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+void require_consistent(const ShellStack& stack, const TetMesh& tets)
 {
-    require_sizes(shell, split, tets);
-    require_finite(shell.outer, "an outer coordinate is not finite");
-    require_finite(shell.inner, "an inner coordinate is not finite");
-    for (std::size_t p = 0; p < shell.triangles.size(); ++p) {
-        for (int corner = 0; corner < 3; ++corner)
-            require(shell.triangles[p][corner] < shell.outer.size(),
-                    "a triangle's vertex is out of range", p);
-        require(is_permutation(split.order[p]), "a split order is no permutation of 0, 1, 2", p);
-    }
-    for (std::size_t v = 0; v < shell.stop.size(); ++v)
-        require(int(shell.stop[v]) < kStopReasonCount, "a stop reason is out of range", v);
-    require_points(shell, tets);
+    require_sizes(stack, tets);
+    for (std::size_t k = 0; k < stack.layers.size(); ++k)
+        require_layer(stack.layers[k], stack.splits[k]);
+    require_layers_fit(stack);
+    require_points(stack, tets);
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         for (int corner = 0; corner < 4; ++corner)
             require(tets.tets[t][corner] < tets.points.size(), "a tet's point is out of range", t);
-        require(tets.prism[t] < shell.triangles.size(), "a tet's prism is out of range", t);
+        require(tets.prism[t] < stack.triangles().size() &&
+                    tets.prism_layer[t] < stack.layers.size(),
+                "a tet's prism is out of range", t);
     }
 }
 
-std::string checksum_of(const PrismShell& shell, const PrismSplit& split, const TetMesh& tets)
+std::string checksum_of(const ShellStack& stack, const TetMesh& tets)
 {
     Fnv1a hash;
-    hash.add(shell.outer);
-    hash.add(shell.inner);
-    hash.add(shell.triangles);
-    hash.add(shell.stop);
-    hash.add(split.order);
+    for (std::size_t k = 0; k < stack.surfaces(); ++k)
+        hash.add(stack.surface(k));
+    hash.add(stack.triangles());
+    for (const PrismShell& layer : stack.layers)
+        hash.add(layer.stop);
+    for (const PrismSplit& split : stack.splits)
+        hash.add(split.order);
     hash.add(tets.source_vertex);
     hash.add(tets.layer);
     hash.add(tets.tets);
     hash.add(tets.prism);
+    // A single layer's checksum is that of files of schema 1.
+    if (stack.layers.size() > 1 || stack.skin > 0) {
+        hash.add(tets.prism_layer);
+        hash.add(std::vector<std::uint64_t>{stack.skin});
+    }
     return hash.hex();
 }
 

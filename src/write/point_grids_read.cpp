@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -122,7 +123,8 @@ private:
 struct Rows {
     std::vector<Vec3s> rest, opposite;
     std::vector<std::uint32_t> vertex, layer, stop;
-    std::vector<std::uint32_t> tet_point; ///< index + 1 into TetMesh::points; 0: none
+    std::vector<std::uint32_t> outer_stop; ///< empty unless there are layers on both sides
+    std::vector<std::uint32_t> tet_point;  ///< index + 1 into TetMesh::points; 0: none
 };
 
 Rows read_rows(const Reader& reader, const ShellCounts& counts)
@@ -137,8 +139,10 @@ Rows read_rows(const Reader& reader, const ShellCounts& counts)
         });
     };
     read("source_vertex", std::size_t(counts.vertices), rows.vertex);
-    read("layer", 2, rows.layer);
+    read("layer", std::size_t(counts.layers) + 1, rows.layer);
     read("stop_reason", kStopReasonCount, rows.stop);
+    if (counts.skin > 0 && counts.skin < counts.layers)
+        read(kOuterStop, kStopReasonCount, rows.outer_stop);
     rows.tet_point.resize(std::size_t(counts.points));
     const auto limit = std::size_t(counts.tet_points) + 1;
     reader.for_each_row<std::int32_t>(
@@ -148,27 +152,75 @@ Rows read_rows(const Reader& reader, const ShellCounts& counts)
     return rows;
 }
 
-/// The two ends of every pillar.
-void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& counts,
-                  PrismShell& shell)
+/// Where the point of each surface and vertex stands in the rows; kNone where it has none of its
+/// own.
+using OwnRows = std::vector<std::vector<std::uint32_t>>;
+constexpr std::uint32_t kNone = ~std::uint32_t(0);
+
+/// Rows are in the order of surfaces, then of vertices.
+OwnRows find_own_rows(const Reader& reader, const Rows& rows, const ShellCounts& counts)
 {
     const auto vertices = std::size_t(counts.vertices);
-    shell.outer.assign(rows.rest.begin(), rows.rest.begin() + counts.vertices);
-    shell.inner.assign(rows.opposite.begin(), rows.opposite.begin() + counts.vertices);
-    shell.stop.resize(vertices);
-    for (std::size_t id = 0; id < rows.rest.size(); ++id) {
-        const std::uint32_t vertex = rows.vertex[id];
-        const bool outer = id < vertices;
-        if (rows.layer[id] != (outer ? 0u : 1u) || (outer && vertex != id))
-            reader.fail("point " + std::to_string(id) + ": layer " +
-                        std::to_string(rows.layer[id]) + " of vertex " + std::to_string(vertex) +
+    OwnRows own(std::size_t(counts.layers) + 1, std::vector<std::uint32_t>(vertices, kNone));
+    std::pair<std::uint32_t, std::uint32_t> last{0, 0};
+    for (std::uint32_t id = 0; id < rows.rest.size(); ++id) {
+        const std::pair<std::uint32_t, std::uint32_t> here{rows.layer[id], rows.vertex[id]};
+        const bool outermost = id < vertices;
+        if ((outermost && (here.first != 0 || here.second != id)) ||
+            (!outermost && (here.first == 0 || here <= last)))
+            reader.fail("point " + std::to_string(id) + ": layer " + std::to_string(here.first) +
+                        " of vertex " + std::to_string(here.second) +
                         " does not belong at this id");
-        if (outer)
-            shell.stop[id] = StopReason(rows.stop[id]);
-        else if (!same_bits(rows.rest[id], shell.inner[vertex]))
-            reader.fail("point " + std::to_string(id) +
+        own[here.first][here.second] = id;
+        last = here;
+    }
+    return own;
+}
+
+/// The next surface below `above`, whose points' rows are `own_above`.
+std::vector<Vec3s> surface_below(const Reader& reader, const Rows& rows,
+                                 const std::vector<Vec3s>& above,
+                                 const std::vector<std::uint32_t>& own_above,
+                                 const std::vector<std::uint32_t>& own)
+{
+    std::vector<Vec3s> surface = above;
+    for (std::size_t v = 0; v < surface.size(); ++v) {
+        if (own_above[v] != kNone)
+            surface[v] = rows.opposite[own_above[v]];
+        else if (own[v] != kNone)
+            surface[v] = rows.rest[own[v]];
+        if (own[v] != kNone && !same_bits(rows.rest[own[v]], surface[v]))
+            reader.fail("point " + std::to_string(own[v]) +
                         ": \"rest\" is not \"opposite\" of the outer point " +
-                        std::to_string(vertex));
+                        std::to_string(own_above[v]));
+    }
+    return surface;
+}
+
+std::vector<StopReason> reasons(const std::vector<std::uint32_t>& rows, std::size_t vertices)
+{
+    std::vector<StopReason> stop(vertices);
+    for (std::size_t v = 0; v < vertices; ++v)
+        stop[v] = StopReason(rows[v]);
+    return stop;
+}
+
+/// All points of every pillar.
+void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& counts,
+                  ShellStack& stack)
+{
+    const auto vertices = std::size_t(counts.vertices);
+    const OwnRows own = find_own_rows(reader, rows, counts);
+    stack.skin = std::size_t(counts.skin);
+    std::vector<Vec3s> above(rows.rest.begin(), rows.rest.begin() + counts.vertices);
+    for (std::size_t k = 0; k < std::size_t(counts.layers); ++k) {
+        PrismShell layer;
+        layer.outer = above;
+        layer.inner = surface_below(reader, rows, above, own[k], own[k + 1]);
+        layer.stop = reasons(
+            k < stack.skin && !rows.outer_stop.empty() ? rows.outer_stop : rows.stop, vertices);
+        above = layer.inner;
+        stack.layers.push_back(std::move(layer));
     }
 }
 
@@ -199,34 +251,46 @@ void read_tet_points(const Reader& reader, const Rows& rows, const ShellCounts& 
                     " points, the metadata says " + std::to_string(count));
 }
 
-std::vector<std::array<std::uint32_t, 6>>
-read_prisms(const Reader& reader, const ShellCounts& counts, PrismShell& shell, PrismSplit& split)
+std::vector<std::array<std::uint32_t, 6>> read_prisms(const Reader& reader,
+                                                      const ShellCounts& counts, ShellStack& stack)
 {
-    const auto prisms = std::size_t(counts.prisms);
+    const auto prisms = std::size_t(counts.prisms), layers = std::size_t(counts.layers);
+    if (prisms % layers != 0)
+        reader.fail("the metadata says " + std::to_string(prisms) + " prisms in " +
+                    std::to_string(layers) + " layers");
     std::vector<std::array<std::uint32_t, 6>> corners(prisms);
     reader.indices(
         "prism_pts", 6, std::size_t(counts.points),
         [&](std::size_t id, openvdb::Index i, std::uint32_t value) { corners[id][i] = value; });
-    split.order.resize(prisms);
+    const std::size_t faces = prisms / layers;
+    stack.splits.resize(layers);
+    for (PrismSplit& split : stack.splits)
+        split.order.resize(faces);
     reader.indices("split_order", 3, 3, [&](std::size_t id, openvdb::Index i, std::uint32_t value) {
-        split.order[id][i] = std::uint8_t(value);
+        stack.splits[id / faces].order[id % faces][i] = std::uint8_t(value);
     });
-    shell.triangles.resize(prisms);
-    for (std::size_t p = 0; p < prisms; ++p)
+    std::vector<Vec3I> triangles(faces);
+    for (std::size_t p = 0; p < faces; ++p)
         for (int corner = 0; corner < 3; ++corner)
-            shell.triangles[p][corner] = corners[p][std::size_t(corner)];
+            triangles[p][corner] = corners[p][std::size_t(corner)];
+    for (PrismShell& layer : stack.layers)
+        layer.triangles = triangles;
     return corners;
 }
 
-/// The lower corners of each prism must stand under its upper ones.
-void require_pillars(const Reader& reader, const PrismShell& shell, const Rows& rows,
+/// The corners of each prism must be those of its triangle, on the surfaces of its layer.
+void require_pillars(const Reader& reader, const ShellStack& stack,
                      const std::vector<std::array<std::uint32_t, 6>>& corners)
 {
+    const ShellPoints expected = number_points(stack, {});
+    const std::vector<Vec3I>& triangles = stack.triangles();
     for (std::size_t p = 0; p < corners.size(); ++p)
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const std::uint32_t above = corners[p][corner], below = corners[p][corner + 3];
-            const bool outer = above < shell.outer.size();
-            if (!outer || rows.vertex[below] != above || (below == above) != shell.pinned(above))
+            const std::uint32_t v = triangles[p % triangles.size()][int(corner)];
+            const std::size_t k = p / triangles.size();
+            if (v >= stack.surface(0).size() || above != expected.id[k][v] ||
+                below != expected.id[k + 1][v])
                 reader.fail("attribute \"prism_pts\" of " + std::to_string(p) + ": point " +
                             std::to_string(below) + " is not below point " + std::to_string(above));
         }
@@ -236,6 +300,7 @@ void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts
 {
     tets.tets.resize(std::size_t(counts.tets));
     tets.prism.resize(std::size_t(counts.tets));
+    tets.prism_layer.resize(std::size_t(counts.tets));
     reader.indices("tet", 4, std::size_t(counts.points),
                    [&](std::size_t id, openvdb::Index i, std::uint32_t value) {
                        if (rows.tet_point[value] == 0)
@@ -244,13 +309,17 @@ void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts
                        tets.tets[id][int(i)] = rows.tet_point[value] - 1;
                    });
     reader.indices("prism", 1, std::size_t(counts.prisms),
-                   [&](std::size_t id, auto, std::uint32_t value) { tets.prism[id] = value; });
+                   [&](std::size_t id, auto, std::uint32_t value) {
+                       const auto faces = std::uint32_t(counts.prisms / counts.layers);
+                       tets.prism[id] = value % faces;
+                       tets.prism_layer[id] = std::uint8_t(value / faces);
+                   });
 }
 
 } // namespace
 
 void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const std::string& name,
-                      PrismShell& shell, PrismSplit& split, TetMesh& tets)
+                      ShellStack& stack, TetMesh& tets)
 {
     const Reader points(*grids.points, counts.points, name);
     const Reader prisms(*grids.prisms, counts.prisms, name);
@@ -262,13 +331,13 @@ void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const 
         points.fail("the metadata says " + std::to_string(counts.vertices) + " vertices but only " +
                     std::to_string(counts.points) + " points");
     const Rows rows = read_rows(points, counts);
-    read_pillars(points, rows, counts, shell);
+    read_pillars(points, rows, counts, stack);
     read_tet_points(points, rows, counts, tets);
-    const auto corners = read_prisms(prisms, counts, shell, split);
-    require_pillars(prisms, shell, rows, corners);
+    const auto corners = read_prisms(prisms, counts, stack);
+    require_pillars(prisms, stack, corners);
     read_tets(tet_rows, rows, counts, tets);
     try {
-        require_consistent(shell, split, tets);
+        require_consistent(stack, tets);
     } catch (const InvalidOption& error) {
         throw ReadError(name + ": the point grids do not fit together: " + error.what());
     }

@@ -25,9 +25,10 @@ double degrees(double radians)
 ordered_json spread_json(const Spread& spread, double (*convert)(double) = nullptr)
 {
     const auto in_unit = [&](double value) { return convert ? convert(value) : value; };
-    return {{"min", in_unit(spread.min)},       {"p5", in_unit(spread.p5)},
-            {"median", in_unit(spread.median)}, {"p95", in_unit(spread.p95)},
-            {"max", in_unit(spread.max)},       {"mean", in_unit(spread.mean)}};
+    return {{"min", in_unit(spread.min)},  {"p1", in_unit(spread.p1)},
+            {"p5", in_unit(spread.p5)},    {"median", in_unit(spread.median)},
+            {"p95", in_unit(spread.p95)},  {"max", in_unit(spread.max)},
+            {"mean", in_unit(spread.mean)}};
 }
 
 template <typename Element> ordered_json defect_json(const Defect<Element>& defect)
@@ -102,7 +103,10 @@ ordered_json growth_json(const GrowReport& grow)
     return {{"rounds", grow.rounds},
             {"flips", grow.flips},
             {"released_pins", grow.released},
-            {"fill_after_lines", grow.fill_after_lines}};
+            {"fill_after_lines", grow.fill_after_lines},
+            {"quality_rounds", grow.quality_rounds},
+            {"tets_below_quality", grow.tets_below_quality},
+            {"vertices_below_quality", grow.vertices_below_quality}};
 }
 
 ordered_json tets_json(const ShellReport& report)
@@ -143,13 +147,62 @@ ordered_json coverage_json(const Coverage& coverage)
             {"standard_error", coverage.standard_error}};
 }
 
-ordered_json certificate_json(const Certificate& certificate)
+ordered_json layers_json(const ShellReport& report)
 {
-    ordered_json json{{"test", name_in_table(certificate.test)},
-                      {"certified", certificate.certified()},
-                      {"locally_valid", certificate.locally_valid()}};
+    ordered_json layers = ordered_json::array();
+    for (const LayerFigures& layer : report.layers)
+        layers.push_back({{"tets", layer.tets},
+                          {"pinned_vertices", layer.pinned_vertices},
+                          {"volume", layer.volume},
+                          {"length", spread_json(layer.length)},
+                          {"quality", quality_json(layer.quality)}});
+    return layers;
+}
+
+ordered_json cut_json(const LayerReport& cut)
+{
+    return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}};
+}
+
+ordered_json scale_json(const ScaleReport& scale)
+{
+    return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
+}
+
+ordered_json outside_json(const OutsideReport& outside)
+{
+    return {{"lines", lines_json(outside.lines)},
+            {"growth", outside.grow ? growth_json(*outside.grow) : ordered_json()},
+            {"scale", outside.scale ? scale_json(*outside.scale) : ordered_json()}};
+}
+
+void add_findings(ordered_json& json, const Certificate& certificate)
+{
     for_each_kind(certificate,
                   [&](const char* name, const auto& defect) { json[name] = defect_json(defect); });
+}
+
+/// Findings stand under the certificate itself where there is one layer, else by layer.
+ordered_json certificate_json(const StackCertificate& certificate)
+{
+    const std::vector<Certificate>& layers = certificate.layers;
+    const PrismTest test = layers.empty() ? PrismTest::twelve_tets : layers.front().test;
+    ordered_json json{{"test", name_in_table(test)},
+                      {"certified", certificate.certified()},
+                      {"locally_valid", certificate.locally_valid()}};
+    if (layers.size() == 1) {
+        add_findings(json, layers.front());
+        return json;
+    }
+    json["hull_contacts"] = defect_json(certificate.hull_contacts);
+    json["hull_nested_wrongly"] = defect_json(certificate.hull_nested_wrongly);
+    json["layers"] = ordered_json::array();
+    for (const Certificate& layer : layers) {
+        ordered_json one{{"certified", layer.certified()},
+                         {"locally_valid", layer.locally_valid()}};
+        add_findings(one, layer);
+        json["layers"].push_back(one);
+    }
     return json;
 }
 
@@ -172,16 +225,23 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
     json["mesh"] = mesh_json(report.mesh);
     json["field"] = field_json(report.field);
+    json["side"] = name_in_table(report.side);
     json["lines"] = lines_json(report.lines);
     json["growth"] = report.grow ? growth_json(*report.grow) : ordered_json();
+    json["scale"] = report.scale ? scale_json(*report.scale) : ordered_json();
+    json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
+    json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
+    json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},
                       {"ripples", report.ripples}};
     json["tets"] = tets_json(report);
     json["conformity"] = conformity_json(report.conformity);
     json["quality"] = quality_json(report.quality);
-    json["volume"] = {
-        {"solid", report.solid_volume}, {"shell", report.shell_volume}, {"fill", report.fill}};
+    json["volume"] = {{"solid", report.solid_volume},
+                      {"shell", report.shell_volume},
+                      {"outside", report.outside_volume},
+                      {"fill", report.fill}};
     json["coverage"] = coverage_json(report.coverage);
     json["certificate"] =
         report.certificate ? certificate_json(*report.certificate) : ordered_json();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/report.h"
 
+#include "core/option_names.h"
+
 #include <algorithm>
 #include <iomanip>
 #include <locale>
@@ -73,28 +75,90 @@ std::string stop_text(const LineReport& lines)
     return text.empty() ? "none stepped" : text;
 }
 
-std::string coverage_text(const Coverage& coverage)
+std::string volume_shares(const ShellReport& report)
+{
+    std::string text;
+    if (report.side != Side::outward)
+        text += ", fill " + percent(report.fill);
+    if (report.side != Side::inward)
+        text += ", outside " + number(report.outside_volume, 6) + " (" +
+                percent(report.outside_volume / report.solid_volume) + " of the solid's)";
+    return text;
+}
+
+std::string coverage_text(const Coverage& coverage, Side side)
 {
     if (coverage.samples == 0)
         return "not estimated";
-    return percent(coverage.covered_share) + " of the solid (+- " +
+    return percent(coverage.covered_share) +
+           (side == Side::inward ? " of the solid (+- " : " of what the outer surface holds (+- ") +
            percent(coverage.standard_error) + "), more than once " +
            percent(coverage.overlap_share) + "; " + number(coverage.samples, 12) +
            " points: " + number(coverage.in_none, 12) + " in no tet, " +
            number(coverage.in_several, 12) + " in two or more";
 }
 
-std::string certificate_text(const Certificate& certificate)
+std::string certificate_text(const StackCertificate& certificate)
 {
+    const std::vector<Certificate>& layers = certificate.layers;
     if (certificate.certified())
         return std::string("yes (") +
-               (certificate.test == PrismTest::twelve_tets ? "12 tets" : "the 3 chosen tets") +
-               " of each prism positive, surfaces embedded and disjoint)";
+               (!layers.empty() && layers.front().test == PrismTest::chosen_tets
+                    ? "the 3 chosen tets"
+                    : "12 tets") +
+               " of each prism positive, surfaces embedded and disjoint" +
+               (layers.size() > 1 ? ", in all " + number(layers.size()) + " layers)" : ")");
     std::string text = certificate.locally_valid() ? "NO, only locally valid: " : "NO: ";
     const std::vector<std::string> failures = certificate.failures();
     for (std::size_t i = 0; i < failures.size(); ++i)
         text += (i ? ", " : "") + failures[i];
     return text;
+}
+
+void layer_lines(std::ostringstream& out, const ShellReport& report)
+{
+    if (report.cut)
+        line(out, "layers",
+             number(report.layers.size(), 12) + "; " + number(report.cut->moved, 12) +
+                 " points between them moved, " + number(report.cut->uncut, 12) +
+                 " pillars left whole");
+    for (std::size_t k = 0; k < report.layers.size(); ++k) {
+        const LayerFigures& layer = report.layers[k];
+        const std::string label = "  layer " + number(k);
+        line(out, label.c_str(),
+             number(layer.tets, 12) + " tets, volume " + number(layer.volume, 6) + ", lengths to " +
+                 number(layer.length.max) + ", " + number(layer.pinned_vertices, 12) +
+                 " pinned, mean ratio min " + number(layer.quality.mean_ratio.min) +
+                 ", 1 % under " + number(layer.quality.mean_ratio.p1) + ", median " +
+                 number(layer.quality.mean_ratio.median));
+    }
+}
+
+void line_figures(std::ostringstream& out, const LineReport& lines)
+{
+    line(out, "directions",
+         "smallest visibility " + number(lines.min_visibility) + ", " +
+             number(lines.blind_vertices, 12) + " blind vertices");
+    line(out, "lines",
+         number(lines.steps, 12) + " steps, " + number(lines.stuck_vertices, 12) +
+             " stuck vertices");
+    line(out, "stops", stop_text(lines));
+    line(out, "lengths", spread(lines.length));
+    line(out, "  in voxels", spread(lines.length_voxels));
+}
+
+/// What the stages after growth had to give up.
+void concession_lines(std::ostringstream& out, const ShellReport& report)
+{
+    if (report.grow && report.grow->quality_rounds > 0)
+        line(out, "min quality",
+             number(report.grow->quality_rounds, 12) +
+                 " rounds; still below: " + number(report.grow->tets_below_quality, 12) +
+                 " tets, " + number(report.grow->vertices_below_quality, 12) + " inner vertices");
+    if (report.scale)
+        line(out, "scale",
+             number(report.scale->shortened, 12) + " pillars shortened further, " +
+                 number(report.scale->pinned, 12) + " of them pinned");
 }
 
 /// What is wrong with the shell; what was not looked at is not called right.
@@ -153,15 +217,15 @@ std::string report_text(const ShellReport& report)
     line(out, "drift",
          "zero crossing at the vertices: mean " + number(report.field.smooth.mean_drift) +
              ", max " + number(report.field.smooth.max_drift));
-    line(out, "directions",
-         "smallest visibility " + number(report.lines.min_visibility) + ", " +
-             number(report.lines.blind_vertices, 12) + " blind vertices");
-    line(out, "lines",
-         number(report.lines.steps, 12) + " steps, " + number(report.lines.stuck_vertices, 12) +
-             " stuck vertices");
-    line(out, "stops", stop_text(report.lines));
-    line(out, "lengths", spread(report.lines.length));
-    line(out, "  in voxels", spread(report.lines.length_voxels));
+    if (report.side != Side::inward)
+        line(out, "side", name_in_table(report.side));
+    line_figures(out, report.lines);
+    if (report.outside) {
+        line(out, "outward", "");
+        line_figures(out, report.outside->lines);
+    }
+    concession_lines(out, report);
+    layer_lines(out, report);
     line(out, "prisms",
          number(report.prisms, 12) + ", " + number(report.pinned_vertices, 12) +
              " pinned vertices, " + number(report.ripples, 12) + " ripples");
@@ -169,14 +233,15 @@ std::string report_text(const ShellReport& report)
          number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
              " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
              (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
-    line(out, "mean ratio", spread(report.quality.mean_ratio));
+    line(out, "mean ratio",
+         spread(report.quality.mean_ratio) + "; 1 % under " + number(report.quality.mean_ratio.p1));
     line(out, "dihedral",
          "smallest " + number(kDegrees * report.quality.min_dihedral_radians.min) +
              " degrees, largest " + number(kDegrees * report.quality.max_dihedral_radians.max));
     line(out, "volume",
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
-             ", fill " + percent(report.fill));
-    line(out, "coverage", coverage_text(report.coverage));
+             volume_shares(report));
+    line(out, "coverage", coverage_text(report.coverage, report.side));
     if (report.certificate)
         line(out, "certified", certificate_text(*report.certificate));
     if (!report.stages.empty())

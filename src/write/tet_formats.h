@@ -3,10 +3,18 @@
 
 #include "vdb_shell/shell/tessellate.h"
 
+#include <algorithm>
 #include <iosfwd>
 
 namespace vdb_shell
 {
+
+/// Only then does a tet's layer say something: files of one layer do without it.
+inline bool has_layers(const TetMesh& tets)
+{
+    return std::any_of(tets.prism_layer.begin(), tets.prism_layer.end(),
+                       [](std::uint8_t layer) { return layer > 0; });
+}
 
 void write_vtu(std::ostream& out, const TetMesh& tets);
 void write_tetgen_node(std::ostream& out, const TetMesh& tets);

@@ -50,11 +50,16 @@ void write_tetgen_node(std::ostream& out, const TetMesh& tets)
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets)
 {
     TextOut text(out);
-    text << "# index a b c d prism\n" << tets.tets.size() << " 4 1\n";
+    const bool layers = has_layers(tets);
+    text << "# index a b c d prism" << (layers ? " layer\n" : "\n") << tets.tets.size()
+         << (layers ? " 4 2\n" : " 4 1\n");
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         text << t;
         write_corners(text, tets.tets[t], 0);
-        text << ' ' << tets.prism[t] << '\n';
+        text << ' ' << tets.prism[t];
+        if (layers)
+            text << ' ' << int(tets.prism_layer[t]);
+        text << '\n';
     }
 }
 
@@ -98,6 +103,8 @@ void write_gmsh(std::ostream& out, const TetMesh& tets)
     write_gmsh_data(text, "NodeData", "source_vertex", tets.source_vertex);
     write_gmsh_data(text, "NodeData", "layer", tets.layer);
     write_gmsh_data(text, "ElementData", "prism", tets.prism);
+    if (has_layers(tets))
+        write_gmsh_data(text, "ElementData", "layer", tets.prism_layer);
 }
 
 } // namespace vdb_shell

@@ -142,13 +142,13 @@ PointGrids find_points(openvdb::io::File& main, const ShellInfo& info, const fs:
 void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWriteOptions& options)
 {
     openvdb::initialize();
-    require_consistent(file.shell, file.split, file.tets);
+    require_consistent(file.stack, file.tets);
     const bool beside = options.points == PointPlacement::beside;
     const openvdb::MetaMap metadata = shell_metadata(path, file, options.points);
     openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, options.half),
                                 named_copy(file.depth, kDepthGrid, options.half)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
-    const PointGrids made = make_point_grids(file.shell, file.split, file.tets);
+    const PointGrids made = make_point_grids(file.stack, file.tets);
     const openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
@@ -186,13 +186,13 @@ ShellFile read_shell_vdb(const fs::path& path)
         result.surface = read_grid<FloatGrid>(file, path.string(), kSurfaceGrid);
         result.depth = read_grid<FloatGrid>(file, path.string(), kDepthGrid);
         const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
-                                 info.tets};
+                                 info.tets,     info.layers, info.skin};
         read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
-                         result.shell, result.split, result.tets);
-        result.split.ripples = std::size_t(info.ripples);
+                         result.stack, result.tets);
+        result.stack.splits.front().ripples = std::size_t(info.ripples);
         result.parameters_json = info.parameters_json;
         result.report_json = info.report_json;
-        const std::string found = checksum_of(result.shell, result.split, result.tets);
+        const std::string found = checksum_of(result.stack, result.tets);
         if (found != info.checksum)
             throw ReadError(path.string() + ": the shell's arrays have checksum " + found +
                             ", the file says " + info.checksum);

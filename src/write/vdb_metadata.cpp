@@ -24,6 +24,8 @@ constexpr const char* kPointsKey = "vdb_shell_points";
 constexpr const char* kTetPointsKey = "vdb_shell_tet_points";
 constexpr const char* kPrismsKey = "vdb_shell_prisms";
 constexpr const char* kTetsKey = "vdb_shell_tets";
+constexpr const char* kLayersKey = "vdb_shell_layers";
+constexpr const char* kSkinKey = "vdb_shell_skin";
 constexpr const char* kRipplesKey = "vdb_shell_ripples";
 constexpr const char* kOrientationKey = "vdb_shell_orientation";
 constexpr const char* kChecksumKey = "vdb_shell_checksum";
@@ -36,6 +38,9 @@ constexpr const char* kCreatorKey = "creator";
 constexpr const char* kOrientation =
     "triangles counter-clockwise seen from outside; tets (a,b,c,d) with det(b-a,c-a,d-a) > 0 "
     "unless inverted; layer 0 outer, 1 inner";
+constexpr const char* kOrientationOfLayers =
+    "triangles counter-clockwise seen from outside; tets (a,b,c,d) with det(b-a,c-a,d-a) > 0 "
+    "unless inverted; surfaces and layers from 0, the outermost";
 constexpr const char* kGridNames = "surface depth shell_points shell_prisms shell_tets";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what)
@@ -97,6 +102,35 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
     return path.parent_path() / stated;
 }
 
+/// Files of one layer below the surface say nothing of layers: they are as schema 1 has them.
+bool layered(const ShellCounts& counts)
+{
+    return counts.layers > 1 || counts.skin > 0;
+}
+
+void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellInfo& info)
+{
+    if (info.schema < kLayeredSchema)
+        return;
+    info.layers = count_entry(metadata, path, kLayersKey);
+    info.skin = count_entry(metadata, path, kSkinKey);
+    const auto most = std::int64_t(ShellStack::kMostLayers);
+    if (info.layers < 1 || info.layers > most)
+        fail(path, std::string("metadata \"") + kLayersKey + "\" is " +
+                       std::to_string(info.layers) + ", expected 1 to " + std::to_string(most));
+    if (info.skin > info.layers)
+        fail(path, std::string("metadata \"") + kSkinKey + "\" is " + std::to_string(info.skin) +
+                       ", expected at most " + std::to_string(info.layers));
+}
+
+std::size_t ripples_of(const ShellStack& stack)
+{
+    std::size_t sum = 0;
+    for (const PrismSplit& split : stack.splits)
+        sum += split.ripples;
+    return sum;
+}
+
 std::int32_t as_int32(std::size_t value)
 {
     return std::int32_t(
@@ -118,17 +152,22 @@ fs::path points_file_of(const fs::path& path)
 openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, PointPlacement points)
 {
     openvdb::MetaMap map;
-    const ShellCounts counts = counts_of(file.shell, file.tets);
+    const ShellCounts counts = counts_of(file.stack, file.tets);
     map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
-    map.insertMeta(kSchemaKey, Int32Metadata(kShellSchema));
+    map.insertMeta(kSchemaKey, Int32Metadata(layered(counts) ? kLayeredSchema : 1));
     map.insertMeta(kVerticesKey, Int32Metadata(std::int32_t(counts.vertices)));
     map.insertMeta(kPointsKey, Int32Metadata(std::int32_t(counts.points)));
     map.insertMeta(kTetPointsKey, Int32Metadata(std::int32_t(counts.tet_points)));
     map.insertMeta(kPrismsKey, Int32Metadata(std::int32_t(counts.prisms)));
     map.insertMeta(kTetsKey, Int32Metadata(std::int32_t(counts.tets)));
-    map.insertMeta(kRipplesKey, Int32Metadata(as_int32(file.split.ripples)));
-    map.insertMeta(kOrientationKey, StringMetadata(kOrientation));
-    map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.shell, file.split, file.tets)));
+    map.insertMeta(kRipplesKey, Int32Metadata(as_int32(ripples_of(file.stack))));
+    if (layered(counts)) {
+        map.insertMeta(kLayersKey, Int32Metadata(std::int32_t(counts.layers)));
+        map.insertMeta(kSkinKey, Int32Metadata(std::int32_t(counts.skin)));
+    }
+    map.insertMeta(kOrientationKey,
+                   StringMetadata(layered(counts) ? kOrientationOfLayers : kOrientation));
+    map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets)));
     map.insertMeta(kGridsKey, StringMetadata(kGridNames));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
@@ -150,9 +189,11 @@ void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 {
     grid.setCreator(creator_name());
     const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,  kTetPointsKey,
-                                kPrismsKey, kTetsKey,     kRipplesKey, kOrientationKey};
+                                kPrismsKey, kTetsKey,     kRipplesKey, kOrientationKey,
+                                kLayersKey, kSkinKey};
     for (const char* key : kept)
-        grid.insertMeta(std::string("global:") + key, *file[key]);
+        if (file[key])
+            grid.insertMeta(std::string("global:") + key, *file[key]);
 }
 
 ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& path)
@@ -165,6 +206,7 @@ ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& p
     info.prisms = count_entry(metadata, path, kPrismsKey);
     info.tets = count_entry(metadata, path, kTetsKey);
     info.ripples = count_entry(metadata, path, kRipplesKey);
+    read_layers(metadata, path, info);
     info.creator = entry<std::string>(metadata, path, kCreatorKey);
     info.orientation = entry<std::string>(metadata, path, kOrientationKey);
     info.checksum = entry<std::string>(metadata, path, kChecksumKey);

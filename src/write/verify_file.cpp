@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/verify_file.h"
 
-#include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
@@ -52,9 +52,14 @@ std::string compare(double found, double claimed)
     return "found " + digits(found) + ", the file says " + digits(claimed);
 }
 
+const std::vector<openvdb::Vec3s>& skin_of(const ShellFile& file)
+{
+    return file.stack.surface(file.stack.skin);
+}
+
 Verification verify_surface(const ShellFile& file, const json& report)
 {
-    const MeshCheck check = check_mesh({file.shell.outer, file.shell.triangles});
+    const MeshCheck check = check_mesh({skin_of(file), file.stack.triangles()});
     const double crossings = stated(report, "/mesh/self_intersections");
     const bool sound = check.closed() && check.manifold() && check.inconsistent_edges.count == 0 &&
                        check.degenerate_triangles.count == 0;
@@ -68,10 +73,11 @@ Verification verify_surface(const ShellFile& file, const json& report)
 
 Verification verify_tets(const ShellFile& file)
 {
-    const TetMesh expected = make_tets(file.shell, file.split);
+    const TetMesh expected = make_tets(file.stack);
     const bool same = same_bytes(expected.points, file.tets.points) &&
                       same_bytes(expected.tets, file.tets.tets) &&
-                      same_bytes(expected.prism, file.tets.prism);
+                      same_bytes(expected.prism, file.tets.prism) &&
+                      same_bytes(expected.prism_layer, file.tets.prism_layer);
     return {"tets are those of the prisms", same,
             std::to_string(file.tets.tets.size()) + " tets, " +
                 std::to_string(expected.tets.size()) + " expected"};
@@ -79,7 +85,7 @@ Verification verify_tets(const ShellFile& file)
 
 Verification verify_conformity(const ShellFile& file)
 {
-    const Conformity found = check_conformity(file.shell, file.tets);
+    const Conformity found = check_conformity(file.stack, file.tets);
     return {"tets conform", found.conforming(),
             std::to_string(found.crowded_faces.count) + " crowded, " +
                 std::to_string(found.misoriented_faces.count) + " misoriented, " +
@@ -105,7 +111,7 @@ Verification verify_certificate(const ShellFile& file, const json& report, Inter
     const bool twelve = claim.is_object() && claim.contains("test") &&
                         claim.at("test") == name_in_table(PrismTest::twelve_tets);
     const PrismTest test = twelve ? PrismTest::twelve_tets : PrismTest::chosen_tets;
-    const Certificate found = certify_shell(file.shell, file.split, test, interrupter);
+    const StackCertificate found = certify_stack(file.stack, test, interrupter);
     auto agrees = [&](const char* what, bool value) {
         return !claim.is_object() || !claim.contains(what) || claim.at(what) == value;
     };
@@ -133,7 +139,7 @@ Verification verify_level_set(const ShellFile& file, const json& report)
     const openvdb::FloatGrid& grid = *file.surface;
     const openvdb::tools::GridSampler<openvdb::FloatGrid, openvdb::tools::BoxSampler> phi(grid);
     double worst = 0.0;
-    for (const openvdb::Vec3s& p : file.shell.outer)
+    for (const openvdb::Vec3s& p : skin_of(file))
         worst = std::max(worst, std::abs(double(phi.wsSample(openvdb::Vec3d(p)))));
     // A vertex lies on the zero crossing to within the cell that holds it, plus what smoothing
     // moved.

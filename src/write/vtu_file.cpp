@@ -85,6 +85,8 @@ void write_vtu(std::ostream& out, const TetMesh& tets)
     write_array(text, "UInt8", "layer", 1, tets.layer);
     text << "</PointData>\n<CellData>\n";
     write_array(text, "UInt32", "prism", 1, tets.prism);
+    if (has_layers(tets))
+        write_array(text, "UInt8", "layer", 1, tets.prism_layer);
     text << "</CellData>\n<Points>\n";
     write_array(text, "Float32", "Points", 3, tets.points);
     text << "</Points>\n";

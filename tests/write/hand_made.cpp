@@ -38,6 +38,7 @@ void add_prism(TetMesh& tets, const std::vector<std::uint32_t>& below, const Pri
             std::swap(tet[2], tet[3]);
         tets.tets.push_back(tet);
         tets.prism.push_back(prism);
+        tets.prism_layer.push_back(0);
     }
 }
 
@@ -88,8 +89,7 @@ ShellFile hand_made_file(const HandMade& made, double voxel_size)
     file.surface = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
         1.0f, openvdb::Vec3f(0.0f), float(voxel_size), 3.0f);
     file.depth = shell_depth_grid(made.tets, voxel_size);
-    file.shell = made.shell;
-    file.split = made.split;
+    file.stack = one_layer(made.shell, made.split);
     file.tets = made.tets;
     file.parameters_json = "{\"rho\": 0.9}";
     file.report_json = "{\n  \"fill\": 0.5\n}";

@@ -101,7 +101,8 @@ TEST(Report, SaysWhetherTheShellIsCertified)
     ShellReport report = good_report();
     EXPECT_TRUE(json::parse(report_json(report)).at("certificate").is_null());
     EXPECT_EQ(report_text(report).find("certified   "), std::string::npos);
-    report.certificate.emplace();
+    report.certificate.emplace().layers.resize(1);
+    Certificate& layer = report.certificate->layers[0];
     json certificate = json::parse(report_json(report)).at("certificate");
     EXPECT_EQ(certificate.at("test"), "twelve-tets");
     EXPECT_EQ(certificate.at("certified"), true);
@@ -110,8 +111,8 @@ TEST(Report, SaysWhetherTheShellIsCertified)
               std::string::npos);
     EXPECT_EQ(report_text(report).find("not certified"), std::string::npos);
 
-    report.certificate->test = PrismTest::chosen_tets;
-    report.certificate->inner_folds = {2, {{3, 4}, {5, 9}}};
+    layer.test = PrismTest::chosen_tets;
+    layer.inner_folds = {2, {{3, 4}, {5, 9}}};
     certificate = json::parse(report_json(report)).at("certificate");
     EXPECT_EQ(certificate.at("test"), "chosen-tets");
     EXPECT_EQ(certificate.at("certified"), false);
@@ -121,7 +122,7 @@ TEST(Report, SaysWhetherTheShellIsCertified)
     EXPECT_NE(report_text(report).find("NO, only locally valid: inner_folds 2 (first 3-4 5-9)"),
               std::string::npos);
     EXPECT_NE(report_text(report).find("not certified"), std::string::npos);
-    report.certificate->bad_prisms = {1, {7}};
+    layer.bad_prisms = {1, {7}};
     EXPECT_NE(report_text(report).find("NO: bad_prisms 1 (first 7), inner_folds"),
               std::string::npos);
 }

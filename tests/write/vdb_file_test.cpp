@@ -43,15 +43,21 @@ std::string bytes_without_uuid(const fs::path& path)
 
 void expect_same_shell(const ShellFile& read, const ShellFile& written)
 {
-    EXPECT_TRUE(same_bits(read.shell.outer, written.shell.outer));
-    EXPECT_TRUE(same_bits(read.shell.inner, written.shell.inner));
-    EXPECT_TRUE(same_bits(read.shell.triangles, written.shell.triangles));
-    EXPECT_TRUE(same_bits(read.shell.stop, written.shell.stop));
-    EXPECT_TRUE(same_bits(read.split.order, written.split.order));
-    EXPECT_EQ(read.split.ripples, written.split.ripples);
+    EXPECT_EQ(read.stack.skin, written.stack.skin);
+    ASSERT_EQ(read.stack.layers.size(), written.stack.layers.size());
+    for (std::size_t k = 0; k < written.stack.layers.size(); ++k) {
+        const PrismShell &found = read.stack.layers[k], &expected = written.stack.layers[k];
+        EXPECT_TRUE(same_bits(found.outer, expected.outer));
+        EXPECT_TRUE(same_bits(found.inner, expected.inner));
+        EXPECT_TRUE(same_bits(found.triangles, expected.triangles));
+        EXPECT_TRUE(same_bits(found.stop, expected.stop));
+        EXPECT_TRUE(same_bits(read.stack.splits[k].order, written.stack.splits[k].order));
+        EXPECT_EQ(read.stack.splits[k].ripples, written.stack.splits[k].ripples);
+    }
     EXPECT_TRUE(same_bits(read.tets.points, written.tets.points));
     EXPECT_TRUE(same_bits(read.tets.tets, written.tets.tets));
     EXPECT_TRUE(same_bits(read.tets.prism, written.tets.prism));
+    EXPECT_TRUE(same_bits(read.tets.prism_layer, written.tets.prism_layer));
     EXPECT_TRUE(same_bits(read.tets.source_vertex, written.tets.source_vertex));
     EXPECT_TRUE(same_bits(read.tets.layer, written.tets.layer));
     EXPECT_EQ(read.parameters_json, written.parameters_json);
@@ -64,7 +70,7 @@ TEST(VdbFile, ReadsBackBitForBit)
 {
     const TemporaryFolder folder;
     ShellFile file = hand_made_file(small_shell(), 0.1);
-    file.split.ripples = 7;
+    file.stack.splits[0].ripples = 7;
     for (const PointPlacement points : {PointPlacement::same_file, PointPlacement::beside}) {
         write_shell_vdb(folder / "shell.vdb", file, {points});
         expect_same_shell(read_shell_vdb(folder / "shell.vdb"), file);
@@ -80,8 +86,7 @@ TEST(VdbFile, KeepsNegativeZeroAndTinyAndHugeCoordinates)
     made.shell.inner[0] = {0.0f, -0.0f, 1e-42f};
     made.shell.outer[1] = made.tets.points[1] = {3e37f, -3e37f, 0.0f};
     ShellFile file = hand_made_file(hand_made_shell(test::box({0, 0, 0}, {1, 1, 1}), 0.5), 0.2);
-    file.shell = made.shell;
-    file.split = made.split;
+    file.stack = one_layer(made.shell, made.split);
     file.tets = made.tets;
     write_shell_vdb(folder / "shell.vdb", file);
     expect_same_shell(read_shell_vdb(folder / "shell.vdb"), file);

@@ -24,7 +24,7 @@ ShellFile file_of(const SplitShell& made)
     const TetMesh tets = make_tets(made.shell, made.split);
     ShellFile file = test::hand_made_file({made.shell, made.split, tets}, 0.25);
     ShellReport report;
-    report.certificate = certify_shell(made.shell, made.split, PrismTest::twelve_tets);
+    report.certificate = certify_stack(one_layer(made.shell, made.split), PrismTest::twelve_tets);
     file.report_json = report_json(report);
     return file;
 }
@@ -122,7 +122,7 @@ TEST(VerifyFile, TheTestIsTheOneThatTheFileNames)
 TEST(VerifyFile, AnOrderThatIsNoneIsNotEvenWritten)
 {
     ShellFile file = file_of(test::scaled_shell(test::icosphere(1, 1), 0.5f));
-    file.split.order[7] = {0, 2, 0};
+    file.stack.splits[0].order[7] = {0, 2, 0};
     const test::TemporaryFolder folder;
     EXPECT_ANY_THROW(write_shell_vdb(folder / "shell.vdb", file));
 }

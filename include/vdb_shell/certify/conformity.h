@@ -2,7 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/shell/shell_stack.h"
 
 #include <cstdint>
 
@@ -37,5 +37,9 @@ struct Conformity {
 /// Combinatorial: looks at indices only (and at which vertices of the shell are pinned), so it
 /// holds for inverted tets too. Precondition: corners of tets are indices into tets.points.
 Conformity check_conformity(const PrismShell& shell, const TetMesh& tets);
+
+/// The same of all layers together: only the outermost and the innermost surface are free; a
+/// triangle is expected on them unless its three pillars are pinned in every layer.
+Conformity check_conformity(const ShellStack& stack, const TetMesh& tets);
 
 } // namespace vdb_shell

@@ -11,7 +11,7 @@ namespace vdb_shell
 /// Order statistics of one measure over all tets. Percentiles are by nearest rank: always one of
 /// the values, the same on every machine.
 struct Spread {
-    double min = 0, p5 = 0, median = 0, p95 = 0, max = 0, mean = 0;
+    double min = 0, p1 = 0, p5 = 0, median = 0, p95 = 0, max = 0, mean = 0;
 };
 
 /// Spread of a list of finite values; all zero for an empty one.

@@ -18,6 +18,9 @@ struct LevelSetOptions {
     int resolution = 256;
     /// Width of the band outside the surface, at least 3: the stencil of line stepping at a vertex.
     double exterior_voxels = 3.0;
+    /// Depth of the band outside, in world units, for lines that go outward; with the same 3 voxels
+    /// to spare as the interior band. Unset, or less than that: exterior_voxels alone.
+    std::optional<double> exterior_depth;
     /// Depth of the band inside, in world units. Unset: half the diagonal of the bounding box, as
     /// deep as any line can go (the paper, section 3). The grid gets 3 voxels more than this, what
     /// the stencil of line stepping reads around a point of that depth.

@@ -34,13 +34,20 @@ struct GrowOptions {
     bool flips = true;             ///< choose diagonals again while moving (thickest) and for
                                    ///< quality at the end
     int free_rounds = 40;          ///< upper bound on rounds of free moves, under each prism test
+    /// Bound that the mean ratio of every tet should reach (certify/quality.h), 0 or more and less
+    /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
+    /// end, at a cost in thickness; those that cannot reach it are counted in the report.
+    double min_quality = 0;
 };
 
 struct GrowReport {
-    std::size_t rounds = 0;      ///< rounds of free moves
-    std::size_t flips = 0;       ///< diagonals turned
-    std::size_t released = 0;    ///< pins of the start that growth could release
-    double fill_after_lines = 0; ///< shell volume / solid volume before the first free move
+    std::size_t rounds = 0;             ///< rounds of free moves
+    std::size_t flips = 0;              ///< diagonals turned
+    std::size_t released = 0;           ///< pins of the start that growth could release
+    double fill_after_lines = 0;        ///< shell / |enclosed volume| before the first free move
+    std::size_t quality_rounds = 0;     ///< rounds of moves towards GrowOptions::min_quality
+    std::size_t tets_below_quality = 0; ///< tets that did not reach it
+    std::size_t vertices_below_quality = 0; ///< inner vertices of such tets, pinned ones included
 };
 
 struct GrowResult {
@@ -60,9 +67,11 @@ struct GrowResult {
 /// SplitRule::length_descending they are then turned for quality. Method::thickest has its own.
 /// Same bits for any number of threads. Terminates: rounds are bounded, and in a round each vertex
 /// is tried a bounded number of times.
-/// Precondition: closed, manifold, outward mesh; one entry per vertex in all lists; cap not
-/// negative; method not raw. On a surface that crosses itself the result is some shell; only a
-/// certificate tells. Throws InvalidOption when free_rounds is negative, Cancelled.
+/// Precondition: closed, manifold mesh, oriented so that the side to fill lies behind its
+/// triangles; one entry per vertex in all lists; cap not negative, and finite where that side has
+/// no bound (a reversed surface: shell/sides.h); method not raw. On a surface that crosses itself
+/// the result is some shell; only a certificate tells. Throws InvalidOption when free_rounds is
+/// negative or min_quality out of range, Cancelled.
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& start, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,

@@ -42,7 +42,9 @@ struct TetMesh {
     std::vector<openvdb::Vec4I> tets; ///< det(b-a, c-a, d-a) > 0 when the tet is not inverted
     std::vector<std::uint32_t> prism; ///< per tet: the triangle above it
     std::vector<std::uint32_t> source_vertex; ///< per point: the surface vertex it belongs to
-    std::vector<std::uint8_t> layer;          ///< per point: 0 outer, 1 inner
+    /// Per point: its surface, 0 the outermost. Of one shell: 0 outer, 1 inner.
+    std::vector<std::uint8_t> layer;
+    std::vector<std::uint8_t> prism_layer; ///< per tet: the layer of its prism, 0 the outermost
 };
 
 /// Chooses the diagonals. Deterministic; the ripple method for a given seed.

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/quality.h"
+#include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
+#include "vdb_shell/shell/scale_thickness.h"
+#include "vdb_shell/shell/sides.h"
 #include "vdb_shell/step/line_step.h"
 
 #include <array>
@@ -46,23 +49,46 @@ struct LineReport {
     Spread length_voxels;
 };
 
+/// One layer of several.
+struct LayerFigures {
+    std::size_t tets = 0;
+    std::size_t pinned_vertices = 0; ///< pillars without length in this layer
+    double volume = 0;               ///< sum of signed tet volumes
+    Spread length;                   ///< of its part of each pillar, world units
+    QualityReport quality;
+};
+
+/// The lines outward of a shell on both sides; the report's own lines are then those inward.
+struct OutsideReport {
+    LineReport lines;
+    std::optional<GrowReport> grow;
+    std::optional<ScaleReport> scale;
+};
+
 /// Everything that is known about one run, as numbers. Names no time of day and no machine.
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
     MeshCheck mesh;
     FieldReport field;
+    Side side = Side::inward;
     LineReport lines;
-    std::optional<GrowReport> grow; ///< absent for Method::raw
+    std::optional<GrowReport> grow;   ///< absent for Method::raw
+    std::optional<ScaleReport> scale; ///< absent unless the shell was scaled after growth
+    std::optional<OutsideReport> outside;
+    std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
+    std::vector<LayerFigures> layers; ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     TetSigns signs;
     Conformity conformity;
     QualityReport quality;
     double solid_volume = 0;
-    double shell_volume = 0; ///< sum of signed tet volumes
-    double fill = 0;         ///< shell_volume / solid_volume
+    double shell_volume = 0;   ///< sum of signed tet volumes
+    double outside_volume = 0; ///< the part of it in layers outside the surface
+    double fill = 0;           ///< what of shell_volume lies in layers inside / solid_volume
+    /// The solid is the surface's own, or with layers outside what the outermost surface encloses.
     Coverage coverage;
-    std::optional<Certificate> certificate; ///< nothing when it was not asked for
+    std::optional<StackCertificate> certificate; ///< nothing when it was not asked for
     std::vector<StageCost> stages;
 };
 

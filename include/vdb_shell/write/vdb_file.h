@@ -2,7 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
-#include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/shell/shell_stack.h"
 
 #include <openvdb/openvdb.h>
 
@@ -14,15 +14,16 @@
 namespace vdb_shell
 {
 
-/// Version of the layout in docs/file_format.md. A reader refuses a larger one.
-inline constexpr int kShellSchema = 1;
+/// Version of the layout in docs/file_format.md. A reader refuses a larger one. A shell of one
+/// layer below its surface is written as schema 1, which has no words for layers.
+inline constexpr int kShellSchema = 2;
+inline constexpr int kLayeredSchema = 2; ///< the first that knows layers
 
 /// All that a shell's .vdb holds.
 struct ShellFile {
     openvdb::FloatGrid::Ptr surface; ///< the level set
     openvdb::FloatGrid::Ptr depth;   ///< see shell_depth_grid
-    PrismShell shell;
-    PrismSplit split;
+    ShellStack stack;
     TetMesh tets;
     std::string parameters_json;
     std::string report_json;
@@ -45,9 +46,12 @@ struct VdbWriteOptions {
 struct ShellInfo {
     int schema = 0;
     std::int64_t vertices = 0; ///< of the surface
-    std::int64_t points = 0;   ///< vertices and the lower ends of all pillars that have a length
+    std::int64_t points = 0;   ///< vertices and, layer by layer, the lower ends of all pillars that
+                               ///< have a length
     std::int64_t tet_points = 0, prisms = 0, tets = 0;
-    std::int64_t ripples = 0;        ///< PrismSplit::ripples
+    std::int64_t layers = 1;         ///< as many prisms stand on top of each other
+    std::int64_t skin = 0;           ///< ShellStack::skin
+    std::int64_t ripples = 0;        ///< PrismSplit::ripples, of all layers
     std::string creator;             ///< program and version that wrote it
     std::string orientation;         ///< how triangles and tets are oriented, in words
     std::string checksum;            ///< of the shell's arrays: 16 hexadecimal digits
@@ -58,17 +62,18 @@ struct ShellInfo {
 };
 
 /// Float grid "depth" over the voxels whose centres lie in a tet: 0 on the outer surface, 1 on the
-/// inner one, linear in each tet; where tets overlap, the one of smallest index. Class fog volume,
-/// background 0. Same bits for any number of threads. Throws InvalidOption for a voxel size that is
-/// not positive and finite or too small for 32-bit voxel coordinates, Cancelled.
+/// inner one, linear in each tet (with n layers, k / n on surface k); where tets overlap, the one
+/// of smallest index. Class fog volume, background 0. Same bits for any number of threads. Throws
+/// InvalidOption for a voxel size that is not positive and finite or too small for 32-bit voxel
+/// coordinates, Cancelled.
 openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
                                          Interrupter* interrupter = nullptr);
 
 /// Writes grids and metadata as docs/file_format.md says; `file` is not changed. The file (with
 /// PointPlacement::beside both files) appears whole or not at all. Same bytes for the same input,
 /// but for OpenVDB's random UUID (bytes 21 to 56). Throws InvalidOption when a grid is missing,
-/// when shell, split and tets do not fit together as make_tets leaves them, and when a distance is
-/// beyond what the half floats that are asked for can hold; WriteError.
+/// when stack and tets do not fit together as make_tets leaves them, and when a distance is beyond
+/// what the half floats that are asked for can hold; WriteError.
 void write_shell_vdb(const std::filesystem::path& path, const ShellFile& file,
                      const VdbWriteOptions& options = {});
 

@@ -45,8 +45,23 @@ struct Slope {
     Mat3d curvature;
 };
 
-Slope slope_at(const std::vector<HalfSpace>& bounds, const Vec3d& gradient, double softness,
-               const Vec3d& x)
+void add_ball(const Ball& ball, double softness, const Vec3d& x, Slope& s)
+{
+    const Vec3d arm = x - ball.centre;
+    const double room = ball.radius * ball.radius - arm.lengthSqr();
+    if (!std::isfinite(room) || room <= 0)
+        return;
+    const Vec3d n = arm * (2 / room);
+    s.gradient += softness * n;
+    for (int i = 0; i < 3; ++i) {
+        s.curvature[i][i] += softness * 2 / room;
+        for (int j = 0; j < 3; ++j)
+            s.curvature[i][j] += softness * n[i] * n[j];
+    }
+}
+
+Slope slope_at(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& gradient,
+               double softness, const Vec3d& x)
 {
     Slope s{gradient, Mat3d(0, 0, 0, 0, 0, 0, 0, 0, 0)};
     for (const HalfSpace& bound : bounds) {
@@ -59,13 +74,27 @@ Slope slope_at(const std::vector<HalfSpace>& bounds, const Vec3d& gradient, doub
             for (int j = 0; j < 3; ++j)
                 s.curvature[i][j] += softness * n[i] * n[j];
     }
+    add_ball(ball, softness, x, s);
     return s;
 }
 
-/// How far along dx the first bound is met.
-double room_along(const std::vector<HalfSpace>& bounds, const Vec3d& x, const Vec3d& dx)
+/// Where x + t dx leaves the ball. Precondition: x lies in it.
+double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
 {
-    double room = std::numeric_limits<double>::max();
+    const Vec3d arm = x - ball.centre;
+    const double a = dx.lengthSqr(), b = arm.dot(dx);
+    const double c = ball.radius * ball.radius - arm.lengthSqr();
+    if (!std::isfinite(c) || c <= 0 || !(a > 0))
+        return std::numeric_limits<double>::max();
+    const double root = std::sqrt(b * b + a * c);
+    return b > 0 ? c / (root + b) : (root - b) / a;
+}
+
+/// How far along dx the first bound is met.
+double room_along(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& x,
+                  const Vec3d& dx)
+{
+    double room = room_in_ball(ball, x, dx);
     for (const HalfSpace& bound : bounds) {
         const double down = -bound.n.dot(dx), value = bound.value(x);
         if (down > 0 && value > 0)
@@ -76,12 +105,12 @@ double room_along(const std::vector<HalfSpace>& bounds, const Vec3d& x, const Ve
 
 } // namespace
 
-Vec3d barrier_minimum(const std::vector<HalfSpace>& bounds, const Vec3d& gradient, double softness,
-                      const Vec3d& start)
+Vec3d barrier_minimum(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& gradient,
+                      double softness, const Vec3d& start)
 {
     Vec3d x = start;
     for (int step = 0; step < kNewtonSteps; ++step) {
-        Slope s = slope_at(bounds, gradient, softness, x);
+        Slope s = slope_at(bounds, ball, gradient, softness, x);
         const double trace = s.curvature[0][0] + s.curvature[1][1] + s.curvature[2][2];
         if (!(trace > 0))
             break;
@@ -93,7 +122,7 @@ Vec3d barrier_minimum(const std::vector<HalfSpace>& bounds, const Vec3d& gradien
         const double decrement = std::sqrt(std::max(0.0, -s.gradient.dot(dx) / softness));
         const double damped = decrement > kDamped ? 1 / (1 + decrement) : 1;
         // Far from the centre a longer step pays off, as long as it stays well inside every bound.
-        x += std::max(damped, std::min(1.0, 0.7 * room_along(bounds, x, dx))) * dx;
+        x += std::max(damped, std::min(1.0, 0.7 * room_along(bounds, ball, x, dx))) * dx;
         if (decrement < kConverged)
             break;
     }

@@ -23,6 +23,9 @@ constexpr double kCool = 0.72, kCoolFast = 0.3; ///< factors per round
 constexpr double kLeastGain = 1e-4; ///< share of the solid that a round must win to go on
 constexpr int kSweepsPerRound = 2;  ///< on one set of candidate lists
 constexpr int kHalvings = 5;
+// The barrier knows the cap as a ball a little wider, so that a vertex on the cap has room on every
+// side; without it a vertex that only the cap holds would be sent far away, sideways as well.
+constexpr double kBeyondCap = 1.02;
 
 // Lengths as shares of the diagonal.
 constexpr double kLeastMove = 1e-6;
@@ -77,9 +80,10 @@ bool propose_move(const GrowState& s, int v, const MoveRules& rules, Scratch& sc
     tet_bounds(s, v, scratch.bounds);
     if (rules.contacts)
         contact_bounds(s, v, scratch.contacts, scratch.bounds);
-    const Vec3d target = within_reach(
-        s, v,
-        barrier_minimum(scratch.bounds, inner_volume6_gradient(s, v), rules.softness, s.b[v]));
+    const Vec3d target =
+        within_reach(s, v,
+                     barrier_minimum(scratch.bounds, {s.a[v], kBeyondCap * s.cap[v]},
+                                     inner_volume6_gradient(s, v), rules.softness, s.b[v]));
     const Vec3d full = capped(s, v, target) - s.b[v];
     double share = 1;
     for (int i = 0; i < kHalvings && share * full.length() > rules.least; ++i, share *= 0.5) {
@@ -136,25 +140,34 @@ double cooled(double softness, double gain)
     return std::max(kLeastSoftness, softness * (stale ? kCoolFast : kCool));
 }
 
+/// What the barrier's weight is measured by: the solid, or where there is no end to what can be
+/// filled, what the lines have filled.
+double volume6_to_fill(const GrowState& s, double first_fill)
+{
+    const double enclosed = std::abs(volume6(s.a, s.mesh->faces));
+    return s.bounded ? enclosed : enclosed * first_fill;
+}
+
 } // namespace
 
 void move_freely(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,
                  const FreeStage& stage, const StageProgress& progress, GrowReport& report)
 {
-    const double per_tet =
-        std::abs(volume6(s.a, s.mesh->faces)) / (3.0 * std::max(1, s.mesh->face_count()));
     const double first_fill = fill_of(s);
+    const double per_tet =
+        volume6_to_fill(s, first_fill) / (3.0 * std::max(1, s.mesh->face_count()));
     const std::vector<Vec3d> first_b = s.b;
     const std::vector<std::uint8_t> first_order = s.order, first_pinned = s.pinned;
     for (int v = 0; v < s.mesh->vertices; ++v)
         s.reach[v] = first_reach(s, v);
     double fill = first_fill;
     // A barrier worth more than what is left to win would only undo what is reached.
-    double softness = std::min(stage.softness, std::max(kLeastSoftness, 7 * (1 - fill)));
+    double softness = s.bounded ? std::min(stage.softness, std::max(kLeastSoftness, 7 * (1 - fill)))
+                                : stage.softness;
     SweepScratch sweep_scratch;
     std::vector<int> quiet(s.b.size(), 0);
     tbb::enumerable_thread_specific<Scratch> scratch;
-    for (int round = 0; round < stage.rounds && fill < kEnoughFill; ++round) {
+    for (int round = 0; round < stage.rounds && !(s.bounded && fill >= kEnoughFill); ++round) {
         progress.stop_if_interrupted(100 * round / stage.rounds);
         const MoveRules rules{options.soft_contacts, per_tet * softness, kLeastMove * s.diagonal};
         // Seldom: a pin that cannot go now will hardly be able to in the next round.

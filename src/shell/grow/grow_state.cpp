@@ -32,6 +32,14 @@ std::vector<int> first_of_each_component(const Connectivity& c)
     return witness;
 }
 
+double longest_finite(const std::vector<double>& lengths)
+{
+    double longest = 0;
+    for (const double length : lengths)
+        longest = std::isfinite(length) ? std::max(longest, length) : longest;
+    return longest;
+}
+
 } // namespace
 
 GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
@@ -58,6 +66,10 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     for (const Vec3d& p : s.a)
         for (int k = 0; k < 3; ++k)
             largest = std::max(largest, std::abs(p[k]));
+    s.bounded = volume6(s.a, mesh.faces) > 0;
+    // Inner points of a bounded side lie within the surface's own box, others beyond it.
+    if (!s.bounded)
+        largest += longest_finite(cap);
     s.rounding = largest * double(std::numeric_limits<float>::epsilon());
     s.witness = first_of_each_component(mesh);
     return s;
@@ -83,7 +95,8 @@ double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
 
 double fill_of(const GrowState& s)
 {
-    return 1 - volume6(s.b, s.mesh->faces) / volume6(s.a, s.mesh->faces);
+    const double ratio = volume6(s.b, s.mesh->faces) / volume6(s.a, s.mesh->faces);
+    return s.bounded ? 1 - ratio : ratio - 1;
 }
 
 } // namespace vdb_shell::growth

@@ -28,6 +28,7 @@ struct GrowState {
     bool twelve = true;               ///< ask all 12 tets of a prism, not the chosen 3
     std::vector<double> cap;          ///< upper bound of |b-a|, may be infinite
     double diagonal = 0;              ///< of the surface's box: the scale of all step lengths
+    bool bounded = true; ///< the side to fill has a volume; the outside of a surface has none
 
     double rounding = 0; ///< how far rounding to float32 can move a point
 
@@ -91,7 +92,7 @@ void commit_move(GrowState& s, int v, const Vec3d& x);
 
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);
-/// The share of the solid that lies between the surfaces.
+/// What lies between the surfaces over what the outer one encloses, whichever side it lies on.
 double fill_of(const GrowState& s);
 
 } // namespace vdb_shell::growth

@@ -13,9 +13,10 @@ namespace
 /// The tets of a prism that hold b_l, under the state's present rule.
 Slice<TetFromInner> tets_with_inner(const GrowState& s, int f, int l)
 {
-    const int set = s.twelve ? kTwelve : s.order[f];
-    const TetFromInner* first = tables().from_b[set][l].data();
-    return {first, first + tables().from_b_count[set][l]};
+    if (!s.twelve)
+        return chosen_tets_with_inner(s, f, l);
+    const TetFromInner* first = tables().from_b[kTwelve][l].data();
+    return {first, first + tables().from_b_count[kTwelve][l]};
 }
 
 bool positive(const GrowState& s, int f, const OrientedTet& tet)

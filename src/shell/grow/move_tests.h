@@ -6,6 +6,13 @@
 namespace vdb_shell::growth
 {
 
+/// The tets of the prism's present split that hold inner corner `local` of face f.
+inline Slice<TetFromInner> chosen_tets_with_inner(const GrowState& s, int f, int local)
+{
+    const TetFromInner* first = tables().from_b[s.order[f]][local].data();
+    return {first, first + tables().from_b_count[s.order[f]][local]};
+}
+
 /// Would the tets of the prisms around v be positive with b_v = x? Exact.
 bool tets_positive_at(const GrowState& s, int v, const Vec3d& x);
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/certify/certificate.h"
+#include "vdb_shell/shell/shell_stack.h"
+
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// The certificate of a stack of layers: that of each layer, and of the whole against other
+/// components. Layers of one component cannot overlap when each of them is certified: their numbers
+/// of tets over a point, w_k - w_k+1 in the winding numbers of the surfaces, add up to w_0 - w_n,
+/// which is at most 1 (docs/theory.md).
+struct StackCertificate {
+    std::vector<Certificate> layers; ///< from the outermost to the innermost
+    /// Only asked where there are several layers and several components: triangles of the outermost
+    /// surface, or of the innermost, of one component that touch either of another.
+    Defect<TrianglePair> hull_contacts;
+    /// As Certificate::nested_wrongly, of the outermost and the innermost surface.
+    Defect<TrianglePair> hull_nested_wrongly;
+
+    /// No failure at all: the tets of all layers together are a geometric simplicial complex.
+    bool certified() const;
+    /// Every layer is locally valid: see Certificate.
+    bool locally_valid() const;
+    /// The failures of each layer and of the whole. With several layers each line begins with
+    /// "layer K: ", K from 0, the outermost.
+    std::vector<std::string> failures() const;
+};
+
+/// As certify_shell; a stack of one layer gives that layer's certificate.
+/// Precondition: as certify_shell for each layer, and the layers fit together as ShellStack says.
+StackCertificate certify_stack(const ShellStack& stack, PrismTest test,
+                               Interrupter* interrupter = nullptr);
+
+} // namespace vdb_shell

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline_sides.h"
+
+#include "step/thickness.h"
+
+#include <openvdb/tools/Count.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+/// What the user's thickness allows at most; nothing where it sets no bound.
+std::optional<double> longest_line(const LineStepOptions& options,
+                                   const openvdb::FloatGrid* thickness_grid)
+{
+    std::optional<double> longest = options.thickness;
+    if (thickness_grid) {
+        const double painted = openvdb::tools::minMax(thickness_grid->tree()).max();
+        const double background = thickness_grid->background();
+        const double deepest = std::max(painted, background);
+        if (deepest > 0.0)
+            longest = std::min(longest.value_or(deepest), deepest);
+    }
+    return longest;
+}
+
+/// A side as the stages see it: the surface with that side behind its triangles.
+struct SideJob {
+    const TriangleMesh& surface;
+    const openvdb::FloatGrid& level_set;
+    const ShellOptions& options;
+    const openvdb::FloatGrid* thickness_grid;
+    StageClock& clock;
+    std::string prefix; ///< of the stages' names
+    Interrupter* interrupter;
+};
+
+/// What the stages of one side make.
+struct SideResult {
+    SideLines lines;
+    ShellStack stack;
+    std::optional<GrowReport> grow;
+    std::optional<ScaleReport> scale;
+};
+
+/// The prisms straight from the lengths: nothing is promised, so nothing is mended.
+void make_raw_shell(const SideJob& job, SideResult& side)
+{
+    LineLengths lengths = side.lines.lengths;
+    for (double& length : lengths.length)
+        length *= job.options.scale.factor;
+    PrismShell shell = extrude(job.surface, side.lines.directions, lengths);
+    PrismSplit split = split_prisms(shell, job.options.split);
+    side.stack = one_layer(std::move(shell), std::move(split));
+}
+
+void grow_and_scale(const SideJob& job, SideResult& side)
+{
+    const ShellOptions& options = job.options;
+    GrowResult grown =
+        grow_shell(job.surface, side.lines.directions, side.lines.lengths,
+                   largest_lengths(job.surface, options.line_step, job.thickness_grid),
+                   options.grow, options.split, job.interrupter);
+    side.grow = grown.report;
+    if (options.scale.factor < 1.0)
+        side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
+                                     job.interrupter);
+    side.stack = one_layer(std::move(grown.shell), std::move(grown.split));
+}
+
+SideResult build_side(const SideJob& job)
+{
+    const ShellOptions& options = job.options;
+    SideResult side;
+    SideLines& lines = side.lines;
+    job.clock.run(job.prefix + "directions", [&] {
+        lines.directions = compute_directions(job.surface, job.level_set, options.directions);
+    });
+    job.clock.run(job.prefix + "line stepping", [&] {
+        lines.lengths = line_step(job.surface, job.level_set, lines.directions, options.line_step,
+                                  job.thickness_grid, job.interrupter);
+    });
+    job.clock.run(job.prefix + "limits", [&] {
+        apply_limits(lines.lengths,
+                     vertex_limits(job.surface, lines.directions, options.limits.limit));
+    });
+    if (options.grow.method == Method::raw)
+        job.clock.run(job.prefix + "prisms", [&] { make_raw_shell(job, side); });
+    else
+        job.clock.run(job.prefix + "growth", [&] { grow_and_scale(job, side); });
+    return side;
+}
+
+SideResult build_outside(const ShellResult& result, ShellOptions options,
+                         const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                         Interrupter* interrupter)
+{
+    if (!options.line_step.thickness && !thickness_grid)
+        options.line_step.thickness = default_outward_thickness(result.surface);
+    const TriangleMesh reversed = reversed_surface(result.surface);
+    // In place, for a copy would double the memory.
+    negate_level_set(*result.level_set);
+    SideResult side = build_side({reversed, *result.level_set, options, thickness_grid, clock,
+                                  options.side == Side::both ? "outward " : "", interrupter});
+    negate_level_set(*result.level_set);
+    side.stack = turn_back(side.stack);
+    return side;
+}
+
+} // namespace
+
+LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surface,
+                         const openvdb::FloatGrid* thickness_grid)
+{
+    LevelSetOptions band = options.level_set;
+    const std::optional<double> longest = longest_line(options.line_step, thickness_grid);
+    if (options.side != Side::inward && !band.exterior_depth) {
+        band.exterior_depth = longest;
+        if (!longest && !thickness_grid)
+            band.exterior_depth = default_outward_thickness(surface);
+    }
+    if (!band.interior_depth)
+        // The stencil of the vertices is all that lines outward read inside.
+        band.interior_depth =
+            options.side == Side::outward ? resolve_voxel_size(surface, band) : longest;
+    return band;
+}
+
+PrismTest prism_test(const ShellOptions& options)
+{
+    return options.grow.method == Method::thickest ? PrismTest::chosen_tets
+                                                   : PrismTest::twelve_tets;
+}
+
+void build_sides(ShellResult& result, const ShellOptions& options,
+                 const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                 Interrupter* interrupter)
+{
+    result.report.side = options.side;
+    SideResult main = options.side == Side::outward
+                          ? build_outside(result, options, thickness_grid, clock, interrupter)
+                          : build_side({result.surface, *result.level_set, options, thickness_grid,
+                                        clock, "", interrupter});
+    result.directions = std::move(main.lines.directions);
+    result.lengths = std::move(main.lines.lengths);
+    result.report.grow = main.grow;
+    result.report.scale = main.scale;
+    result.stack = std::move(main.stack);
+    if (options.side != Side::both)
+        return;
+    SideResult outside = build_outside(result, options, thickness_grid, clock, interrupter);
+    result.report.outside = {{}, outside.grow, outside.scale};
+    result.outside = std::move(outside.lines);
+    result.stack = join_sides(std::move(outside.stack), std::move(result.stack));
+}
+
+} // namespace vdb_shell

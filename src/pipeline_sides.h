@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/pipeline.h"
+
+#include "core/stage_clock.h"
+
+namespace vdb_shell
+{
+
+/// The band that the lines of the options' side need, no deeper than the longest line that the user
+/// allows.
+LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surface,
+                         const openvdb::FloatGrid* thickness_grid);
+
+/// The twelve tets are what growth keeps positive by default, and what the raw shells are held
+/// against; the thickest shells stand by their chosen tets alone.
+PrismTest prism_test(const ShellOptions& options);
+
+/// The stages from directions to scale, once for each side: fills in lines, stack and their parts
+/// of the report. Leaves the level set as it was.
+void build_sides(ShellResult& result, const ShellOptions& options,
+                 const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                 Interrupter* interrupter);
+
+} // namespace vdb_shell

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/shell/sides.h"
+
+#include <openvdb/tools/ValueTransformer.h>
+
+#include <cassert>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+/// The place of a triangle's corner after the second and the third have been exchanged.
+std::uint8_t exchanged(std::uint8_t corner)
+{
+    return static_cast<std::uint8_t>((3 - corner) % 3);
+}
+
+PrismShell turned(const PrismShell& layer)
+{
+    return {layer.inner, layer.outer, reversed_surface({{}, layer.triangles}).triangles,
+            layer.stop};
+}
+
+/// The tets (ax,ay,az,bz), (ax,ay,by,bz), (ax,bx,by,bz) with a and b exchanged are those of the
+/// order z, y, x.
+PrismSplit turned(const PrismSplit& split)
+{
+    PrismSplit result = split;
+    for (auto& [x, y, z] : result.order) {
+        const std::uint8_t first = exchanged(z), last = exchanged(x);
+        x = first;
+        y = exchanged(y);
+        z = last;
+    }
+    return result;
+}
+
+} // namespace
+
+TriangleMesh reversed_surface(TriangleMesh mesh)
+{
+    for (openvdb::Vec3I& t : mesh.triangles)
+        std::swap(t[1], t[2]);
+    return mesh;
+}
+
+void negate_level_set(openvdb::FloatGrid& level_set)
+{
+    openvdb::tools::foreach (level_set.beginValueAll(),
+                             [](const auto& value) { value.setValue(-*value); });
+    openvdb::FloatTree::RootNodeType& root = level_set.tree().root();
+    root.setBackground(-root.background(), false);
+}
+
+double default_outward_thickness(const TriangleMesh& mesh)
+{
+    return kOutwardShare * diagonal_of(bounds_of(mesh.points));
+}
+
+ShellStack turn_back(const ShellStack& reversed)
+{
+    assert(reversed.skin == 0 && reversed.splits.size() == reversed.layers.size());
+    ShellStack stack;
+    for (std::size_t k = reversed.layers.size(); k-- > 0;) {
+        stack.layers.push_back(turned(reversed.layers[k]));
+        stack.splits.push_back(turned(reversed.splits[k]));
+    }
+    stack.skin = stack.layers.size();
+    return stack;
+}
+
+ShellStack join_sides(ShellStack outside, ShellStack inside)
+{
+    assert(outside.skin == outside.layers.size() && inside.skin == 0);
+    assert(outside.layers.back().inner == inside.layers.front().outer);
+    assert(outside.triangles() == inside.triangles());
+    for (std::size_t k = 0; k < inside.layers.size(); ++k) {
+        outside.layers.push_back(std::move(inside.layers[k]));
+        outside.splits.push_back(std::move(inside.splits[k]));
+    }
+    return outside;
+}
+
+} // namespace vdb_shell
