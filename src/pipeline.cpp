@@ -2,6 +2,7 @@
 #include "vdb_shell/pipeline.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/mesh/split_fans.h"
 
 #include "core/option_names.h"
 #include "core/stage_clock.h"
@@ -25,6 +26,30 @@ void require_a_bound(const ShellOptions& options, const openvdb::FloatGrid* thic
                             "would end the lines");
 }
 
+/// Copies of vertices make sense only where nothing else stands in the way: at an edge of three or
+/// more triangles the fans are no fans of one surface.
+bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
+{
+    return options.allow_self_intersections && check.non_manifold_vertices.count > 0 &&
+           check.non_manifold_edges.count == 0;
+}
+
+void take_surface(ShellResult& r, const TriangleMesh& mesh, const CheckOptions& options,
+                  const std::string& name)
+{
+    r.surface = mesh;
+    r.report.mesh = check_mesh(mesh);
+    if (may_split_fans(r.report.mesh, options)) {
+        FanSplit split = split_fans(mesh);
+        r.surface = std::move(split.mesh);
+        r.report.split_vertices = split.vertices;
+        r.report.vertex_copies = split.copies;
+        r.report.mesh = check_mesh(r.surface);
+    }
+    require_usable(r.report.mesh, options, name);
+    r.surface = turn_outward(std::move(r.surface), r.report.mesh);
+}
+
 void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* interrupter)
 {
     LayerResult cut = cut_layers(r.stack, options.layers, prism_test(options), interrupter);
@@ -46,11 +71,7 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     r.report.source = name;
     StageClock clock(r.report.stages);
 
-    clock.run("check", [&] {
-        r.report.mesh = check_mesh(mesh);
-        require_usable(r.report.mesh, options.check, name);
-        r.surface = turn_outward(mesh, r.report.mesh);
-    });
+    clock.run("check", [&] { take_surface(r, mesh, options.check, name); });
     clock.run("level set", [&] {
         r.level_set =
             mesh_to_level_set(r.surface, band_for(options, r.surface, thickness_grid), interrupter);
@@ -65,6 +86,8 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     clock.run("certificate", [&] {
         r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
     });
+    if (!r.report.certificate->certified())
+        clock.run("overlaps", [&] { r.report.overlaps = find_overlaps(r.tets, interrupter); });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
         // Layers outside are held against what the outermost surface encloses.

@@ -89,6 +89,26 @@ void count_prisms(const TetMesh& mesh, Overlaps& found)
     }
 }
 
+template <typename Element> std::string first_of(const Defect<Element>& defect)
+{
+    std::string text = " (first";
+    for (const Element& element : defect.first)
+        text += " " + index_text(element);
+    return text + ")";
+}
+
+/// Prisms of a single layer by triangle alone.
+std::string first_prisms(const Defect<PrismIndex>& defect)
+{
+    Defect<std::uint32_t> triangles;
+    for (const PrismIndex& prism : defect.first) {
+        if (prism[1] > 0)
+            return first_of(defect);
+        triangles.first.push_back(prism[0]);
+    }
+    return first_of(triangles);
+}
+
 double certified_volume(const TetMesh& mesh, const std::vector<std::uint8_t>& certified)
 {
     TetMesh part;
@@ -100,6 +120,20 @@ double certified_volume(const TetMesh& mesh, const std::vector<std::uint8_t>& ce
 }
 
 } // namespace
+
+std::string Overlaps::summary() const
+{
+    std::string text = std::to_string(pairs.count) +
+                       (pairs.count == 1 ? " pair of tets overlaps" : " pairs of tets overlap");
+    if (pairs.count > 0)
+        text += first_of(pairs);
+    text += "; certified by themselves: " + std::to_string(certified_prisms()) + " of " +
+            std::to_string(prisms) + " prisms, " + std::to_string(certified_tets()) + " of " +
+            std::to_string(tets) + " tets";
+    if (uncertified_prisms.count > 0)
+        text += "; prisms that are not" + first_prisms(uncertified_prisms);
+    return text;
+}
 
 Overlaps find_overlaps(const TetMesh& mesh, Interrupter* interrupter)
 {

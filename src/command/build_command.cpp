@@ -26,7 +26,8 @@ void add_surface_options(CLI::App& app, BuildArguments& arguments)
                  "Turn closed components that are inside out instead of refusing them")
         ->group("Surface");
     app.add_flag("--allow-self-intersections", arguments.shell.check.allow_self_intersections,
-                 "Accept a surface that crosses itself; its shell overlaps too")
+                 "Accept a surface that crosses itself, copy vertices of several fans, and certify "
+                 "prism by prism")
         ->group("Surface");
 }
 
@@ -203,6 +204,13 @@ ShellFile to_file(const ShellResult& result, const BuildArguments& arguments,
     return file;
 }
 
+std::vector<std::uint8_t> certified_flags(const ShellResult& result)
+{
+    const std::optional<Overlaps>& overlaps = result.report.overlaps;
+    return overlaps ? overlaps->certified
+                    : std::vector<std::uint8_t>(result.tets.tets.size(), std::uint8_t(1));
+}
+
 void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
@@ -244,7 +252,8 @@ int run_build(const BuildArguments& arguments)
                                      thickness.get(), &interrupter);
     result.report.read = read.report;
     StageClock(write_cost).run("write", [&] {
-        write_outputs(arguments.outputs, to_file(result, arguments, &interrupter));
+        write_outputs(arguments.outputs, to_file(result, arguments, &interrupter),
+                      certified_flags(result));
     });
 
     std::vector<StageCost>& stages = result.report.stages;

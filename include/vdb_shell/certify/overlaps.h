@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace vdb_shell
@@ -34,6 +35,8 @@ struct Overlaps {
     std::size_t certified_prisms() const { return prisms - uncertified_prisms.count; }
     /// Every tet is certified: none inverted or flat, no two overlapping.
     bool none() const { return uncertified.count == 0; }
+    /// Counts and first indices, one line.
+    std::string summary() const;
 };
 
 /// Works on any tets with finite points; inverted ones overlap others as sets of points. Flat ones

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
+#include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/certify/quality.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
@@ -69,7 +70,10 @@ struct OutsideReport {
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
-    MeshCheck mesh;
+    MeshCheck mesh; ///< of the surface that was worked with
+    /// Vertices of several fans that got copies (mesh/split_fans.h), by the input's index.
+    Defect<std::uint32_t> split_vertices;
+    std::size_t vertex_copies = 0;
     FieldReport field;
     Side side = Side::inward;
     LineReport lines;
@@ -89,6 +93,8 @@ struct ShellReport {
     /// The solid is the surface's own, or with layers outside what the outermost surface encloses.
     Coverage coverage;
     std::optional<StackCertificate> certificate; ///< nothing when it was not asked for
+    /// What holds tet by tet; absent when the shell is certified as a whole.
+    std::optional<Overlaps> overlaps;
     std::vector<StageCost> stages;
 };
 
