@@ -311,7 +311,8 @@ TEST_F(Command, ASurfaceThatCrossesItselfIsRefusedOrCertifiedPrismByPrism)
     EXPECT_EQ(check.status, ExitCode::success) << check.out;
     EXPECT_NE(check.out.find("ok      overlaps are as stated"), std::string::npos) << check.out;
 
-    const Outcome raw = run(allowed + " --method raw -o " + file("r.vdb"));
+    const Outcome raw =
+        run(allowed + " --method raw --stop-test none --thickness 0.4 -o " + file("r.vdb"));
     ASSERT_EQ(raw.status, ExitCode::success) << raw.err;
     EXPECT_NE(raw.out.find("pairs of tets that overlap"), std::string::npos) << raw.out;
     EXPECT_EQ(run("check " + file("r.vdb")).status, ExitCode::success);
