@@ -4,6 +4,7 @@
 #include "command/build_command.h"
 #include "command/exit_code.h"
 #include "command/file_commands.h"
+#include "command/inspect_command.h"
 #include "command/signals.h"
 
 #include <CLI/CLI.hpp>
@@ -32,14 +33,18 @@ int run(int argc, char** argv)
         ->check(CLI::NonNegativeNumber);
 
     BuildArguments build;
+    InspectArguments inspect;
     FileArguments info, convert, check;
     CLI::App& build_app = *app.add_subcommand("build", "Build a shell from a triangle surface");
+    CLI::App& inspect_app =
+        *app.add_subcommand("inspect", "Say what stands in the way of a shell, and what mends it");
     CLI::App& info_app = *app.add_subcommand("info", "Print what a shell's file holds");
     CLI::App& convert_app =
         *app.add_subcommand("convert", "Write other formats from a shell's file");
     CLI::App& check_app =
         *app.add_subcommand("check", "Verify that a shell's file is what it claims");
     add_build_command(build_app, build);
+    add_inspect_command(inspect_app, inspect);
     add_info_command(info_app, info);
     add_convert_command(convert_app, convert);
     add_check_command(check_app, check);
@@ -56,6 +61,8 @@ int run(int argc, char** argv)
     catch_signals();
     if (build_app.parsed())
         return run_build(build);
+    if (inspect_app.parsed())
+        return run_inspect(inspect);
     if (info_app.parsed())
         return run_info(info);
     if (convert_app.parsed())
