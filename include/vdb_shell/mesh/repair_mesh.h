@@ -62,8 +62,8 @@ struct RepairReport {
     std::size_t moved_points = 0;        ///< copies (and originals) moved apart
     double largest_move = 0;             ///< world units
     std::vector<HoleFill> holes;
-    std::size_t kept_triangles = 0; ///< input triangles in the result with their coordinates bit for
-                                    ///< bit, turned ones included
+    std::size_t kept_triangles = 0; ///< input triangles in the result with their coordinates bit
+                                    ///< for bit, turned ones included
     MeshCheck after;
 
     bool changed() const;

@@ -35,7 +35,8 @@ int longest_side(const TriangleMesh& mesh, const Vec3I& t)
 double smallest_height(const TriangleMesh& mesh, const Vec3I& t)
 {
     const int k = longest_side(mesh, t);
-    const Vec3d a(mesh.points[t[k]]), b(mesh.points[t[(k + 1) % 3]]), c(mesh.points[t[(k + 2) % 3]]);
+    const Vec3d a(mesh.points[t[k]]), b(mesh.points[t[(k + 1) % 3]]),
+        c(mesh.points[t[(k + 2) % 3]]);
     const double length = (b - a).length();
     return length > 0 ? (b - a).cross(c - a).length() / length : 0.0;
 }
@@ -187,9 +188,9 @@ void drop_degenerate(WorkingSurface& surface, double sliver_height, RepairReport
         const TriangleMesh& mesh = surface.mesh;
         std::vector<char> bad(mesh.triangles.size());
         for_each_index(bad.size(), [&](std::size_t t) {
-            bad[t] = is_flat(mesh, mesh.triangles[t]) ||
-                     (sliver_height > 0 &&
-                      smallest_height(mesh, mesh.triangles[t]) < sliver_height);
+            bad[t] =
+                is_flat(mesh, mesh.triangles[t]) ||
+                (sliver_height > 0 && smallest_height(mesh, mesh.triangles[t]) < sliver_height);
         });
         const auto first = std::find(bad.begin(), bad.end(), char(1));
         if (first == bad.end())
