@@ -5,6 +5,7 @@
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/prism_shell.h"
 #include "vdb_shell/shell/tessellate.h"
@@ -13,6 +14,7 @@
 #include "vdb_shell/step/line_step.h"
 #include "vdb_shell/write/report.h"
 
+#include <optional>
 #include <string>
 
 namespace vdb_shell
@@ -21,6 +23,9 @@ namespace vdb_shell
 /// The options of every stage, in the order of the data. The command's flags bind to these very
 /// fields.
 struct ShellOptions {
+    /// Unset: the surface is taken as it is, or refused. Allowed self-intersections keep crossing
+    /// fills too.
+    std::optional<RepairOptions> repair;
     CheckOptions check;
     LevelSetOptions level_set;
     SmoothOptions smooth;
@@ -34,7 +39,7 @@ struct ShellOptions {
 
 /// What the stages made.
 struct ShellResult {
-    TriangleMesh surface; ///< the input, turned outward when asked
+    TriangleMesh surface; ///< the input, repaired and turned outward when asked
     openvdb::FloatGrid::Ptr level_set;
     Directions directions;
     LineLengths lengths;
@@ -44,10 +49,10 @@ struct ShellResult {
     ShellReport report;
 };
 
-/// The whole job on a mesh in memory: check, level set, smooth, directions, line stepping, limits,
-/// growth (Method::raw: prisms straight from the lengths), tets, certificate, figures. `name` is
-/// what messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the
-/// stages throw. Same result for any number of threads (costs in the report aside).
+/// The whole job on a mesh in memory: repair when asked, check, level set, smooth, directions, line
+/// stepping, limits, growth (Method::raw: prisms straight from the lengths), tets, certificate,
+/// figures. `name` is what messages and the report call the mesh. `thickness_grid` as in line_step.
+/// Throws what the stages throw. Same result for any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

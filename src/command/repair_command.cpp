@@ -53,8 +53,7 @@ int run_repair(const RepairArguments& arguments)
     try {
         require_usable(result.report.after, {}, name);
     } catch (const GeometryError& left) {
-        std::cerr << "vdb_shell: after the repair, " << left.what()
-                  << " - --wrap makes a new surface around it\n";
+        std::cerr << "vdb_shell: after the repair, " << left.what() << '\n';
         return check_failed;
     }
     return success;

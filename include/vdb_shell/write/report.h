@@ -9,6 +9,7 @@
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/step/line_step.h"
 
@@ -50,7 +51,8 @@ struct LineReport {
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
-    MeshCheck mesh;
+    std::optional<RepairReport> repair; ///< absent when it was not asked for
+    MeshCheck mesh;                     ///< of the surface that was worked with
     FieldReport field;
     LineReport lines;
     std::optional<GrowReport> grow; ///< absent for Method::raw

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/exact.h"
 #include "core/stage_progress.h"
-#include "mesh/orientation.h"
+#include "mesh/boundary_loops.h"
 #include "mesh/repair/fill_patch.h"
 #include "mesh/repair/hole_walk.h"
 #include "mesh/repair/working_surface.h"
@@ -202,6 +202,35 @@ double length_of(const TriangleMesh& mesh, const Hole& hole)
     return length;
 }
 
+HoleFill measured(const TriangleMesh& mesh, const Hole& hole)
+{
+    HoleFill fill;
+    fill.first_point = *std::min_element(hole.points.begin(), hole.points.end());
+    fill.edges = hole.points.size();
+    fill.length = length_of(mesh, hole);
+    return fill;
+}
+
+/// A piece without an orientation gives its rims no direction: points only.
+std::vector<Hole> holes_of_one_sided(const TriangleMesh& mesh,
+                                     const std::vector<std::uint32_t>& partner,
+                                     const std::vector<char>& one_sided)
+{
+    std::vector<Edge> edges;
+    for (std::uint32_t side = 0; side < partner.size(); ++side) {
+        if (partner[side] != kUnpaired || !one_sided[side / 3])
+            continue;
+        const Vec3I& t = mesh.triangles[side / 3];
+        const std::uint32_t a = t[int(side % 3)], b = t[int((side + 1) % 3)];
+        edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+    std::sort(edges.begin(), edges.end());
+    std::vector<Hole> holes;
+    for (const BoundaryWalk& walk : boundary_walks(edges))
+        holes.push_back({walk.points, {}, {}});
+    return holes;
+}
+
 bool passes_a_point_twice(const Hole& hole)
 {
     std::vector<std::uint32_t> sorted = hole.points;
@@ -217,22 +246,22 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
     const StageProgress progress(interrupter, "filling holes");
     const TriangleMesh& mesh = surface.mesh;
     const std::vector<std::uint32_t> partner = pair_sides(mesh);
-    const std::vector<Hole> holes = walk_holes(mesh, partner, find_fans(mesh, partner));
-    const Orientation orientation =
-        consistent_orientation(sorted_edge_uses(mesh.triangles), mesh.triangles.size());
+    const Fans fans = find_fans(mesh, partner);
+    const std::vector<char> one_sided = one_sided_triangles(mesh);
+    const std::vector<Hole> holes =
+        walk_holes(mesh, partner, fans, link_fans(mesh, partner, fans), one_sided);
+    const std::vector<Hole> never = holes_of_one_sided(mesh, partner, one_sided);
     for (std::size_t h = 0; h < holes.size(); ++h) {
         progress.stop_if_interrupted(static_cast<int>(100 * h / holes.size()));
         const Hole& hole = holes[h];
-        HoleFill fill;
-        fill.first_point = *std::min_element(hole.points.begin(), hole.points.end());
-        fill.edges = hole.points.size();
-        fill.length = length_of(mesh, hole);
-        const bool one_sided = orientation.one_sided[orientation.piece_of[hole.triangles[0]]] != 0;
-        if (!one_sided && hole.points.size() >= 3 && hole.points.size() <= kLongestRim &&
+        HoleFill fill = measured(mesh, hole);
+        if (hole.points.size() >= 3 && hole.points.size() <= kLongestRim &&
             !passes_a_point_twice(hole))
             fill_hole(surface, hole, options.keep_crossing_fills, fill);
         report.holes.push_back(fill);
     }
+    for (const Hole& hole : never)
+        report.holes.push_back(measured(mesh, hole));
 }
 
 } // namespace vdb_shell::repair

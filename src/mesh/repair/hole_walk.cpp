@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/repair/hole_walk.h"
 
+#include "mesh/orientation.h"
 #include "mesh/topology.h"
 
 #include <algorithm>
@@ -14,6 +15,11 @@ namespace
 {
 
 using openvdb::Vec3d;
+
+std::uint32_t next_corner(std::uint32_t side)
+{
+    return side - side % 3 + (side + 1) % 3;
+}
 
 std::uint32_t key_of(const EdgeUse& use)
 {
@@ -87,7 +93,6 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
     const auto point_of = [&](std::uint32_t corner) {
         return mesh.triangles[corner / 3][int(corner % 3)];
     };
-    const auto next_corner = [](std::uint32_t side) { return side - side % 3 + (side + 1) % 3; };
     std::vector<std::uint32_t> parent(corners);
     std::iota(parent.begin(), parent.end(), 0U);
     const auto root_of = [&](std::uint32_t c) {
@@ -122,36 +127,135 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
     return fans;
 }
 
-std::vector<Hole> walk_holes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partner,
-                             const Fans& fans)
+namespace
 {
-    const auto corners = static_cast<std::uint32_t>(partner.size());
-    const auto next_corner = [](std::uint32_t side) { return side - side % 3 + (side + 1) % 3; };
-    // The hole runs through an unpaired side from its end to its start: it leaves the fan at the
-    // side's end. Each open fan has one such side.
-    std::vector<std::uint32_t> leaves(fans.point.size(), kUnpaired);
-    std::vector<std::vector<std::uint32_t>> open_fans(mesh.points.size());
-    for (std::uint32_t side = 0; side < corners; ++side) {
+
+/// By open fan: the unpaired side that ends at its point, by which the hole leaves it, and the one
+/// that starts there, by which the hole comes. (A hole runs against the triangles.)
+struct Border {
+    std::vector<std::uint32_t> leaves, comes;
+    std::vector<std::vector<std::uint32_t>> open_fans; ///< by point
+};
+
+Border border_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partner,
+                 const Fans& fans)
+{
+    Border border{std::vector<std::uint32_t>(fans.point.size(), kUnpaired),
+                  std::vector<std::uint32_t>(fans.point.size(), kUnpaired),
+                  std::vector<std::vector<std::uint32_t>>(mesh.points.size())};
+    for (std::uint32_t side = 0; side < partner.size(); ++side) {
         if (partner[side] != kUnpaired)
             continue;
         const std::uint32_t fan = fans.of_corner[next_corner(side)];
-        leaves[fan] = side;
-        open_fans[fans.point[fan]].push_back(fan);
+        border.leaves[fan] = side;
+        border.comes[fans.of_corner[side]] = side;
+        border.open_fans[fans.point[fan]].push_back(fan);
     }
-    const auto following = [&](std::uint32_t side) {
-        const std::uint32_t fan = fans.of_corner[side];
-        const std::vector<std::uint32_t>& here = open_fans[fans.point[fan]];
-        if (here.size() != 2)
-            return leaves[fan];
-        return leaves[here[0] == fan ? here[1] : here[0]];
-    };
+    return border;
+}
+
+/// Angles of the points around `centre` seen against the mean normal of the fans' triangles.
+class View
+{
+public:
+    View(const TriangleMesh& mesh, const Vec3d& centre, const Vec3d& normal)
+        : mesh_(mesh), centre_(centre)
+    {
+        int axis = 0;
+        for (int k = 1; k < 3; ++k)
+            if (std::abs(normal[k]) < std::abs(normal[axis]))
+                axis = k;
+        Vec3d other(0.0);
+        other[axis] = 1;
+        x_ = normal.cross(other);
+        x_.normalize();
+        y_ = normal.cross(x_);
+    }
+    double angle(std::uint32_t point) const
+    {
+        const Vec3d to = Vec3d(mesh_.points[point]) - centre_;
+        return std::atan2(to.dot(y_), to.dot(x_));
+    }
+
+private:
+    const TriangleMesh& mesh_;
+    Vec3d centre_, x_, y_;
+};
+
+/// At a point of three or more open fans: each goes on to the one that is next clockwise, seen from
+/// outside. Nothing when that is no one-to-one order.
+std::vector<std::uint32_t> next_clockwise(const TriangleMesh& mesh, const Border& border,
+                                          const std::vector<std::uint32_t>& here, const View& view)
+{
+    const auto corner = [&](std::uint32_t key) { return mesh.triangles[key / 3][int(key % 3)]; };
+    std::vector<std::uint32_t> next;
+    for (const std::uint32_t fan : here) {
+        const double from = view.angle(corner(next_corner(border.comes[fan])));
+        double least = HUGE_VAL;
+        std::uint32_t best = fan;
+        for (const std::uint32_t other : here) {
+            double turn = from - view.angle(corner(border.leaves[other]));
+            if (turn < 0)
+                turn += 2 * M_PI;
+            if (turn < least) {
+                least = turn;
+                best = other;
+            }
+        }
+        next.push_back(best);
+    }
+    std::vector<std::uint32_t> sorted = next;
+    std::sort(sorted.begin(), sorted.end());
+    return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()
+               ? next
+               : std::vector<std::uint32_t>();
+}
+
+} // namespace
+
+std::vector<std::uint32_t> link_fans(const TriangleMesh& mesh,
+                                     const std::vector<std::uint32_t>& partner, const Fans& fans)
+{
+    const Border border = border_of(mesh, partner, fans);
+    std::vector<Vec3d> normals(mesh.points.size(), Vec3d(0.0));
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        const Vec3d a(mesh.points[t[0]]);
+        const Vec3d normal = (Vec3d(mesh.points[t[1]]) - a).cross(Vec3d(mesh.points[t[2]]) - a);
+        for (int k = 0; k < 3; ++k)
+            normals[t[k]] += normal;
+    }
+    std::vector<std::uint32_t> next_fan(fans.point.size());
+    std::iota(next_fan.begin(), next_fan.end(), 0U);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        const std::vector<std::uint32_t>& here = border.open_fans[v];
+        const bool whole = std::all_of(here.begin(), here.end(), [&](std::uint32_t fan) {
+            return border.comes[fan] != kUnpaired && border.leaves[fan] != kUnpaired;
+        });
+        if (here.size() < 2 || !whole)
+            continue;
+        std::vector<std::uint32_t> next{here[1], here[0]};
+        if (here.size() > 2)
+            next =
+                next_clockwise(mesh, border, here, View(mesh, Vec3d(mesh.points[v]), normals[v]));
+        for (std::size_t i = 0; i < next.size(); ++i)
+            next_fan[here[i]] = next[i];
+    }
+    return next_fan;
+}
+
+std::vector<Hole> walk_holes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partner,
+                             const Fans& fans, const std::vector<std::uint32_t>& next_fan,
+                             const std::vector<char>& skipped)
+{
+    const std::vector<std::uint32_t> leaves = border_of(mesh, partner, fans).leaves;
     std::vector<Hole> holes;
-    std::vector<char> seen(corners);
-    for (std::uint32_t start = 0; start < corners; ++start) {
-        if (partner[start] != kUnpaired || seen[start])
+    std::vector<char> seen(partner.size());
+    for (std::uint32_t start = 0; start < partner.size(); ++start) {
+        if (partner[start] != kUnpaired || seen[start] || skipped[start / 3])
             continue;
         Hole hole;
-        for (std::uint32_t side = start; side != kUnpaired && !seen[side]; side = following(side)) {
+        for (std::uint32_t side = start; side != kUnpaired && !seen[side];
+             side = leaves[next_fan[fans.of_corner[side]]]) {
             seen[side] = 1;
             const openvdb::Vec3I& t = mesh.triangles[side / 3];
             hole.points.push_back(t[int((side + 1) % 3)]);
@@ -161,6 +265,16 @@ std::vector<Hole> walk_holes(const TriangleMesh& mesh, const std::vector<std::ui
         holes.push_back(std::move(hole));
     }
     return holes;
+}
+
+std::vector<char> one_sided_triangles(const TriangleMesh& mesh)
+{
+    const Orientation orientation =
+        consistent_orientation(sorted_edge_uses(mesh.triangles), mesh.triangles.size());
+    std::vector<char> one_sided(mesh.triangles.size());
+    for (std::size_t t = 0; t < one_sided.size(); ++t)
+        one_sided[t] = orientation.one_sided[orientation.piece_of[t]];
+    return one_sided;
 }
 
 } // namespace vdb_shell::repair

@@ -32,9 +32,19 @@ struct Hole {
     std::vector<std::uint32_t> triangles; ///< by edge: that triangle
 };
 
-/// All holes; at a point of two open fans a rim goes over from one to the other, which makes one
-/// fan of them when all holes are filled. A rim may pass a point more than once.
+/// Where a rim that comes to an open fan goes on: by fan the one whose side it leaves the point by.
+/// Itself where the fan stands alone or no order around the point is certain; else the fan on the
+/// other side of the hole, so that filling all holes makes one fan of them.
+std::vector<std::uint32_t> link_fans(const TriangleMesh& mesh,
+                                     const std::vector<std::uint32_t>& partner, const Fans& fans);
+
+/// All holes but those at `skipped` triangles (which are of pieces without an orientation). A rim
+/// may pass a point more than once.
 std::vector<Hole> walk_holes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partner,
-                             const Fans& fans);
+                             const Fans& fans, const std::vector<std::uint32_t>& next_fan,
+                             const std::vector<char>& skipped);
+
+/// By triangle: whether its piece is one-sided.
+std::vector<char> one_sided_triangles(const TriangleMesh& mesh);
 
 } // namespace vdb_shell::repair

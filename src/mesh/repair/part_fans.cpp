@@ -27,9 +27,10 @@ std::vector<char> pinched_points(const std::vector<Hole>& holes, std::size_t poi
     return pinched;
 }
 
-/// Gives fans points of their own: the first at a point keeps it; `together` says where the open
-/// ones share it.
-void copy_points(WorkingSurface& surface, const Fans& fans, const std::vector<char>& apart,
+/// Gives fans points of their own: the first at a point keeps it; open fans that are
+/// linked share one, unless they are to stand `apart`.
+void copy_points(WorkingSurface& surface, const Fans& fans,
+                 const std::vector<std::uint32_t>& next_fan, const std::vector<char>& apart,
                  RepairReport& report)
 {
     TriangleMesh& mesh = surface.mesh;
@@ -42,10 +43,9 @@ void copy_points(WorkingSurface& surface, const Fans& fans, const std::vector<ch
         std::vector<std::uint32_t> group{v};
         bool kept = false;
         std::uint32_t open_point = kUnpaired;
-        const std::size_t open = static_cast<std::size_t>(
-            std::count_if(at_point[v].begin(), at_point[v].end(),
-                          [&](std::uint32_t fan) { return fans.open[fan] != 0; }));
-        const bool share = open == 2 && !apart[v];
+        const bool share =
+            !apart[v] && std::any_of(at_point[v].begin(), at_point[v].end(),
+                                     [&](std::uint32_t fan) { return next_fan[fan] != fan; });
         for (const std::uint32_t fan : at_point[v]) {
             if (share && fans.open[fan] && open_point != kUnpaired) {
                 new_point[fan] = open_point;
@@ -152,9 +152,10 @@ void part_fans(WorkingSurface& surface, RepairReport& report)
     report.split_edges = count_crowded(surface.mesh);
     const std::vector<std::uint32_t> partner = pair_sides(surface.mesh);
     const Fans fans = find_fans(surface.mesh, partner);
-    const std::vector<char> pinched =
-        pinched_points(walk_holes(surface.mesh, partner, fans), surface.mesh.points.size());
-    copy_points(surface, fans, pinched, report);
+    const std::vector<std::uint32_t> next_fan = link_fans(surface.mesh, partner, fans);
+    const std::vector<Hole> holes =
+        walk_holes(surface.mesh, partner, fans, next_fan, one_sided_triangles(surface.mesh));
+    copy_points(surface, fans, next_fan, pinched_points(holes, surface.mesh.points.size()), report);
     part_edges(surface, partner, report);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/repair/fill_patch.h"
 
-// A new point's OpenMesh vector is copied before it has a value; nothing reads it then, but GCC says
-// so where OpenMesh's code is inlined, which is why this is not popped.
+// A new point's OpenMesh vector is copied before it has a value; nothing reads it then, but GCC
+// says so where OpenMesh's code is inlined, which is why this is not popped.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
@@ -99,7 +99,7 @@ bool turn_edges(HalfEdgeMesh& mesh, const Rim& rim)
         const Vertex a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
         const Vertex c = mesh.to_vertex_handle(mesh.next_halfedge_handle(h));
         const Vertex d = mesh.to_vertex_handle(mesh.next_halfedge_handle(o));
-        const auto [low, high] = std::minmax(c.idx(), d.idx());
+        const int low = std::min(c.idx(), d.idx()), high = std::max(c.idx(), d.idx());
         const std::pair<std::uint32_t, std::uint32_t> chord(low, high);
         if (high < rim_size && rim.edges.count(chord) > 0)
             continue;
