@@ -144,6 +144,7 @@ std::string options_json(const ShellOptions& options)
         options.repair
             ? nlohmann::ordered_json{{"weld_tolerance", options.repair->weld_tolerance},
                                      {"sliver_height", options.repair->sliver_height},
+                                     {"cut_crossings", options.repair->cut_crossings},
                                      {"keep_crossing_fills", options.repair->keep_crossing_fills}}
             : nlohmann::ordered_json(nullptr);
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},

@@ -27,7 +27,7 @@ void add_surface_options(CLI::App& app, BuildArguments& arguments)
                  "Weld, orient, part and close the surface first; what is sound stays bit for bit")
         ->group("Surface");
     add_repair_options(app, arguments.repair_options, "Surface");
-    for (const char* option : {"--weld-tolerance", "--sliver-height"})
+    for (const char* option : {"--weld-tolerance", "--sliver-height", "--cut-crossings"})
         app.get_option(option)->needs("--repair");
     app.add_flag("--turn-outward", arguments.shell.check.turn_inside_out,
                  "Turn closed components that are inside out instead of refusing them")

@@ -24,6 +24,9 @@ void add_repair_options(CLI::App& app, RepairOptions& options, const std::string
                    "Repair: remove triangles lower than this, world units; 0 is those of no area")
         ->capture_default_str()
         ->group(group);
+    app.add_flag("--cut-crossings", options.cut_crossings,
+                 "Repair: cut out triangles that cross others, and close the holes")
+        ->group(group);
 }
 
 void add_repair_command(CLI::App& app, RepairArguments& arguments)

@@ -113,7 +113,8 @@ void add_triangles_and_components(Findings& findings, const MeshInspection& insp
                   "--repair removes them"},
                  check.duplicate_triangles);
     findings.add({"self_intersections", "pairs of triangles that cross or touch", true,
-                  "--wrap, or --allow-self-intersections for a shell that overlaps"},
+                  "--repair --cut-crossings where few cross, else --wrap; "
+                  "--allow-self-intersections for a shell that overlaps"},
                  check.self_intersections);
     const std::vector<std::uint32_t> turned = inside_out(check), inner = nested(check);
     findings.add({"inside_out_components", "components that are inside out", true,

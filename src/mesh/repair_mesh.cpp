@@ -41,6 +41,21 @@ void turn_by_nesting(repair::WorkingSurface& surface, RepairReport& report)
             add_to(report.turned, surface.source[t]);
 }
 
+/// From triangles that are sound each for itself to a closed surface.
+void close_up(repair::WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
+              Interrupter* interrupter)
+{
+    surface.copies.clear();
+    repair::drop_sheets(surface, report);
+    repair::orient(surface, report);
+    repair::part_fans(surface, report);
+    repair::fill_holes(surface, options, report, interrupter);
+    turn_by_nesting(surface, report);
+    repair::move_copies_apart(surface, report);
+    // What touched before may be told apart now, and nest otherwise.
+    turn_by_nesting(surface, report);
+}
+
 /// Leaves out points that no triangle uses, so that every point has a pillar to stand on.
 void drop_unused_points(TriangleMesh& mesh, RepairReport& report)
 {
@@ -60,7 +75,8 @@ void drop_unused_points(TriangleMesh& mesh, RepairReport& report)
         for (int corner = 0; corner < 3; ++corner)
             t[corner] = new_index[t[corner]];
     for (HoleFill& hole : report.holes)
-        hole.first_point = new_index[hole.first_point];
+        if (hole.first_point != kNoSource)
+            hole.first_point = new_index[hole.first_point];
 }
 
 } // namespace
@@ -93,12 +109,13 @@ RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
     repair::weld_points(surface, options.weld_tolerance, report);
     repair::drop_degenerate(surface, options.sliver_height, report);
     repair::drop_duplicates(surface, report);
-    repair::drop_sheets(surface, report);
-    repair::orient(surface, report);
-    repair::part_fans(surface, report);
-    repair::fill_holes(surface, options, report, interrupter);
-    turn_by_nesting(surface, report);
-    repair::move_copies_apart(surface, report);
+    close_up(surface, options, report, interrupter);
+    constexpr int kMostCuts = 6;
+    for (int round = 0; round < kMostCuts && options.cut_crossings; ++round) {
+        if (!repair::cut_crossings(surface, round, report))
+            break;
+        close_up(surface, options, report, interrupter);
+    }
     drop_unused_points(surface.mesh, report);
     for (const std::uint32_t source : surface.source)
         report.kept_triangles += source != kNoSource;
@@ -109,7 +126,7 @@ RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
 bool RepairReport::changed() const
 {
     return welded_points.count + collapsed.count + degenerate.count + slivers.count + recut.count +
-               duplicates.count + sheets.count + turned.count + copies + holes.size() >
+               duplicates.count + sheets.count + turned.count + cut.count + copies + holes.size() >
            0;
 }
 

@@ -45,8 +45,11 @@ std::string hole_text(const HoleFill& hole)
 {
     std::ostringstream out;
     out.imbue(std::locale::classic());
-    out << "hole at point " << hole.first_point << " of " << hole.edges << " edges, length "
-        << hole.length << ": ";
+    if (hole.first_point == kNoSource)
+        out << "hole, cut out later, of ";
+    else
+        out << "hole at point " << hole.first_point << " of ";
+    out << hole.edges << " edges, length " << hole.length << ": ";
     if (hole.method == FillMethod::none)
         out << "LEFT OPEN";
     else
@@ -81,6 +84,7 @@ std::string repair_text(const RepairReport& report)
         out << "  " << report.split_edges << " edges parted; " << report.copies
             << " copies of points, " << report.moved_points << " moved apart by at most "
             << report.largest_move << '\n';
+    add(report.cut, "triangles cut out that cross others, or stand near");
     for (const HoleFill& hole : report.holes)
         out << "  " << hole_text(hole) << '\n';
     if (!report.changed())
@@ -114,6 +118,7 @@ std::string repair_json(const RepairReport& report)
                             {"copies", report.copies},
                             {"moved_points", report.moved_points},
                             {"largest_move", report.largest_move},
+                            {"cut", defect_json(report.cut)},
                             {"holes", holes},
                             {"kept_triangles", report.kept_triangles},
                             {"after", after_json(report.after)}};

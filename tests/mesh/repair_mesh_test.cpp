@@ -442,6 +442,26 @@ TEST(RepairMesh, DoesNotCrossWhatStandsInTheHole)
               result.report.holes[0].crossings > 0);
 }
 
+TEST(RepairMesh, CutsOutWhatCrossesWhenAsked)
+{
+    // A spike of the sphere reaches through its other side.
+    TriangleMesh mesh = icosphere(1.0, 3);
+    mesh.points[100] = Vec3s(Vec3d(mesh.points[100]) * -1.3);
+    ASSERT_GT(check_mesh(mesh).self_intersections.count, 0u);
+    EXPECT_FALSE(repair_mesh(mesh).report.changed()) << "only when asked";
+    RepairOptions options;
+    options.cut_crossings = true;
+    const RepairResult result = repair_mesh(mesh, options);
+    expect_sound(result.report);
+    EXPECT_EQ(expect_kept(mesh, result) + result.report.cut.count, mesh.triangles.size());
+    EXPECT_LT(result.report.cut.count, 60u);
+    const double ball = signed_volume(icosphere(1.0, 3).points, icosphere(1.0, 3).triangles);
+    EXPECT_NEAR(result.report.after.volume, ball, 0.02 * ball);
+    // A sheet crosses nothing, so nothing of it is cut.
+    const TriangleMesh strip = moebius_strip(24, 3);
+    EXPECT_EQ(repair_mesh(strip, options).report.cut.count, 0u);
+}
+
 TEST(RepairMesh, SameBytesForAnyNumberOfThreads)
 {
     const TriangleMesh open =
@@ -508,6 +528,26 @@ TEST(RepairMesh, ClosesTheStanfordBunnyAndKeepsItsSkin)
     EXPECT_EQ(std::memcmp(result.mesh.points.data(), bunny.points.data(),
                           bunny.points.size() * sizeof(Vec3s)),
               0);
+}
+
+TEST(RepairMesh, MendsTheOtherFaultyMeshesOrSaysWhatIsLeft)
+{
+    VDB_SHELL_NEEDS_REAL_MESHES();
+    RepairOptions options;
+    options.cut_crossings = true;
+    for (const char* name :
+         {"artist/cow.obj", "artist/beetle.obj", "artist/suzanne.obj",
+          "paper/bunny_medium_resolution.obj", "paper/bunny_high_resolution.obj"}) {
+        const TriangleMesh mesh = read_mesh(real_meshes() / name).mesh;
+        const RepairResult result = repair_mesh(mesh, options);
+        SCOPED_TRACE(name);
+        expect_sound(result.report);
+        EXPECT_GT(expect_kept(mesh, result), mesh.triangles.size() * 3 / 4);
+    }
+    const TriangleMesh woody = read_mesh(real_meshes() / "artist/woody.obj").mesh;
+    const RepairResult sheet = repair_mesh(woody, options);
+    EXPECT_EQ(expect_kept(woody, sheet), woody.triangles.size());
+    EXPECT_EQ(sheet.report.holes.at(0).method, FillMethod::none);
 }
 
 } // namespace

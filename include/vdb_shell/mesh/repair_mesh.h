@@ -20,6 +20,9 @@ struct RepairOptions {
     /// Triangles whose smallest height is below this are collapsed or turned away, world units.
     /// 0: triangles of exactly zero area only.
     double sliver_height = 0;
+    /// Cut out triangles that cross or touch others when all else is done, and close the holes that
+    /// leaves; more around them where a fill does not succeed.
+    bool cut_crossings = false;
     /// Close a hole even where every fill that was tried crosses the surface.
     bool keep_crossing_fills = false;
 };
@@ -35,8 +38,10 @@ enum class FillMethod : std::uint8_t {
 };
 const char* name_of(FillMethod method);
 
+inline constexpr std::uint32_t kNoSource = UINT32_MAX;
+
 struct HoleFill {
-    std::uint32_t first_point = 0; ///< of the rim, in the repaired mesh
+    std::uint32_t first_point = 0; ///< of the rim, in the repaired mesh; kNoSource: cut out
     std::size_t edges = 0;         ///< of the rim
     double length = 0;             ///< of the rim, world units
     FillMethod method = FillMethod::none;
@@ -61,7 +66,8 @@ struct RepairReport {
     std::size_t split_edges = 0;         ///< edges of three or more triangles parted
     std::size_t moved_points = 0;        ///< copies (and originals) moved apart
     double largest_move = 0;             ///< world units
-    std::vector<HoleFill> holes;
+    Defect<std::uint32_t> cut;      ///< triangles cut out because they or others near them cross
+    std::vector<HoleFill> holes;    ///< in the order of the attempts; after cuts, some come twice
     std::size_t kept_triangles = 0; ///< input triangles in the result with their coordinates bit
                                     ///< for bit, turned ones included
     MeshCheck after;
@@ -76,15 +82,13 @@ struct RepairResult {
     std::vector<std::uint32_t> source_triangle;
     RepairReport report;
 };
-inline constexpr std::uint32_t kNoSource = UINT32_MAX;
-
 /// Makes a closed, oriented, manifold surface of what is nearly one, and keeps the rest bit for bit
 /// (docs/repair.md): welds; drops triangles without area, repeats and sheets that bound no solid;
 /// orients consistently; parts fans and sheets that meet in a point or an edge; closes holes; turns
 /// components outward by their nesting. Holes of one-sided pieces stay open. What it cannot mend is
-/// in `report.after`; self-intersections of the input are never touched. Precondition as
-/// check_mesh, else InvalidOption; also for a tolerance that is negative or not finite. Same bytes
-/// for any number of threads.
+/// in `report.after`; self-intersections of the input are only touched when asked (cut_crossings).
+/// Precondition as check_mesh, else InvalidOption; also for a tolerance that is negative or not
+/// finite. Same bytes for any number of threads.
 RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {},
                          Interrupter* interrupter = nullptr);
 

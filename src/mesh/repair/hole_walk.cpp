@@ -57,12 +57,19 @@ void pair_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t coun
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
-    for (std::size_t i = 0; i < count; ++i) {
-        const EdgeUse &here = uses[order[i]], &next = uses[order[(i + 1) % count]];
-        if (here.forward || !next.forward)
+    // Sides that are paired are taken out: wedges inside wedges pair like brackets.
+    for (std::size_t i = 0; order.size() > 1 && i < order.size();) {
+        const std::size_t j = (i + 1) % order.size();
+        const EdgeUse &here = uses[order[i]], &next = uses[order[j]];
+        if (here.forward || !next.forward) {
+            ++i;
             continue;
+        }
         partner[key_of(here)] = key_of(next);
         partner[key_of(next)] = key_of(here);
+        order.erase(order.begin() + std::ptrdiff_t(std::max(i, j)));
+        order.erase(order.begin() + std::ptrdiff_t(std::min(i, j)));
+        i = 0;
     }
 }
 

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/box_pairs.h"
-#include "core/exact.h"
-#include "core/parallel.h"
 #include "mesh/repair/working_surface.h"
 #include "vdb_shell/step/directions.h"
 
@@ -83,25 +80,6 @@ bool points_outside(const TriangleMesh& mesh, const VertexTriangles::Range& cone
         side = d.dot(normal);
     }
     return side >= 0;
-}
-
-/// Triangles that cross or touch another one.
-std::vector<char> crossing_triangles(const TriangleMesh& mesh)
-{
-    const auto pairs = overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles));
-    const auto flat = [&](const Vec3I& t) {
-        return exact::collinear(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
-    };
-    std::vector<char> touch(pairs.size());
-    for_each_index(pairs.size(), [&](std::size_t i) {
-        const Vec3I &a = mesh.triangles[pairs[i][0]], &b = mesh.triangles[pairs[i][1]];
-        touch[i] = flat(a) || flat(b) || exact::triangles_touch(mesh.points, a, b);
-    });
-    std::vector<char> crossing(mesh.triangles.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        for (const std::uint32_t t : pairs[i])
-            crossing[t] |= touch[i];
-    return crossing;
 }
 
 struct Mover {

@@ -149,7 +149,7 @@ std::size_t count_crowded(const TriangleMesh& mesh)
 
 void part_fans(WorkingSurface& surface, RepairReport& report)
 {
-    report.split_edges = count_crowded(surface.mesh);
+    report.split_edges += count_crowded(surface.mesh);
     const std::vector<std::uint32_t> partner = pair_sides(surface.mesh);
     const Fans fans = find_fans(surface.mesh, partner);
     const std::vector<std::uint32_t> next_fan = link_fans(surface.mesh, partner, fans);
