@@ -33,6 +33,28 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
+/// The surface to work with, repaired when asked: in r.surface, looked at and found usable.
+void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
+                     const std::string& name, StageClock& clock, Interrupter* interrupter)
+{
+    r.surface = mesh;
+    if (options.repair) {
+        RepairOptions repair = *options.repair;
+        repair.keep_crossing_fills |= options.check.allow_self_intersections;
+        clock.run("repair", [&] {
+            RepairResult repaired = repair_mesh(mesh, repair, interrupter);
+            r.surface = std::move(repaired.mesh);
+            r.report.repair = std::move(repaired.report);
+        });
+    }
+    clock.run("check", [&] {
+        r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface);
+        require_usable(r.report.mesh, options.check,
+                       r.report.repair ? name + " after --repair" : name);
+        r.surface = turn_outward(std::move(r.surface), r.report.mesh);
+    });
+}
+
 } // namespace
 
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
@@ -46,11 +68,7 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     r.report.source = name;
     StageClock clock(r.report.stages);
 
-    clock.run("check", [&] {
-        r.report.mesh = check_mesh(mesh);
-        require_usable(r.report.mesh, options.check, name);
-        r.surface = turn_outward(mesh, r.report.mesh);
-    });
+    prepare_surface(r, mesh, options, name, clock, interrupter);
     clock.run("level set", [&] {
         r.level_set =
             mesh_to_level_set(r.surface, band_for(options, r.surface, thickness_grid), interrupter);
@@ -83,6 +101,13 @@ std::string options_json(const ShellOptions& options)
     };
     nlohmann::ordered_json json;
     json["side"] = name_in_table(options.side);
+    json["repair"] =
+        options.repair
+            ? nlohmann::ordered_json{{"weld_tolerance", options.repair->weld_tolerance},
+                                     {"sliver_height", options.repair->sliver_height},
+                                     {"cut_crossings", options.repair->cut_crossings},
+                                     {"keep_crossing_fills", options.repair->keep_crossing_fills}}
+            : nlohmann::ordered_json(nullptr);
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
                      {"turn_inside_out", options.check.turn_inside_out}};
     json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},

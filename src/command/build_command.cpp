@@ -6,6 +6,7 @@
 
 #include "command/bind.h"
 #include "command/exit_code.h"
+#include "command/repair_command.h"
 #include "command/signals.h"
 #include "core/atomic_file.h"
 #include "core/stage_clock.h"
@@ -22,6 +23,12 @@ void add_surface_options(CLI::App& app, BuildArguments& arguments)
     app.add_flag("--weld,!--no-weld", arguments.read.weld,
                  "Merge vertices of equal position (the default) or keep them apart")
         ->group("Surface");
+    app.add_flag("--repair", arguments.repair,
+                 "Weld, orient, part and close the surface first; what is sound stays bit for bit")
+        ->group("Surface");
+    add_repair_options(app, arguments.repair_options, "Surface");
+    for (const char* option : {"--weld-tolerance", "--sliver-height", "--cut-crossings"})
+        app.get_option(option)->needs("--repair");
     app.add_flag("--turn-outward", arguments.shell.check.turn_inside_out,
                  "Turn closed components that are inside out instead of refusing them")
         ->group("Surface");
@@ -188,15 +195,15 @@ openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
     return read_float_grid(name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1));
 }
 
-ShellFile to_file(const ShellResult& result, const BuildArguments& arguments,
+ShellFile to_file(const ShellResult& result, const ShellOptions& options, const Outputs& outputs,
                   Interrupter* interrupter)
 {
     ShellFile file;
     file.stack = result.stack;
     file.tets = result.tets;
-    file.parameters_json = options_json(arguments.shell);
+    file.parameters_json = options_json(options);
     file.report_json = report_json(result.report, false);
-    if (wants_vdb(arguments.outputs)) {
+    if (wants_vdb(outputs)) {
         file.surface = result.level_set;
         file.depth = shell_depth_grid(result.tets, result.report.field.voxel_size, interrupter);
     }
@@ -240,11 +247,14 @@ int run_build(const BuildArguments& arguments)
     ReadResult read;
     StageClock(read_cost).run("read", [&] { read = read_surface(arguments); });
     const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
-    ShellResult result = build_shell(read.mesh, arguments.shell, arguments.mesh.filename().string(),
+    ShellOptions options = arguments.shell;
+    if (arguments.repair)
+        options.repair = arguments.repair_options;
+    ShellResult result = build_shell(read.mesh, options, arguments.mesh.filename().string(),
                                      thickness.get(), &interrupter);
     result.report.read = read.report;
     StageClock(write_cost).run("write", [&] {
-        write_outputs(arguments.outputs, to_file(result, arguments, &interrupter));
+        write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter));
     });
 
     std::vector<StageCost>& stages = result.report.stages;

@@ -16,6 +16,8 @@ namespace vdb_shell::command
 struct BuildArguments {
     std::filesystem::path mesh;
     ReadOptions read;
+    bool repair = false;
+    RepairOptions repair_options; ///< for `repair`
     ShellOptions shell;
     std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID
     Outputs outputs;

@@ -223,6 +223,8 @@ std::string report_json(const ShellReport& report, bool with_costs)
     ordered_json json;
     json["source"] = report.source;
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
+    json["repair"] =
+        report.repair ? ordered_json::parse(repair_json(*report.repair)) : ordered_json();
     json["mesh"] = mesh_json(report.mesh);
     json["field"] = field_json(report.field);
     json["side"] = name_in_table(report.side);

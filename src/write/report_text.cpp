@@ -208,6 +208,8 @@ std::string report_text(const ShellReport& report)
     line(out, "source", report.source);
     if (report.read)
         read_lines(out, *report.read);
+    if (report.repair)
+        out << "repair\n" << repair_text(*report.repair);
     line(out, "mesh", mesh_lines(report.mesh));
     line(out, "field",
          "voxel " + number(report.field.voxel_size) + ", " +

@@ -9,6 +9,7 @@
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/scale_thickness.h"
@@ -69,7 +70,8 @@ struct OutsideReport {
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
-    MeshCheck mesh;
+    std::optional<RepairReport> repair; ///< absent when it was not asked for
+    MeshCheck mesh;                     ///< of the surface that was worked with
     FieldReport field;
     Side side = Side::inward;
     LineReport lines;
