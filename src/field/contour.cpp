@@ -55,9 +55,8 @@ TriangleMesh by_volume_to_mesh(const openvdb::FloatGrid& field, const PointMap& 
     TriangleMesh mesh;
     std::vector<Vec3I> triangles;
     std::vector<openvdb::Vec4I> quads;
-    openvdb::tools::volumeToMesh(
-        *openvdb::gridConstPtrCast<openvdb::FloatGrid>(in_index_space), mesh.points, triangles,
-        quads, 0.0, 0.0, true);
+    openvdb::tools::volumeToMesh(*openvdb::gridConstPtrCast<openvdb::FloatGrid>(in_index_space),
+                                 mesh.points, triangles, quads, 0.0, 0.0, true);
     for (Vec3s& p : mesh.points)
         p = Vec3s(to_world(Vec3d(p)));
     add_polygons(triangles, quads, mesh);
