@@ -70,25 +70,37 @@ PrismTest prism_test(const ShellOptions& options)
                                                    : PrismTest::twelve_tets;
 }
 
-} // namespace
+/// The level set that the lines step through: the given one where it is fit for that.
+void make_field(ShellResult& r, const ShellOptions& options, const openvdb::FloatGrid* given,
+                const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    const LevelSetOptions band = band_for(options, thickness_grid);
+    std::string& origin = r.report.field.origin;
+    origin = "made of the surface";
+    if (given) {
+        const std::string hindrance = why_not_steppable(*given, r.surface, band);
+        if (hindrance.empty()) {
+            origin = "as given";
+            r.level_set = given->deepCopy();
+            return;
+        }
+        origin = "made anew of the surface, for of the given one " + hindrance;
+    }
+    r.level_set = mesh_to_level_set(r.surface, band, interrupter);
+}
 
-ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
-                        const std::string& name, const openvdb::FloatGrid* thickness_grid,
+/// All stages from the check on. `given` may be null.
+void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
+                        const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
                         Interrupter* interrupter)
 {
-    require_a_bound(options, thickness_grid);
-    ShellResult r;
-    r.report.source = name;
     StageClock clock(r.report.stages);
-
     clock.run("check", [&] {
         r.report.mesh = check_mesh(mesh);
-        require_usable(r.report.mesh, options.check, name);
+        require_usable(r.report.mesh, options.check, r.report.source);
         r.surface = turn_outward(mesh, r.report.mesh);
     });
-    clock.run("level set", [&] {
-        r.level_set = mesh_to_level_set(r.surface, band_for(options, thickness_grid), interrupter);
-    });
+    clock.run("level set", [&] { make_field(r, options, given, thickness_grid, interrupter); });
     clock.run("smooth", [&] {
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
@@ -113,6 +125,48 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     clock.run("coverage", [&] {
         r.report.coverage = estimate_coverage(r.surface, r.tets, options.coverage, interrupter);
     });
+}
+
+} // namespace
+
+ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
+                        const std::string& name, const openvdb::FloatGrid* thickness_grid,
+                        Interrupter* interrupter)
+{
+    require_a_bound(options, thickness_grid);
+    ShellResult r;
+    r.report.source = name;
+    if (!options.wrap.wanted) {
+        build_from_surface(r, mesh, options, nullptr, thickness_grid, interrupter);
+        return r;
+    }
+    WrapResult wrap;
+    StageClock(r.report.stages).run("wrap", [&] {
+        wrap = wrap_mesh(mesh, options.wrap, interrupter);
+    });
+    r.report.wrap = wrap.report;
+    build_from_surface(r, wrap.mesh, options, nullptr, thickness_grid, interrupter);
+    return r;
+}
+
+ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const ShellOptions& options,
+                                       const std::string& name,
+                                       const openvdb::FloatGrid* thickness_grid,
+                                       Interrupter* interrupter)
+{
+    require_a_bound(options, thickness_grid);
+    if (options.wrap.wanted)
+        throw InvalidOption(name + ": a wrap is for triangles; the surface of a level set is "
+                                   "closed, manifold and embedded as it is");
+    require_level_set(field, name);
+    ShellResult r;
+    r.report.source = name;
+    TriangleMesh surface;
+    StageClock(r.report.stages).run("contour", [&] {
+        r.report.contour.emplace();
+        surface = contour(field, options.contour, &*r.report.contour, interrupter);
+    });
+    build_from_surface(r, surface, options, &field, thickness_grid, interrupter);
     return r;
 }
 
@@ -122,6 +176,14 @@ std::string options_json(const ShellOptions& options)
         return optional ? nlohmann::ordered_json(*optional) : nlohmann::ordered_json(nullptr);
     };
     nlohmann::ordered_json json;
+    json["wrap"] = {{"wanted", options.wrap.wanted},
+                    {"voxel_size", or_null(options.wrap.voxel_size)},
+                    {"resolution", options.wrap.resolution},
+                    {"adaptivity", options.wrap.adaptivity},
+                    {"sheet_voxels", options.wrap.sheet_voxels},
+                    {"keep_voids", options.wrap.keep_voids}};
+    json["contour"] = {{"adaptivity", options.contour.adaptivity},
+                       {"outer_only", options.contour.outer_only}};
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
                      {"turn_inside_out", options.check.turn_inside_out}};
     json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},

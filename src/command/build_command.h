@@ -14,7 +14,7 @@ namespace vdb_shell::command
 {
 
 struct BuildArguments {
-    std::filesystem::path mesh;
+    std::filesystem::path mesh; ///< or a level set: FILE.vdb or FILE.vdb:GRID
     ReadOptions read;
     ShellOptions shell;
     std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID

@@ -6,7 +6,9 @@
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/quality.h"
 #include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/smooth.h"
+#include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/shell/grow.h"
@@ -29,6 +31,7 @@ struct StageCost {
 };
 
 struct FieldReport {
+    std::string origin; ///< what it was made of, in words
     double voxel_size = 0;
     std::uint64_t active_voxels = 0;
     std::uint64_t memory_bytes = 0;
@@ -50,6 +53,8 @@ struct LineReport {
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
+    std::optional<WrapReport> wrap;
+    std::optional<ContourReport> contour; ///< of a level set that was given
     MeshCheck mesh;
     FieldReport field;
     LineReport lines;
