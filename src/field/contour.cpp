@@ -25,6 +25,9 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
+// Longer edges are not collapsed: flat parts keep triangles of up to about twice this.
+constexpr double kLongestEdgeVoxels = 6.0;
+
 double squared(const Vec3s& a, const Vec3s& b)
 {
     return (Vec3d(a) - Vec3d(b)).lengthSqr();
@@ -153,7 +156,8 @@ TriangleMesh contour_mapped(const openvdb::FloatGrid& field, const PointMap& to_
         keep_outermost(mesh, check, report);
     report.components = check.components.size() - report.dropped_components;
     report.triangles = mesh.triangles.size();
-    Simplified simple = simplify(mesh, options.adaptivity * voxel, interrupter);
+    Simplified simple =
+        simplify(mesh, options.adaptivity * voxel, kLongestEdgeVoxels * voxel, interrupter);
     report.simplification_repeats = simple.repeats;
     report.simplified_triangles = simple.mesh.triangles.size();
     return std::move(simple.mesh);

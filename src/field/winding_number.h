@@ -13,9 +13,9 @@ namespace vdb_shell
 using TriangleCorners = std::array<openvdb::Vec3d, 3>;
 
 /// The generalised winding number of a triangle soup: how often its triangles turn around a point,
-/// 1 inside a closed surface that is oriented outward, a fraction where there are gaps (docs
-/// references [16]). Near triangles by their exact solid angles, far clusters by their dipole
-/// ([17], first order): the error was below 0.01 on closed meshes.
+/// 1 inside a closed surface that is oriented outward, a fraction where there are gaps (Jacobson
+/// et al.). Near triangles by their exact solid angles, far clusters by their dipole (Barill et
+/// al., first order): the error was about 0.01 on closed meshes.
 class WindingNumber
 {
 public:

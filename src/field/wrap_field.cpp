@@ -24,6 +24,9 @@ using openvdb::Vec3s;
 constexpr double kInsideWinding = 0.6;
 // A deeper solid than this can be stepped into and meshed without help.
 constexpr double kSolidVoxels = 1.5;
+// There the winding number has to be clear of doubt: beside a triangle that is turned the wrong way
+// it is not, and a wall without thickness of its own would leak.
+constexpr double kSureWinding = 0.75;
 // Just off the surface, to see what is on either side of it.
 constexpr double kBesideVoxels = 0.3;
 constexpr double kPieceVoxels = 2.0;
@@ -49,12 +52,15 @@ Part part_of(const TriangleCorners& piece, const WindingNumber& winding)
     const auto inside = [&](double offset) {
         return winding_field(winding, centre + offset * normal) < 0;
     };
+    const auto surely_inside = [&](double offset) {
+        return winding_field(winding, centre + offset * normal) < kInsideWinding - kSureWinding;
+    };
     const bool above = inside(kBesideVoxels), below = inside(-kBesideVoxels);
     if (above && below)
         return Part::interior;
     if (above)
-        return inside(kSolidVoxels) ? Part::boundary : Part::sheet;
-    return below && inside(-kSolidVoxels) ? Part::boundary : Part::sheet;
+        return surely_inside(kSolidVoxels) ? Part::boundary : Part::sheet;
+    return below && surely_inside(-kSolidVoxels) ? Part::boundary : Part::sheet;
 }
 
 std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles)

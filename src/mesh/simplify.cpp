@@ -10,6 +10,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModAspectRatioT.hh>
+#include <OpenMesh/Tools/Decimater/ModEdgeLengthT.hh>
 #include <OpenMesh/Tools/Decimater/ModHausdorffT.hh>
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
@@ -59,7 +60,7 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const std::vector<char>& hel
     return out;
 }
 
-void collapse_edges(HalfedgeMesh& mesh, double tolerance)
+void collapse_edges(HalfedgeMesh& mesh, double tolerance, double longest_edge)
 {
     Decimater decimater(mesh);
     OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
@@ -70,6 +71,10 @@ void collapse_edges(HalfedgeMesh& mesh, double tolerance)
     decimater.add(distance);
     decimater.add(turn);
     decimater.add(aspect);
+    OpenMesh::Decimater::ModEdgeLengthT<HalfedgeMesh>::Handle length;
+    decimater.add(length);
+    decimater.module(length).set_edge_length(longest_edge);
+    decimater.module(length).set_binary(true);
     decimater.module(quadric).set_max_err(tolerance * tolerance, false);
     decimater.module(quadric).set_binary(false);
     decimater.module(distance).set_tolerance(tolerance);
@@ -155,7 +160,8 @@ bool is_sound(const TriangleMesh& mesh)
 
 } // namespace
 
-Simplified simplify(const TriangleMesh& mesh, double tolerance, Interrupter* interrupter)
+Simplified simplify(const TriangleMesh& mesh, double tolerance, double longest_edge,
+                    Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "simplify");
     std::vector<char> held(mesh.points.size());
@@ -165,7 +171,7 @@ Simplified simplify(const TriangleMesh& mesh, double tolerance, Interrupter* int
         progress.stop_if_interrupted(100 * repeat / (kMaxRepeats + 1));
         // In units of the tolerance the decimater's own small constants are small.
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
-        collapse_edges(halfedges, 1.0);
+        collapse_edges(halfedges, 1.0, longest_edge / tolerance);
         TriangleMesh left = what_is_left(halfedges, mesh);
         const std::vector<Box> places = spoiled_places(left);
         if (places.empty())
