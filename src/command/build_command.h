@@ -14,7 +14,7 @@ namespace vdb_shell::command
 {
 
 struct BuildArguments {
-    std::filesystem::path mesh;
+    std::filesystem::path mesh; ///< or a level set: FILE.vdb or FILE.vdb:GRID
     ReadOptions read;
     bool repair = false;
     RepairOptions repair_options; ///< for `repair`

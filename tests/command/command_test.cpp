@@ -358,5 +358,26 @@ TEST_F(Command, ThicknessIsNeverExceeded)
     EXPECT_NEAR(report.at("lines").at("length").at("median").get<double>(), 0.25, 1e-6);
 }
 
+TEST_F(Command, WrapsAnOpenSurfaceAndBuildsFromItsOwnVdb)
+{
+    const std::string open = mesh_file("open.obj", without_triangle(icosphere(1, 2), 3));
+    const std::string quick = " --resolution 32 --samples 0 ";
+    expect_refusal("build " + open + quick, ExitCode::geometry_error, {"open.obj"});
+    const Outcome wrapped =
+        run("build " + open + quick + "--wrap --wrap-resolution 24 -o " + file("a.vdb"));
+    EXPECT_EQ(wrapped.status, ExitCode::success) << wrapped.err;
+    EXPECT_NE(wrapped.out.find("input to wrap"), std::string::npos) << wrapped.out;
+
+    const Outcome again =
+        run("build " + file("a.vdb") + ":surface" + quick + "-o " + file("b.obj"));
+    EXPECT_EQ(again.status, ExitCode::success) << again.err;
+    EXPECT_NE(again.out.find("as given"), std::string::npos) << again.out;
+    expect_refusal("build " + file("a.vdb") + ":depth" + quick, ExitCode::geometry_error,
+                   {"a.vdb", "depth", "fog volume"});
+    expect_refusal("build " + file("a.vdb") + quick + "-o " + file("a.vdb"), ExitCode::usage_error,
+                   {"a.vdb"});
+    expect_refusal("build " + file("a.vdb") + quick + "--wrap", ExitCode::usage_error, {"a.vdb"});
+}
+
 } // namespace
 } // namespace vdb_shell::test

@@ -6,7 +6,9 @@
 #include "vdb_shell/certify/quality.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/smooth.h"
+#include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/mesh/repair_mesh.h"
@@ -33,6 +35,7 @@ struct StageCost {
 };
 
 struct FieldReport {
+    std::string origin; ///< what it was made of, in words
     double voxel_size = 0;
     std::uint64_t active_voxels = 0;
     std::uint64_t memory_bytes = 0;
@@ -71,7 +74,9 @@ struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
     std::optional<RepairReport> repair; ///< absent when it was not asked for
-    MeshCheck mesh;                     ///< of the surface that was worked with
+    std::optional<WrapReport> wrap;
+    std::optional<ContourReport> contour; ///< of a level set that was given
+    MeshCheck mesh;                       ///< of the surface that was worked with
     FieldReport field;
     Side side = Side::inward;
     LineReport lines;
