@@ -128,9 +128,9 @@ void add_primitives(const ShellFile& file, const ShellPoints& points, HoudiniGeo
         geometry.primitives.push_back({PrimitiveType::tetrahedron, 4});
     }
     for (const bool inner : {false, true})
-        for (const Vec3I& t : file.shell.triangles) {
+        for (const Vec3I& t : file.stack.layers.front().triangles) {
             for (const int corner : {0, 2, 1})
-                geometry.vertex_point.push_back(inner ? points.inner_id[t[corner]] : t[corner]);
+                geometry.vertex_point.push_back(inner ? points.id[1][t[corner]] : t[corner]);
             geometry.primitives.push_back({PrimitiveType::polygon, 3});
         }
 }
@@ -156,7 +156,8 @@ std::vector<float> qualities(const TetMesh& tets, std::size_t prisms)
 
 void add_primitive_attributes(const ShellFile& file, HoudiniGeometry& geometry)
 {
-    const std::size_t tets = file.tets.tets.size(), prisms = file.shell.triangles.size();
+    const std::size_t tets = file.tets.tets.size(),
+                      prisms = file.stack.layers.front().triangles.size();
     const std::size_t count = tets + 2 * prisms;
     const auto prism = [&](std::size_t i) {
         return i < tets ? file.tets.prism[i] : (i - tets) % prisms;
@@ -166,7 +167,7 @@ void add_primitive_attributes(const ShellFile& file, HoudiniGeometry& geometry)
         integers(kLayer, count, 1, [](std::size_t, int) { return 0; }),
         {"quality", 1, "", qualities(file.tets, prisms)},
         integers(kSplitOrder, count, 3, [&](std::size_t i, int k) {
-            return file.split.order[prism(i)][static_cast<std::size_t>(k)];
+            return file.stack.splits.front().order[prism(i)][static_cast<std::size_t>(k)];
         })};
     const auto group = [&](const char* name, const auto& belongs) {
         Group made{name, std::vector<bool>(count)};
@@ -175,8 +176,9 @@ void add_primitive_attributes(const ShellFile& file, HoudiniGeometry& geometry)
         geometry.primitive_groups.push_back(std::move(made));
     };
     const auto is_pinned = [&](std::size_t i) {
-        const Vec3I& t = file.shell.triangles[prism(i)];
-        return file.shell.pinned(t[0]) && file.shell.pinned(t[1]) && file.shell.pinned(t[2]);
+        const Vec3I& t = file.stack.layers.front().triangles[prism(i)];
+        return file.stack.layers.front().pinned(t[0]) && file.stack.layers.front().pinned(t[1]) &&
+               file.stack.layers.front().pinned(t[2]);
     };
     group("shell", [&](std::size_t i) { return i < tets; });
     group("outer", [&](std::size_t i) { return i >= tets && i < tets + prisms; });
@@ -229,14 +231,14 @@ void add_figures(HoudiniGeometry& geometry, const std::string& report_json)
 
 void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 {
-    add_count(geometry, kSchema, kShellSchema);
-    add_count(geometry, kVertices, file.shell.outer.size());
-    add_count(geometry, kPrisms, file.shell.triangles.size());
+    add_count(geometry, kSchema, 1);
+    add_count(geometry, kVertices, file.stack.layers.front().outer.size());
+    add_count(geometry, kPrisms, file.stack.layers.front().triangles.size());
     add_count(geometry, kTets, file.tets.tets.size());
-    add_count(geometry, kRipples, file.split.ripples);
+    add_count(geometry, kRipples, file.stack.splits.front().ripples);
     add_text(geometry, kCreator, "vdb_shell " VDB_SHELL_VERSION);
     add_text(geometry, kOrientation, kOrientationText);
-    add_text(geometry, kChecksum, checksum_of(file.shell, file.split, file.tets));
+    add_text(geometry, kChecksum, checksum_of(file.stack, file.tets));
     add_text(geometry, kParameters, file.parameters_json);
     add_text(geometry, kReport, file.report_json);
     add_figures(geometry, file.report_json);
@@ -246,10 +248,10 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 
 HoudiniGeometry shell_geometry(const ShellFile& file)
 {
-    vdb_shell::require_consistent(file.shell, file.split, file.tets);
-    const ShellPoints points = number_points(file.shell, file.tets);
+    vdb_shell::require_consistent(file.stack, file.tets);
+    const ShellPoints points = number_points(file.stack, file.tets);
     HoudiniGeometry geometry;
-    add_points(file.shell, points, geometry);
+    add_points(file.stack.layers.front(), points, geometry);
     add_primitives(file, points, geometry);
     add_primitive_attributes(file, geometry);
     add_detail(file, geometry);

@@ -182,7 +182,7 @@ void read_split(const Columns& primitives, const Counts& counts, ShellFile& file
 {
     const auto& prism = primitives.integers(kPrism);
     const auto& order = primitives.integers(kSplitOrder, 3);
-    file.split.order.resize(counts.prisms);
+    file.stack.splits.front().order.resize(counts.prisms);
     for (std::size_t p = 0; p < counts.prisms; ++p)
         for (std::size_t k = 0; k < 3; ++k) {
             const std::int32_t value = order[3 * (counts.tets + p) + k];
@@ -190,7 +190,7 @@ void read_split(const Columns& primitives, const Counts& counts, ShellFile& file
                 primitives.fail(kSplitOrder, "of primitive " + std::to_string(counts.tets + p) +
                                                  " has " + std::to_string(value) +
                                                  ", which is not in [0, 2]");
-            file.split.order[p][k] = static_cast<std::uint8_t>(value);
+            file.stack.splits.front().order[p][k] = static_cast<std::uint8_t>(value);
         }
     for (std::size_t i = 0; i < prism.size(); ++i) {
         const bool tet = i < counts.tets;
@@ -203,7 +203,7 @@ void read_split(const Columns& primitives, const Counts& counts, ShellFile& file
                                         std::to_string(counts.prisms));
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint8_t expected_order =
-                file.split.order[static_cast<std::size_t>(prism[i])][k];
+                file.stack.splits.front().order[static_cast<std::size_t>(prism[i])][k];
             if (order[3 * i + k] != expected_order)
                 primitives.fail(kSplitOrder, "of primitive " + std::to_string(i) + " has " +
                                                  std::to_string(order[3 * i + k]) +
@@ -255,19 +255,22 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     const Columns primitives(geometry.primitive_attributes, "primitive attribute", name);
     const Counts counts = read_counts(geometry, detail, name);
     ShellFile file;
-    const auto below = read_pillars(geometry, points, counts.vertices, file.shell);
-    read_triangles(geometry, counts, below, name, file.shell);
+    file.stack = one_layer({}, {});
+    const auto below = read_pillars(geometry, points, counts.vertices, file.stack.layers.front());
+    read_triangles(geometry, counts, below, name, file.stack.layers.front());
     read_split(primitives, counts, file);
     read_tets(geometry, points, counts, file.tets);
-    file.split.ripples = detail.count(kRipples, std::numeric_limits<std::int32_t>::max());
+    file.tets.prism_layer.assign(counts.tets, 0);
+    file.stack.splits.front().ripples =
+        detail.count(kRipples, std::numeric_limits<std::int32_t>::max());
     file.parameters_json = detail.text(kParameters);
     file.report_json = detail.text(kReport);
     try {
-        vdb_shell::require_consistent(file.shell, file.split, file.tets);
+        vdb_shell::require_consistent(file.stack, file.tets);
     } catch (const InvalidOption& error) {
         refuse(name, std::string("its parts do not fit together: ") + error.what());
     }
-    const std::string found = checksum_of(file.shell, file.split, file.tets);
+    const std::string found = checksum_of(file.stack, file.tets);
     if (found != detail.text(kChecksum))
         refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
                          detail.text(kChecksum));

@@ -144,30 +144,33 @@ void write_header(Stage& stage, const Samples& samples, const UsdOptions& option
 void write_surface(Stage& stage)
 {
     stage.open("def Mesh \"surface\"");
-    stage.attribute("float3[] extent",
-                    [](const UsdSample& s) { return extent_of(s.shell->shell.outer); });
+    stage.attribute("float3[] extent", [](const UsdSample& s) {
+        return extent_of(s.shell->stack.layers.front().outer);
+    });
     stage.attribute("int[] faceVertexCounts", [](const UsdSample& s) {
-        return usd_array(std::vector<std::int32_t>(s.shell->shell.triangles.size(), 3));
+        return usd_array(
+            std::vector<std::int32_t>(s.shell->stack.layers.front().triangles.size(), 3));
     });
     stage.attribute("int[] faceVertexIndices", [](const UsdSample& s) {
         std::vector<std::uint32_t> corners;
-        for (const Vec3I& triangle : s.shell->shell.triangles)
+        for (const Vec3I& triangle : s.shell->stack.layers.front().triangles)
             corners.insert(corners.end(), {triangle[0], triangle[1], triangle[2]});
         return usd_array(corners);
     });
     stage.line("uniform token orientation = \"rightHanded\"");
-    stage.attribute("point3f[] points",
-                    [](const UsdSample& s) { return usd_array(s.shell->shell.outer); });
+    stage.attribute("point3f[] points", [](const UsdSample& s) {
+        return usd_array(s.shell->stack.layers.front().outer);
+    });
     stage.primvar("int[] primvars:stopReason", [](const UsdSample& s) {
         std::vector<std::int32_t> reasons;
-        for (const StopReason reason : s.shell->shell.stop)
+        for (const StopReason reason : s.shell->stack.layers.front().stop)
             reasons.push_back(std::int32_t(reason));
         return usd_array(reasons);
     });
     stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
         std::vector<float> lengths;
-        for (std::size_t v = 0; v < s.shell->shell.outer.size(); ++v)
-            lengths.push_back(float(s.shell->shell.length(v)));
+        for (std::size_t v = 0; v < s.shell->stack.layers.front().outer.size(); ++v)
+            lengths.push_back(float(s.shell->stack.layers.front().length(v)));
         return usd_array(lengths);
     });
     stage.line("uniform token subdivisionScheme = \"none\"");
@@ -181,7 +184,7 @@ template <typename Value> std::string per_point(const UsdSample& sample, const V
     using Result = decltype(value(std::size_t(), 0.0));
     std::vector<Result> values;
     for (std::size_t i = 0; i < tets.points.size(); ++i) {
-        const Vec3d top(sample.shell->shell.outer[tets.source_vertex[i]]);
+        const Vec3d top(sample.shell->stack.layers.front().outer[tets.source_vertex[i]]);
         values.push_back(value(i, (Vec3d(tets.points[i]) - top).length()));
     }
     return usd_array(values);
@@ -191,7 +194,8 @@ void write_tet_primvars(Stage& stage)
 {
     stage.primvar("float[] primvars:depth", [](const UsdSample& s) {
         return per_point(s, [&](std::size_t i, double below) {
-            const double length = s.shell->shell.length(s.shell->tets.source_vertex[i]);
+            const double length =
+                s.shell->stack.layers.front().length(s.shell->tets.source_vertex[i]);
             return length > 0.0 ? float(below / length) : 0.0f;
         });
     });
@@ -203,7 +207,7 @@ void write_tet_primvars(Stage& stage)
                   [](const UsdSample& s) { return usd_array(s.shell->tets.source_vertex); });
     stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
         return per_point(s, [&](std::size_t i, double) {
-            return float(s.shell->shell.length(s.shell->tets.source_vertex[i]));
+            return float(s.shell->stack.layers.front().length(s.shell->tets.source_vertex[i]));
         });
     });
 }
@@ -286,7 +290,8 @@ void require_fitting(const fs::path& path, const Samples& samples)
             refuse(path, name + ": times must be finite and increase");
         if (!sample.shell)
             refuse(path, name + ": it has no shell");
-        if (sample.shell->shell.triangles != first.shell->shell.triangles)
+        if (sample.shell->stack.layers.front().triangles !=
+            first.shell->stack.layers.front().triangles)
             refuse(path, name + ": its surface has other triangles than that of sample 0");
         if (sample.volume.empty() != first.volume.empty())
             refuse(path, name + ": all samples have a volume or none has");

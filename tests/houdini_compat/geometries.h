@@ -109,17 +109,18 @@ inline bool same_geometry(const houdini::HoudiniGeometry& a, const houdini::Houd
 inline ShellFile scaled_shell_file(const TriangleMesh& surface, float scale,
                                    const std::set<std::uint32_t>& pinned = {})
 {
-    ShellFile file;
-    file.shell = {surface.points, surface.points, surface.triangles, {}};
+    PrismShell shell{surface.points, surface.points, surface.triangles, {}};
     for (std::uint32_t v = 0; v < surface.points.size(); ++v) {
         const bool stays = pinned.count(v) > 0;
         if (!stays)
-            file.shell.inner[v] *= scale;
-        file.shell.stop.push_back(stays ? StopReason::pinned : StopReason::thickness);
+            shell.inner[v] *= scale;
+        shell.stop.push_back(stays ? StopReason::pinned : StopReason::thickness);
     }
-    file.split = split_prisms(file.shell, {SplitRule::vertex_index, 1});
-    file.split.ripples = 5;
-    file.tets = make_tets(file.shell, file.split);
+    PrismSplit split = split_prisms(shell, {SplitRule::vertex_index, 1});
+    split.ripples = 5;
+    ShellFile file;
+    file.stack = one_layer(std::move(shell), std::move(split));
+    file.tets = make_tets(file.stack);
     file.parameters_json = "{\"a\": 1}";
     file.report_json = "{\"volume\": {\"fill\": 0.25}, \"certificate\": {\"certified\": true}, "
                        "\"prisms\": {\"pinned_vertices\": 3}}";

@@ -35,20 +35,20 @@ ShellFile pinned_shell()
         p -= Vec3s(0.5f, 0.5f, 0);
     const openvdb::Vec3I first = mesh.triangles[0];
     ShellFile file = scaled_shell_file(mesh, 0.5f, {first[0], first[1], first[2]});
-    file.shell.outer[first[0]][2] = -0.0f;
-    file.shell.inner[first[0]][2] = 0.0f;
-    file.tets = make_tets(file.shell, file.split);
+    file.stack.layers.front().outer[first[0]][2] = -0.0f;
+    file.stack.layers.front().inner[first[0]][2] = 0.0f;
+    file.tets = make_tets(file.stack);
     return file;
 }
 
 void expect_same_shell(const ShellFile& found, const ShellFile& file)
 {
-    EXPECT_TRUE(same_values(found.shell.outer, file.shell.outer));
-    EXPECT_TRUE(same_values(found.shell.inner, file.shell.inner));
-    EXPECT_EQ(found.shell.triangles, file.shell.triangles);
-    EXPECT_EQ(found.shell.stop, file.shell.stop);
-    EXPECT_EQ(found.split.order, file.split.order);
-    EXPECT_EQ(found.split.ripples, file.split.ripples);
+    EXPECT_TRUE(same_values(found.stack.layers.front().outer, file.stack.layers.front().outer));
+    EXPECT_TRUE(same_values(found.stack.layers.front().inner, file.stack.layers.front().inner));
+    EXPECT_EQ(found.stack.layers.front().triangles, file.stack.layers.front().triangles);
+    EXPECT_EQ(found.stack.layers.front().stop, file.stack.layers.front().stop);
+    EXPECT_EQ(found.stack.splits.front().order, file.stack.splits.front().order);
+    EXPECT_EQ(found.stack.splits.front().ripples, file.stack.splits.front().ripples);
     EXPECT_TRUE(same_values(found.tets.points, file.tets.points));
     EXPECT_EQ(found.tets.tets, file.tets.tets);
     EXPECT_EQ(found.tets.prism, file.tets.prism);
@@ -259,8 +259,7 @@ TEST(ShellGeometry, CheckCertifiesWhatWasReadBack)
     const ShellResult built = build_shell(test::icosphere(1.0, 2), options);
     ShellFile file{nullptr,
                    nullptr,
-                   built.shell,
-                   built.split,
+                   built.stack,
                    built.tets,
                    options_json(options),
                    report_json(built.report, false)};

@@ -156,7 +156,7 @@ TEST_F(Usd, WithoutAVolumeThereIsNone)
 TEST_F(Usd, AShellWithoutAnyTetIsAStageToo)
 {
     ShellFile file = hand_made_file(hand_made_shell(unit_tetrahedron(), 0.5), 0.1);
-    file.shell.inner = file.shell.outer;
+    file.stack.layers.front().inner = file.stack.layers.front().outer;
     file.tets = {};
     write_usd(folder / "s.usda", {{0.0, &file, {}}});
     expect_good(folder / "s.usda");
