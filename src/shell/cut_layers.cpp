@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -20,13 +21,20 @@ namespace
 /// Shares of the pillar above each of the n - 1 cuts, from the skin.
 std::vector<double> shares_of(const LayerOptions& options)
 {
-    std::vector<double> sums;
-    double sum = 0, thickness = 1;
-    for (int i = 0; i < options.layers; ++i, thickness *= options.grading)
-        sums.push_back(sum += thickness);
+    const bool growing = options.grading > 1.0;
+    // Thickest first, so that only underflow can happen: an overflow would give NaN shares.
+    const double ratio = growing ? 1.0 / options.grading : options.grading;
+    std::vector<double> thickness(1, 1.0);
+    for (int i = 1; i < options.layers; ++i)
+        thickness.push_back(thickness.back() * ratio);
+    if (growing)
+        std::reverse(thickness.begin(), thickness.end());
+    std::vector<double> sums(thickness.size());
+    std::partial_sum(thickness.begin(), thickness.end(), sums.begin());
+    const double whole = sums.back();
     sums.pop_back();
     for (double& share : sums)
-        share /= sum;
+        share /= whole;
     return sums;
 }
 

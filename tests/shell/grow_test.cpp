@@ -434,7 +434,7 @@ TEST(Grow, FillsRealMeshes)
         const ShellResult result = build_shell(read.mesh, options, name);
         EXPECT_EQ(result.report.signs.inverted.count, 0U);
         EXPECT_EQ(result.report.signs.flat.count, 0U);
-        expect_twelve_positive(result.shell);
+        expect_twelve_positive(result.stack.layers[0]);
         EXPECT_EQ(result.report.coverage.samples, 100000U);
         EXPECT_EQ(result.report.coverage.in_several, 0U);
         EXPECT_EQ(result.report.coverage.outside_covered, 0U);

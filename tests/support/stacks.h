@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "support/shapes.h"
+
+#include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/stack_certificate.h"
+#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/shell/grow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+// Grown shells, and what has to hold for stacks made of them.
+
+namespace vdb_shell::test
+{
+
+/// Grown from the pseudo-normals, without line stepping.
+inline GrowResult grown(const TriangleMesh& mesh, const GrowOptions& options = {},
+                        double cap = std::numeric_limits<double>::infinity())
+{
+    const std::size_t count = mesh.points.size();
+    Directions directions;
+    directions.inward = pseudo_normals(mesh);
+    directions.visibility = visibility_of(mesh, directions.inward);
+    for (openvdb::Vec3d& d : directions.inward)
+        d = -d;
+    const LineLengths none{std::vector<double>(count, 0.0), std::vector<std::uint32_t>(count, 0),
+                           std::vector<StopReason>(count, StopReason::none)};
+    return grow_shell(mesh, directions, none, std::vector<double>(count, cap), options, {});
+}
+
+inline GrowOptions by_method(Method method)
+{
+    GrowOptions options;
+    options.method = method;
+    return options;
+}
+
+inline PrismTest test_of(Method method)
+{
+    return method == Method::thickest ? PrismTest::chosen_tets : PrismTest::twelve_tets;
+}
+
+/// A solid without symmetry: bumps of several lengths on a sphere.
+inline TriangleMesh bumpy_sphere()
+{
+    TriangleMesh mesh = icosphere(1.0, 3);
+    for (openvdb::Vec3s& p : mesh.points) {
+        const openvdb::Vec3d d(p);
+        p = openvdb::Vec3s(d * (1 + 0.25 * std::sin(5 * d[0] + 1) * std::sin(4 * d[1]) +
+                                0.1 * std::cos(7 * d[2] + d[0])));
+    }
+    return mesh;
+}
+
+/// A tube around a trefoil knot, whose strands pass each other closely.
+inline TriangleMesh trefoil(int around, int across)
+{
+    const auto centre = [](double t) {
+        return openvdb::Vec3d(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t),
+                              -std::sin(3 * t));
+    };
+    TriangleMesh mesh = torus(1.0, 0.3, around, across); // its triangles
+    for (int i = 0; i < around; ++i) {
+        const double t = 2 * M_PI * i / around;
+        const openvdb::Vec3d along = (centre(t + 1e-4) - centre(t - 1e-4)).unit();
+        const openvdb::Vec3d side = along.cross(openvdb::Vec3d(0, 0, 1)).unit();
+        const openvdb::Vec3d up = side.cross(along);
+        for (int j = 0; j < across; ++j) {
+            const double s = 2 * M_PI * j / across;
+            const openvdb::Vec3d out = std::cos(s) * side + std::sin(s) * up;
+            mesh.points[std::size_t(i * across + j)] = openvdb::Vec3s(centre(t) + 0.55 * out);
+        }
+    }
+    return signed_volume(mesh.points, mesh.triangles) > 0 ? mesh : reversed(mesh);
+}
+
+inline void expect_certified(const ShellStack& stack, PrismTest test)
+{
+    EXPECT_EQ(certify_stack(stack, test).failures(), std::vector<std::string>{});
+    const TetMesh tets = make_tets(stack);
+    const TetSigns signs = count_tet_signs(tets);
+    EXPECT_EQ(signs.inverted.count + signs.flat.count, 0U);
+    EXPECT_TRUE(check_conformity(stack, tets).conforming());
+}
+
+/// Each surface between two layers is one surface, and the triangles are the same in all.
+inline void expect_joined(const ShellStack& stack)
+{
+    for (std::size_t k = 0; k + 1 < stack.layers.size(); ++k) {
+        EXPECT_EQ(stack.layers[k].inner, stack.layers[k + 1].outer) << "layer " << k;
+        EXPECT_EQ(stack.layers[k].triangles, stack.layers[k + 1].triangles) << "layer " << k;
+    }
+}
+
+/// Ends a stage at its first question.
+struct StopAtOnce : Interrupter {
+    void start(const char*) override {}
+    void end() override {}
+    bool wasInterrupted(int) override { return true; }
+};
+
+/// What an InvalidOption says.
+template <typename Call> std::string refusal_of(const Call& call)
+{
+    try {
+        call();
+    } catch (const InvalidOption& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+} // namespace vdb_shell::test
