@@ -58,7 +58,8 @@ std::string mesh_lines(const MeshCheck& mesh)
 std::string split_text(const ShellReport& report)
 {
     std::string text = number(report.split_vertices.count, 12) +
-                       " vertices of several fans, copied " + number(report.vertex_copies, 12) +
+                       (report.split_vertices.count == 1 ? " vertex" : " vertices") +
+                       " of several fans, copied " + number(report.vertex_copies, 12) +
                        (report.vertex_copies == 1 ? " time" : " times") + " (first";
     for (const std::uint32_t vertex : report.split_vertices.first)
         text += " " + number(vertex, 12);
