@@ -268,13 +268,14 @@ TEST(VdbFile, RefusesWhatCouldNotBeReadBack)
     };
     refused([](ShellFile& f) { f.surface.reset(); });
     refused([](ShellFile& f) { f.depth.reset(); });
-    refused([](ShellFile& f) { f.shell.stop.pop_back(); });
-    refused([](ShellFile& f) { f.shell.triangles[5][1] = 100000; });
-    refused([](ShellFile& f) { f.split.order[0] = {0, 1, 1}; });
+    refused([](ShellFile& f) { f.stack.layers[0].stop.pop_back(); });
+    refused([](ShellFile& f) { f.stack.layers[0].triangles[5][1] = 100000; });
+    refused([](ShellFile& f) { f.stack.splits[0].order[0] = {0, 1, 1}; });
     refused([](ShellFile& f) { f.tets.points[4][0] += 1.0f; });
     refused([](ShellFile& f) { f.tets.tets[2][3] = std::uint32_t(f.tets.points.size()); });
     refused([](ShellFile& f) {
-        f.shell.inner[0][2] = f.tets.points[f.shell.outer.size()][2] = std::nanf("");
+        PrismShell& layer = f.stack.layers[0];
+        layer.inner[0][2] = f.tets.points[layer.outer.size()][2] = std::nanf("");
     });
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
