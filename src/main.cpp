@@ -4,6 +4,8 @@
 #include "command/build_command.h"
 #include "command/exit_code.h"
 #include "command/file_commands.h"
+#include "command/inspect_command.h"
+#include "command/repair_command.h"
 #include "command/signals.h"
 
 #include <CLI/CLI.hpp>
@@ -32,14 +34,22 @@ int run(int argc, char** argv)
         ->check(CLI::NonNegativeNumber);
 
     BuildArguments build;
+    InspectArguments inspect;
+    RepairArguments repair;
     FileArguments info, convert, check;
     CLI::App& build_app = *app.add_subcommand("build", "Build a shell from a triangle surface");
+    CLI::App& inspect_app =
+        *app.add_subcommand("inspect", "Say what stands in the way of a shell, and what mends it");
+    CLI::App& repair_app =
+        *app.add_subcommand("repair", "Close and mend a surface, keeping what is sound");
     CLI::App& info_app = *app.add_subcommand("info", "Print what a shell's file holds");
     CLI::App& convert_app =
         *app.add_subcommand("convert", "Write other formats from a shell's file");
     CLI::App& check_app =
         *app.add_subcommand("check", "Verify that a shell's file is what it claims");
     add_build_command(build_app, build);
+    add_inspect_command(inspect_app, inspect);
+    add_repair_command(repair_app, repair);
     add_info_command(info_app, info);
     add_convert_command(convert_app, convert);
     add_check_command(check_app, check);
@@ -56,6 +66,10 @@ int run(int argc, char** argv)
     catch_signals();
     if (build_app.parsed())
         return run_build(build);
+    if (inspect_app.parsed())
+        return run_inspect(inspect);
+    if (repair_app.parsed())
+        return run_repair(repair);
     if (info_app.parsed())
         return run_info(info);
     if (convert_app.parsed())

@@ -17,8 +17,12 @@ namespace vdb_shell
 namespace
 {
 
-void require_a_bound(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
+void require_sensible(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
 {
+    require_sensible(options.scale);
+    require_sensible(options.layers);
+    if (options.wrap.wanted && options.repair)
+        throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&
         options.limits.limit == Limit::none && !options.line_step.thickness && !thickness_grid)
         throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "
@@ -33,28 +37,59 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
-} // namespace
+/// The surface to work with, repaired when asked: in r.surface, looked at and found usable.
+void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
+                     StageClock& clock, Interrupter* interrupter)
+{
+    const std::string& name = r.report.source;
+    r.surface = mesh;
+    if (options.repair) {
+        RepairOptions repair = *options.repair;
+        repair.keep_crossing_fills |= options.check.allow_self_intersections;
+        clock.run("repair", [&] {
+            RepairResult repaired = repair_mesh(mesh, repair, interrupter);
+            r.surface = std::move(repaired.mesh);
+            r.report.repair = std::move(repaired.report);
+        });
+    }
+    clock.run("check", [&] {
+        r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface);
+        require_usable(r.report.mesh, options.check,
+                       r.report.repair ? name + " after --repair" : name);
+        r.surface = turn_outward(std::move(r.surface), r.report.mesh);
+    });
+}
 
-ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
-                        const std::string& name, const openvdb::FloatGrid* thickness_grid,
+/// The level set that the lines step through: the given one where it is fit for that.
+void make_field(ShellResult& r, const ShellOptions& options, const openvdb::FloatGrid* given,
+                const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    const LevelSetOptions band = band_for(options, r.surface, thickness_grid);
+    std::string& origin = r.report.field.origin;
+    origin = "made of the surface";
+    if (given) {
+        // A given band outside is as wide as its maker needed, not as the lines do.
+        const std::string hindrance = options.side == Side::inward
+                                          ? why_not_steppable(*given, r.surface, band)
+                                          : "nothing is known outside its band";
+        if (hindrance.empty()) {
+            origin = "as given";
+            r.level_set = given->deepCopy();
+            return;
+        }
+        origin = "made anew of the surface, for of the given one " + hindrance;
+    }
+    r.level_set = mesh_to_level_set(r.surface, band, interrupter);
+}
+
+/// All stages from the check on. `given` may be null.
+void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
+                        const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
                         Interrupter* interrupter)
 {
-    require_a_bound(options, thickness_grid);
-    require_sensible(options.scale);
-    require_sensible(options.layers);
-    ShellResult r;
-    r.report.source = name;
     StageClock clock(r.report.stages);
-
-    clock.run("check", [&] {
-        r.report.mesh = check_mesh(mesh);
-        require_usable(r.report.mesh, options.check, name);
-        r.surface = turn_outward(mesh, r.report.mesh);
-    });
-    clock.run("level set", [&] {
-        r.level_set =
-            mesh_to_level_set(r.surface, band_for(options, r.surface, thickness_grid), interrupter);
-    });
+    prepare_surface(r, mesh, options, clock, interrupter);
+    clock.run("level set", [&] { make_field(r, options, given, thickness_grid, interrupter); });
     clock.run("smooth", [&] {
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
@@ -73,6 +108,48 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                                        : TriangleMesh{r.stack.surface(0), r.stack.triangles()};
         r.report.coverage = estimate_coverage(solid, r.tets, options.coverage, interrupter);
     });
+}
+
+} // namespace
+
+ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
+                        const std::string& name, const openvdb::FloatGrid* thickness_grid,
+                        Interrupter* interrupter)
+{
+    require_sensible(options, thickness_grid);
+    ShellResult r;
+    r.report.source = name;
+    if (!options.wrap.wanted) {
+        build_from_surface(r, mesh, options, nullptr, thickness_grid, interrupter);
+        return r;
+    }
+    WrapResult wrap;
+    StageClock(r.report.stages).run("wrap", [&] {
+        wrap = wrap_mesh(mesh, options.wrap, interrupter);
+    });
+    r.report.wrap = wrap.report;
+    build_from_surface(r, wrap.mesh, options, nullptr, thickness_grid, interrupter);
+    return r;
+}
+
+ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const ShellOptions& options,
+                                       const std::string& name,
+                                       const openvdb::FloatGrid* thickness_grid,
+                                       Interrupter* interrupter)
+{
+    require_sensible(options, thickness_grid);
+    if (options.wrap.wanted)
+        throw InvalidOption(name + ": a wrap is for triangles; the surface of a level set is "
+                                   "closed, manifold and embedded as it is");
+    require_level_set(field, name);
+    ShellResult r;
+    r.report.source = name;
+    TriangleMesh surface;
+    StageClock(r.report.stages).run("contour", [&] {
+        r.report.contour.emplace();
+        surface = contour(field, options.contour, &*r.report.contour, interrupter);
+    });
+    build_from_surface(r, surface, options, &field, thickness_grid, interrupter);
     return r;
 }
 
@@ -83,6 +160,21 @@ std::string options_json(const ShellOptions& options)
     };
     nlohmann::ordered_json json;
     json["side"] = name_in_table(options.side);
+    json["repair"] =
+        options.repair
+            ? nlohmann::ordered_json{{"weld_tolerance", options.repair->weld_tolerance},
+                                     {"sliver_height", options.repair->sliver_height},
+                                     {"cut_crossings", options.repair->cut_crossings},
+                                     {"keep_crossing_fills", options.repair->keep_crossing_fills}}
+            : nlohmann::ordered_json(nullptr);
+    json["wrap"] = {{"wanted", options.wrap.wanted},
+                    {"voxel_size", or_null(options.wrap.voxel_size)},
+                    {"resolution", options.wrap.resolution},
+                    {"adaptivity", options.wrap.adaptivity},
+                    {"sheet_voxels", options.wrap.sheet_voxels},
+                    {"keep_voids", options.wrap.keep_voids}};
+    json["contour"] = {{"adaptivity", options.contour.adaptivity},
+                       {"outer_only", options.contour.outer_only}};
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
                      {"turn_inside_out", options.check.turn_inside_out}};
     json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},

@@ -2,9 +2,13 @@
 #pragma once
 
 #include "vdb_shell/certify/coverage.h"
+#include "vdb_shell/field/contour.h"
+#include "vdb_shell/field/given_level_set.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/smooth.h"
+#include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/scale_thickness.h"
@@ -27,6 +31,11 @@ struct ShellOptions {
     /// Where the shell lies. Outward lines without any thickness of the user's get
     /// default_outward_thickness.
     Side side = Side::inward;
+    /// Unset: the surface is taken as it is, or refused. Allowed self-intersections keep crossing
+    /// fills too.
+    std::optional<RepairOptions> repair;
+    WrapOptions wrap;
+    ContourOptions contour; ///< for build_shell_from_level_set alone
     CheckOptions check;
     LevelSetOptions level_set;
     SmoothOptions smooth;
@@ -49,7 +58,7 @@ struct SideLines {
 
 /// What the stages made.
 struct ShellResult {
-    TriangleMesh surface; ///< the input, turned outward when asked
+    TriangleMesh surface; ///< the input, repaired and turned outward when asked
     openvdb::FloatGrid::Ptr level_set;
     Directions directions;            ///< of the side that the shell lies on; of both sides, inward
     LineLengths lengths;              ///< likewise
@@ -59,16 +68,26 @@ struct ShellResult {
     ShellReport report;
 };
 
-/// The whole job on a mesh in memory: check, level set, smooth, directions, line stepping, limits,
-/// growth (Method::raw: prisms straight from the lengths), scale, layers, tets, certificate,
-/// figures. For an outward shell the stages from directions to scale run on the reversed surface
-/// (shell/sides.h), for both sides once for each. `name` is what messages and the report call the
-/// mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for any number
-/// of threads (costs in the report aside).
+/// The whole job on a mesh in memory: wrap or repair when asked, check, level set, smooth,
+/// directions, line stepping, limits, growth (Method::raw: prisms straight from the lengths),
+/// scale, layers, tets, certificate, figures. For an outward shell the stages from directions to
+/// scale run on the reversed surface (shell/sides.h), for both sides once for each. `name` is what
+/// messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the stages
+/// throw. Same result for any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,
                         Interrupter* interrupter = nullptr);
+
+/// The same for the zero surface of a level set: contour first, then as above; lines step through
+/// `field` itself when it is fit for that (why_not_steppable), else through a field made anew of
+/// the surface; report.field.origin says which. Throws InvalidOption when a wrap is asked for,
+/// which is for triangles; GeometryError for a field that is none (require_level_set); and what the
+/// stages throw. `field` is not changed.
+ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const ShellOptions& options,
+                                       const std::string& name = "level set",
+                                       const openvdb::FloatGrid* thickness_grid = nullptr,
+                                       Interrupter* interrupter = nullptr);
 
 /// The options as JSON, as they are stored in a shell's .vdb.
 std::string options_json(const ShellOptions& options);

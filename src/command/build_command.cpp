@@ -6,6 +6,7 @@
 
 #include "command/bind.h"
 #include "command/exit_code.h"
+#include "command/repair_command.h"
 #include "command/signals.h"
 #include "core/atomic_file.h"
 #include "core/stage_clock.h"
@@ -22,12 +23,48 @@ void add_surface_options(CLI::App& app, BuildArguments& arguments)
     app.add_flag("--weld,!--no-weld", arguments.read.weld,
                  "Merge vertices of equal position (the default) or keep them apart")
         ->group("Surface");
+    app.add_flag("--repair", arguments.repair,
+                 "Weld, orient, part and close the surface first; what is sound stays bit for bit")
+        ->group("Surface");
+    add_repair_options(app, arguments.repair_options, "Surface");
+    for (const char* option : {"--weld-tolerance", "--sliver-height", "--cut-crossings"})
+        app.get_option(option)->needs("--repair");
     app.add_flag("--turn-outward", arguments.shell.check.turn_inside_out,
                  "Turn closed components that are inside out instead of refusing them")
         ->group("Surface");
     app.add_flag("--allow-self-intersections", arguments.shell.check.allow_self_intersections,
                  "Accept a surface that crosses itself; its shell overlaps too")
         ->group("Surface");
+}
+
+void add_wrap_options(CLI::App& app, ShellOptions& shell)
+{
+    app.add_flag("--wrap", shell.wrap.wanted,
+                 "Build the shell of a new closed surface around the triangles, whatever they are")
+        ->group("Wrap");
+    CLI::Option* voxel = app.add_option("--wrap-voxel-size", shell.wrap.voxel_size,
+                                        "Edge length of a voxel of the wrap, world units")
+                             ->group("Wrap");
+    app.add_option("--wrap-resolution", shell.wrap.resolution,
+                   "Voxels of the wrap along the longest side of the bounding box")
+        ->capture_default_str()
+        ->excludes(voxel)
+        ->group("Wrap");
+    app.add_option("--wrap-adaptivity", shell.wrap.adaptivity,
+                   "How far simplification may move the wrap, voxels")
+        ->capture_default_str()
+        ->group("Wrap");
+    app.add_option("--wrap-sheet", shell.wrap.sheet_voxels,
+                   "Half the thickness given to sheets and loose triangles, voxels")
+        ->capture_default_str()
+        ->group("Wrap");
+    app.add_flag("--wrap-keep-voids", shell.wrap.keep_voids,
+                 "Keep enclosed voids and what stands in them")
+        ->group("Wrap");
+    app.add_option("--contour-adaptivity", shell.contour.adaptivity,
+                   "How far simplification may move the surface of a level set, voxels")
+        ->capture_default_str()
+        ->group("Wrap");
 }
 
 void add_field_options(CLI::App& app, ShellOptions& shell)
@@ -177,26 +214,62 @@ ReadResult read_surface(const BuildArguments& arguments)
                : read_mesh(arguments.mesh, arguments.read);
 }
 
+/// FILE.vdb or FILE.vdb:GRID.
+struct GridName {
+    std::string file, grid;
+};
+
+GridName split_grid_name(const std::string& name)
+{
+    const std::size_t colon = name.rfind(".vdb:");
+    if (colon == std::string::npos)
+        return {name, ""};
+    constexpr std::size_t kExtension = 4; // ".vdb"
+    return {name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1)};
+}
+
 openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
 {
     if (name.empty())
         return nullptr;
-    const std::size_t colon = name.rfind(".vdb:");
-    if (colon == std::string::npos)
-        return read_float_grid(name, "");
-    constexpr std::size_t kExtension = 4; // ".vdb"
-    return read_float_grid(name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1));
+    const GridName parts = split_grid_name(name);
+    return read_float_grid(parts.file, parts.grid);
 }
 
-ShellFile to_file(const ShellResult& result, const BuildArguments& arguments,
+/// Reads the triangles or the level set, and builds.
+ShellResult read_and_build(const BuildArguments& arguments, const ShellOptions& options,
+                           Interrupter* interrupter)
+{
+    std::vector<StageCost> read_cost;
+    const GridName source = split_grid_name(arguments.mesh.string());
+    const std::string name = arguments.mesh.filename().string();
+    const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
+    ShellResult result;
+    if (std::filesystem::path(source.file).extension() == ".vdb") {
+        openvdb::FloatGrid::Ptr field;
+        StageClock(read_cost).run("read",
+                                  [&] { field = read_level_set(source.file, source.grid); });
+        result = build_shell_from_level_set(*field, options, name, thickness.get(), interrupter);
+    } else {
+        ReadResult read;
+        StageClock(read_cost).run("read", [&] { read = read_surface(arguments); });
+        result = build_shell(read.mesh, options, name, thickness.get(), interrupter);
+        result.report.read = read.report;
+    }
+    std::vector<StageCost>& stages = result.report.stages;
+    stages.insert(stages.begin(), read_cost.begin(), read_cost.end());
+    return result;
+}
+
+ShellFile to_file(const ShellResult& result, const ShellOptions& options, const Outputs& outputs,
                   Interrupter* interrupter)
 {
     ShellFile file;
     file.stack = result.stack;
     file.tets = result.tets;
-    file.parameters_json = options_json(arguments.shell);
+    file.parameters_json = options_json(options);
     file.report_json = report_json(result.report, false);
-    if (wants_vdb(arguments.outputs)) {
+    if (wants_vdb(outputs)) {
         file.surface = result.level_set;
         file.depth = shell_depth_grid(result.tets, result.report.field.voxel_size, interrupter);
     }
@@ -207,7 +280,7 @@ void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
-    require_possible(arguments.outputs, {arguments.mesh});
+    require_possible(arguments.outputs, {split_grid_name(arguments.mesh.string()).file});
     if (!arguments.report.empty())
         require_writable(arguments.report);
 }
@@ -216,7 +289,9 @@ void require_sensible(const BuildArguments& arguments)
 
 void add_build_command(CLI::App& app, BuildArguments& arguments)
 {
-    app.add_option("mesh", arguments.mesh, "Surface: .obj .ply .off .stl .geo .bgeo .bgeo.sc")
+    app.add_option("mesh", arguments.mesh,
+                   "Surface: .obj .ply .off .stl .geo .bgeo .bgeo.sc; or level set: FILE.vdb or "
+                   "FILE.vdb:GRID")
         ->required();
     add_output_options(app, arguments.outputs);
     app.add_option("--report", arguments.report, "Write all figures as JSON")->group("Output");
@@ -224,6 +299,7 @@ void add_build_command(CLI::App& app, BuildArguments& arguments)
     app.add_flag("--progress", arguments.progress, "Name each stage on standard error as it begins")
         ->group("Output");
     add_surface_options(app, arguments);
+    add_wrap_options(app, arguments.shell);
     add_field_options(app, arguments.shell);
     add_line_options(app, arguments);
     add_growth_options(app, arguments.shell.grow);
@@ -235,20 +311,16 @@ int run_build(const BuildArguments& arguments)
 {
     require_sensible(arguments);
     SignalInterrupter interrupter(arguments.progress);
-    std::vector<StageCost> read_cost, write_cost;
-
-    ReadResult read;
-    StageClock(read_cost).run("read", [&] { read = read_surface(arguments); });
-    const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
-    ShellResult result = build_shell(read.mesh, arguments.shell, arguments.mesh.filename().string(),
-                                     thickness.get(), &interrupter);
-    result.report.read = read.report;
+    std::vector<StageCost> write_cost;
+    ShellOptions options = arguments.shell;
+    if (arguments.repair)
+        options.repair = arguments.repair_options;
+    ShellResult result = read_and_build(arguments, options, &interrupter);
     StageClock(write_cost).run("write", [&] {
-        write_outputs(arguments.outputs, to_file(result, arguments, &interrupter));
+        write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter));
     });
 
     std::vector<StageCost>& stages = result.report.stages;
-    stages.insert(stages.begin(), read_cost.begin(), read_cost.end());
     stages.insert(stages.end(), write_cost.begin(), write_cost.end());
     if (!arguments.report.empty())
         write_stream_atomically(arguments.report, [&](std::ostream& out) {

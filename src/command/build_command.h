@@ -14,8 +14,10 @@ namespace vdb_shell::command
 {
 
 struct BuildArguments {
-    std::filesystem::path mesh;
+    std::filesystem::path mesh; ///< or a level set: FILE.vdb or FILE.vdb:GRID
     ReadOptions read;
+    bool repair = false;
+    RepairOptions repair_options; ///< for `repair`
     ShellOptions shell;
     std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID
     Outputs outputs;

@@ -71,8 +71,7 @@ int run_info(const FileArguments& arguments)
         return success;
     }
     const std::size_t layers = file.stack.layers.size();
-    std::cout << arguments.file.string() << ": shell, schema "
-              << read_shell_info(arguments.file).schema << "\n  " << file.stack.surface(0).size()
+    std::cout << arguments.file.string() << ": shell\n  " << file.stack.surface(0).size()
               << " surface vertices, " << layers << (layers == 1 ? " layer, " : " layers, ")
               << layers * file.stack.triangles().size() << " prisms, " << file.tets.points.size()
               << " points, " << file.tets.tets.size() << " tets\n";

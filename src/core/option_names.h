@@ -4,6 +4,7 @@
 // The names that option values have on the command line and in JSON: one table an enum.
 
 #include "vdb_shell/certify/certificate.h"
+#include "vdb_shell/field/contour.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/shell/tessellate.h"
@@ -22,6 +23,13 @@ namespace vdb_shell
 {
 
 template <typename Enum> using NameTable = std::vector<std::pair<std::string, Enum>>;
+
+inline const NameTable<ContourMethod>& names(ContourMethod)
+{
+    static const NameTable<ContourMethod> table{{"volume-to-mesh", ContourMethod::volume_to_mesh},
+                                                {"marching-tets", ContourMethod::marching_tets}};
+    return table;
+}
 
 inline const NameTable<DirectionSource>& names(DirectionSource)
 {

@@ -32,13 +32,8 @@ constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 constexpr double kStencilVoxels = 3.0;
 // Below it the stencil of a vertex on the surface would reach over the end of the band.
 constexpr double kSmallestExteriorVoxels = 3.0;
-// OpenVDB's maps refuse a determinant under 3e-15.
-constexpr double kSmallestVoxel = 1.5e-5;
 // With fewer voxels along its longest side an object has no field to speak of.
 constexpr double kFewestVoxels = 8.0;
-// Points are float32 in index space too while distances are computed: up to here they resolve a
-// quarter of a voxel. (Index coordinates end only at 2^31.)
-constexpr double kLargestIndex = 4194304.0;
 
 template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
 {
@@ -97,14 +92,15 @@ void check_voxel_size(const TriangleMesh& mesh, double voxel)
     if (voxel >= size)
         fail<GeometryError>("voxel larger than the object: voxel size ", voxel, ", longest side ",
                             size);
-    if (voxel < kSmallestVoxel)
-        fail<GeometryError>("voxel size ", voxel, " is below ", kSmallestVoxel,
+    if (voxel < kSmallestVoxelSize)
+        fail<GeometryError>("voxel size ", voxel, " is below ", kSmallestVoxelSize,
                             ", the smallest that OpenVDB's transforms can hold; scale the mesh up");
     for (int axis = 0; axis < 3; ++axis) {
         const double far = std::max(std::abs(bounds.low[axis]), std::abs(bounds.high[axis]));
-        if (far / voxel > kLargestIndex)
+        if (far / voxel > kLargestVoxelIndex)
             fail<GeometryError>("voxel size ", voxel, " is too small for coordinates up to ", far,
-                                ": voxel index ", far / voxel, " is over the limit ", kLargestIndex,
+                                ": voxel index ", far / voxel, " is over the limit ",
+                                kLargestVoxelIndex,
                                 "; enlarge the voxels or move the mesh to the origin");
     }
 }
@@ -199,7 +195,7 @@ double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& optio
         fail<GeometryError>("the mesh's longest side is ", size,
                             ", must be positive and finite to derive a voxel size from");
     // Objects of less than a few millimetres get fewer voxels than asked for, rather than none.
-    return std::max(size / options.resolution, std::min(kSmallestVoxel, size / kFewestVoxels));
+    return std::max(size / options.resolution, std::min(kSmallestVoxelSize, size / kFewestVoxels));
 }
 
 double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,

@@ -78,12 +78,16 @@ void require_usable(const MeshCheck& check, const CheckOptions& options, const s
                     "pairs of triangles that cross or touch");
         if (check.self_intersections.count > 0)
             help += (help.empty() ? "" : "; ") +
-                    std::string("--allow-self-intersections accepts a surface that crosses itself");
+                    std::string(
+                        "--wrap makes a new surface, --allow-self-intersections accepts one that "
+                        "crosses itself");
     }
     if (findings.empty())
         return;
+    if (beyond_help)
+        help = "inspect names all of it, --repair mends most of it, --wrap makes a new surface";
     throw GeometryError(name + ": no shell can be made of this surface: " + findings +
-                        (beyond_help || help.empty() ? "" : " - " + help));
+                        (help.empty() ? "" : " - " + help));
 }
 
 } // namespace vdb_shell

@@ -47,6 +47,34 @@ ordered_json read_json(const ReadReport& read)
             {"skipped_faces", read.skipped_faces}};
 }
 
+ordered_json contour_json(const ContourReport& contour)
+{
+    return {{"method", name_in_table(contour.method)},
+            {"volume_to_mesh_defects", contour.volume_to_mesh_defects},
+            {"triangles", contour.triangles},
+            {"simplified_triangles", contour.simplified_triangles},
+            {"simplification_repeats", contour.simplification_repeats},
+            {"components", contour.components},
+            {"dropped_components", contour.dropped_components}};
+}
+
+ordered_json distance_json(const DistanceFigures& distance)
+{
+    return {{"mean", distance.mean}, {"max", distance.max}, {"samples", distance.samples}};
+}
+
+ordered_json wrap_json(const WrapReport& wrap)
+{
+    return {{"voxel_size", wrap.voxel_size},
+            {"voxels", wrap.voxels},
+            {"boundary_share", wrap.boundary_share},
+            {"sheet_share", wrap.sheet_share},
+            {"interior_share", wrap.interior_share},
+            {"contour", contour_json(wrap.contour)},
+            {"input_to_wrap", distance_json(wrap.input_to_wrap)},
+            {"wrap_to_input", distance_json(wrap.wrap_to_input)}};
+}
+
 ordered_json mesh_json(const MeshCheck& mesh)
 {
     ordered_json components = ordered_json::array();
@@ -76,7 +104,8 @@ ordered_json mesh_json(const MeshCheck& mesh)
 
 ordered_json field_json(const FieldReport& field)
 {
-    return {{"voxel_size", field.voxel_size},
+    return {{"origin", field.origin},
+            {"voxel_size", field.voxel_size},
             {"active_voxels", field.active_voxels},
             {"memory_bytes", field.memory_bytes},
             {"interior_depth", field.interior_depth},
@@ -223,6 +252,10 @@ std::string report_json(const ShellReport& report, bool with_costs)
     ordered_json json;
     json["source"] = report.source;
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
+    json["repair"] =
+        report.repair ? ordered_json::parse(repair_json(*report.repair)) : ordered_json();
+    json["wrap"] = report.wrap ? wrap_json(*report.wrap) : ordered_json();
+    json["contour"] = report.contour ? contour_json(*report.contour) : ordered_json();
     json["mesh"] = mesh_json(report.mesh);
     json["field"] = field_json(report.field);
     json["side"] = name_in_table(report.side);

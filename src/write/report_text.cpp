@@ -55,6 +55,34 @@ std::string mesh_lines(const MeshCheck& mesh)
     return text;
 }
 
+std::string contour_text(const ContourReport& contour)
+{
+    std::string text = number(contour.triangles, 12) + " triangles, simplified to " +
+                       number(contour.simplified_triangles, 12);
+    if (contour.method == ContourMethod::marching_tets)
+        text += "; by marching tets, for volume to mesh left " +
+                number(contour.volume_to_mesh_defects, 12) + " defects";
+    if (contour.dropped_components > 0)
+        text += "; " + number(contour.dropped_components, 12) + " inner components left out";
+    return text;
+}
+
+void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
+{
+    line(out, "wrap", "voxel " + number(wrap.voxel_size) + ", " + contour_text(wrap.contour));
+    line(out, "  input",
+         percent(wrap.boundary_share) + " of its area bounds the solid, " +
+             percent(wrap.sheet_share) + " thickened as sheets, " + percent(wrap.interior_share) +
+             " inside");
+    const auto distance = [&](const DistanceFigures& figures) {
+        return "mean " + number(figures.mean) + ", max " + number(figures.max) + " (" +
+               number(figures.max / wrap.voxel_size, 3) + " voxels)";
+    };
+    line(out, "  distance",
+         "input to wrap " + distance(wrap.input_to_wrap) + "; wrap to input " +
+             distance(wrap.wrap_to_input));
+}
+
 void read_lines(std::ostringstream& out, const ReadReport& read)
 {
     line(out, "read",
@@ -215,12 +243,19 @@ std::string report_text(const ShellReport& report)
     line(out, "source", report.source);
     if (report.read)
         read_lines(out, *report.read);
+    if (report.repair)
+        out << "repair\n" << repair_text(*report.repair);
+    if (report.wrap)
+        wrap_lines(out, *report.wrap);
+    if (report.contour)
+        line(out, "contour", contour_text(*report.contour));
     line(out, "mesh", mesh_lines(report.mesh));
     line(out, "field",
          "voxel " + number(report.field.voxel_size) + ", " +
              number(report.field.active_voxels, 12) + " active voxels, " +
              number(double(report.field.memory_bytes) / (1 << 20)) + " MiB, depth " +
-             number(report.field.interior_depth));
+             number(report.field.interior_depth) +
+             (report.field.origin.empty() ? "" : "; " + report.field.origin));
     line(out, "drift",
          "zero crossing at the vertices: mean " + number(report.field.smooth.mean_drift) +
              ", max " + number(report.field.smooth.max_drift));

@@ -172,6 +172,64 @@ TEST_F(Command, ConvertGivesTheFilesThatBuildGave)
             << extension;
 }
 
+TEST_F(Command, InspectSaysWhatIsWrongByItsExitStatus)
+{
+    const std::string good = mesh_file("good.obj", icosphere(1.0, 2));
+    Outcome result = run("inspect " + good);
+    EXPECT_EQ(result.status, ExitCode::success) << result.err;
+    EXPECT_NE(result.out.find("usable as it is"), std::string::npos) << result.out;
+
+    const std::string open = mesh_file("open.obj", without_triangle(icosphere(1.0, 2), 3));
+    result = run("inspect --json " + open + " -o " + file("defects.ply"));
+    EXPECT_EQ(result.status, ExitCode::check_failed);
+    EXPECT_EQ(result.err, "");
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_FALSE(json.at("usable").get<bool>());
+    EXPECT_EQ(json.at("boundary_loops").size(), 1u);
+    EXPECT_GT(std::filesystem::file_size(folder / "defects.ply"), 0u);
+    expect_refusal("inspect " + open + " -o " + open, ExitCode::usage_error, {"is the input"});
+    expect_refusal("inspect " + file("none.obj"), ExitCode::read_error, {"none.obj"});
+}
+
+TEST_F(Command, BuildRepairsWhenAsked)
+{
+    const TriangleMesh hollow = without_triangle(icosphere(1.0, 2), 3);
+    const std::string open = mesh_file("open.obj", hollow);
+    expect_refusal("build " + open + kCoarse + " -o " + file("s.vdb"), ExitCode::geometry_error,
+                   {"3 boundary edges", "--repair"});
+    const Outcome result = run("build --repair " + open + kCoarse + " -o " + file("s.vdb") +
+                               " --report " + file("s.json"));
+    ASSERT_EQ(result.status, ExitCode::success) << result.err;
+    EXPECT_NE(result.out.find("hole at point"), std::string::npos) << result.out;
+    const auto report = nlohmann::json::parse(read_bytes(folder / "s.json"));
+    EXPECT_EQ(report.at("repair").at("holes").at(0).at("new_triangles"), 1);
+    EXPECT_EQ(report.at("repair").at("kept_triangles"), hollow.triangles.size());
+    EXPECT_TRUE(report.at("certificate").at("certified").get<bool>());
+    EXPECT_EQ(run("check " + file("s.vdb")).status, ExitCode::success);
+    const auto info = nlohmann::json::parse(run("info --json " + file("s.vdb")).out);
+    EXPECT_EQ(info.at("parameters").at("repair").at("weld_tolerance"), 0.0);
+    expect_refusal("build " + open + " --weld-tolerance 0.1 -q -o " + file("t.vdb"),
+                   ExitCode::usage_error, {"--repair"});
+}
+
+TEST_F(Command, RepairWritesTheMendedSurface)
+{
+    const TriangleMesh hollow = without_triangle(icosphere(1.0, 2), 3);
+    const std::string open = mesh_file("open.obj", hollow);
+    const Outcome result = run("repair " + open + " -o " + file("closed.obj"));
+    ASSERT_EQ(result.status, ExitCode::success) << result.err;
+    const TriangleMesh closed = read_mesh(folder / "closed.obj").mesh;
+    EXPECT_EQ(closed.triangles.size(), hollow.triangles.size() + 1);
+    EXPECT_EQ(closed.points, hollow.points);
+    EXPECT_EQ(run("inspect " + file("closed.obj")).status, ExitCode::success);
+    // A single triangle is a sheet: it is written, but nothing closes it.
+    TriangleMesh sheet;
+    sheet.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    sheet.triangles = {{0, 1, 2}};
+    expect_refusal("repair " + mesh_file("sheet.obj", sheet) + " -o " + file("left.obj"),
+                   ExitCode::check_failed, {"3 boundary edges", "--wrap"});
+}
+
 TEST_F(Command, InfoPrintsTheStoredFigures)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
@@ -298,6 +356,27 @@ TEST_F(Command, ThicknessIsNeverExceeded)
     const auto report = nlohmann::json::parse(read_bytes(folder / "r.json"));
     EXPECT_LE(report.at("lines").at("length").at("max").get<double>(), 0.25);
     EXPECT_NEAR(report.at("lines").at("length").at("median").get<double>(), 0.25, 1e-6);
+}
+
+TEST_F(Command, WrapsAnOpenSurfaceAndBuildsFromItsOwnVdb)
+{
+    const std::string open = mesh_file("open.obj", without_triangle(icosphere(1, 2), 3));
+    const std::string quick = " --resolution 32 --samples 0 ";
+    expect_refusal("build " + open + quick, ExitCode::geometry_error, {"open.obj"});
+    const Outcome wrapped =
+        run("build " + open + quick + "--wrap --wrap-resolution 24 -o " + file("a.vdb"));
+    EXPECT_EQ(wrapped.status, ExitCode::success) << wrapped.err;
+    EXPECT_NE(wrapped.out.find("input to wrap"), std::string::npos) << wrapped.out;
+
+    const Outcome again =
+        run("build " + file("a.vdb") + ":surface" + quick + "-o " + file("b.obj"));
+    EXPECT_EQ(again.status, ExitCode::success) << again.err;
+    EXPECT_NE(again.out.find("as given"), std::string::npos) << again.out;
+    expect_refusal("build " + file("a.vdb") + ":depth" + quick, ExitCode::geometry_error,
+                   {"a.vdb", "depth", "fog volume"});
+    expect_refusal("build " + file("a.vdb") + quick + "-o " + file("a.vdb"), ExitCode::usage_error,
+                   {"a.vdb"});
+    expect_refusal("build " + file("a.vdb") + quick + "--wrap", ExitCode::usage_error, {"a.vdb"});
 }
 
 } // namespace

@@ -11,6 +11,12 @@
 namespace vdb_shell
 {
 
+/// OpenVDB's maps refuse a determinant under 3e-15.
+inline constexpr double kSmallestVoxelSize = 1.5e-5;
+/// Points are float32 in index space too while distances are computed: up to here they resolve a
+/// quarter of a voxel. (Index coordinates end only at 2^31.)
+inline constexpr double kLargestVoxelIndex = 4194304.0;
+
 struct LevelSetOptions {
     /// Edge length of a voxel in world units. Unset: from `resolution`.
     std::optional<double> voxel_size;

@@ -6,9 +6,12 @@
 #include "vdb_shell/certify/quality.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/smooth.h"
+#include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/scale_thickness.h"
@@ -32,6 +35,7 @@ struct StageCost {
 };
 
 struct FieldReport {
+    std::string origin; ///< what it was made of, in words
     double voxel_size = 0;
     std::uint64_t active_voxels = 0;
     std::uint64_t memory_bytes = 0;
@@ -69,7 +73,10 @@ struct OutsideReport {
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
-    MeshCheck mesh;
+    std::optional<RepairReport> repair; ///< absent when it was not asked for
+    std::optional<WrapReport> wrap;
+    std::optional<ContourReport> contour; ///< of a level set that was given
+    MeshCheck mesh;                       ///< of the surface that was worked with
     FieldReport field;
     Side side = Side::inward;
     LineReport lines;

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/field/contour.h"
+#include "vdb_shell/mesh/surface_distance.h"
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <cstddef>
+#include <optional>
+
+namespace vdb_shell
+{
+
+struct WrapOptions {
+    /// Build the shell of a wrap instead of the mesh itself.
+    bool wanted = false;
+    /// Edge length of a voxel of the wrap's field, world units. Unset: from `resolution`.
+    std::optional<double> voxel_size;
+    /// Voxels along the longest side of the bounding box.
+    int resolution = 128;
+    /// How far the surface may be moved for the sake of fewer triangles, in voxels.
+    double adaptivity = 0.5;
+    /// Half the thickness that sheets are given, in voxels, at least 0.9: with less a sheet could
+    /// slip between the voxels.
+    double sheet_voxels = 1.0;
+    /// Keep enclosed voids, and what stands in them, instead of filling them.
+    bool keep_voids = false;
+};
+
+struct WrapReport {
+    double voxel_size = 0;
+    std::size_t voxels = 0; ///< where the field was computed
+    /// Shares of the input's area: boundary of the solid, sheets that were given a thickness, and
+    /// what lies inside the solid.
+    double boundary_share = 0, sheet_share = 0, interior_share = 0;
+    ContourReport contour;
+    DistanceFigures input_to_wrap, wrap_to_input;
+};
+
+struct WrapResult {
+    TriangleMesh mesh;
+    WrapReport report;
+};
+
+/// A new surface around anything that has triangles: closed, manifold, embedded (contour.h says
+/// why) and oriented outward. The solid is where the winding number of the triangles, in either
+/// sense, is over 0.6, together with all points within `sheet_voxels` of triangles that bound no
+/// such solid, or one thinner than 1.5 voxels: sheets, loose triangles, patches turned the wrong
+/// way. Gaps are closed by the surface where the winding number has that value. Features smaller
+/// than a voxel are lost. docs/wrap.md tells what to expect. Throws InvalidOption for options out
+/// of range, GeometryError for a mesh without triangles or without extent, or when float32 cannot
+/// hold the voxels at the mesh's coordinates, Cancelled. Same result for any number of threads.
+WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options,
+                     Interrupter* interrupter = nullptr);
+
+} // namespace vdb_shell

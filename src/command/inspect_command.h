@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/inspect/inspect_mesh.h"
+#include "vdb_shell/mesh/read_mesh.h"
+
+#include <filesystem>
+
+namespace CLI
+{
+class App;
+}
+
+namespace vdb_shell::command
+{
+
+struct InspectArguments {
+    std::filesystem::path mesh;
+    ReadOptions read;
+    InspectOptions inspect;
+    std::filesystem::path picture; ///< coloured mesh of the defects; empty: none
+    bool json = false;
+};
+
+void add_inspect_command(CLI::App& app, InspectArguments& arguments);
+
+/// Prints what stands in the way of a shell; check_failed when something does.
+int run_inspect(const InspectArguments& arguments);
+
+} // namespace vdb_shell::command

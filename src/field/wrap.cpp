@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/field/wrap.h"
+
+#include "core/stage_progress.h"
+#include "field/contour_mapped.h"
+#include "field/wrap_field.h"
+#include "vdb_shell/core/error.h"
+
+#include <openvdb/tools/Count.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+
+// With less the voxels of one sheet would not hang together.
+constexpr double kThinnestSheet = 0.9;
+// The field takes some ten voxels for each voxel of area: 4096^2 are beyond any memory's pleasure.
+constexpr double kMostVoxelsAlong = 4096.0;
+constexpr double kDistanceSpacingVoxels = 1.0;
+
+template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
+{
+    std::ostringstream message;
+    (message << ... << parts);
+    throw Error("wrap: " + message.str());
+}
+
+void check_options(const WrapOptions& options)
+{
+    const auto in_range = [](double x, double low, double high) { return x >= low && x <= high; };
+    if (options.voxel_size && !(std::isfinite(*options.voxel_size) && *options.voxel_size > 0))
+        fail<InvalidOption>("voxel_size is ", *options.voxel_size, ", must be positive and finite");
+    if (!in_range(options.resolution, 1, kMostVoxelsAlong))
+        fail<InvalidOption>("resolution is ", options.resolution, ", must be in [1, ",
+                            kMostVoxelsAlong, "]");
+    if (!in_range(options.adaptivity, 0, 1e3))
+        fail<InvalidOption>("adaptivity is ", options.adaptivity, ", must be in [0, 1000]");
+    if (!in_range(options.sheet_voxels, kThinnestSheet, 1e3))
+        fail<InvalidOption>("sheet_voxels is ", options.sheet_voxels, ", must be in [",
+                            kThinnestSheet, ", 1000]");
+}
+
+double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
+{
+    const Vec3d size = bounds.high - bounds.low;
+    const double longest = std::max({size[0], size[1], size[2]});
+    if (!(longest > 0 && std::isfinite(longest)))
+        fail<GeometryError>("the mesh's longest side is ", longest, ", must be positive");
+    const double voxel = options.voxel_size.value_or(longest / options.resolution);
+    if (longest / voxel > kMostVoxelsAlong)
+        fail<InvalidOption>("voxel size ", voxel, " gives ", longest / voxel,
+                            " voxels along the longest side ", longest, ", over the limit ",
+                            kMostVoxelsAlong);
+    return voxel;
+}
+
+/// Triangles in voxels around the middle of the box: small numbers whatever the mesh's own are.
+std::vector<TriangleCorners> in_voxels(const TriangleMesh& mesh, const Vec3d& centre, double voxel)
+{
+    std::vector<TriangleCorners> triangles;
+    triangles.reserve(mesh.triangles.size());
+    const auto to_voxels = [&](std::uint32_t v) {
+        return (Vec3d(mesh.points[v]) - centre) / voxel;
+    };
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        triangles.push_back({to_voxels(t[0]), to_voxels(t[1]), to_voxels(t[2])});
+    return triangles;
+}
+
+void set_shares(WrapReport& report, const WrapPieces& pieces)
+{
+    const double area = pieces.boundary_area + pieces.sheet_area + pieces.interior_area;
+    if (!(area > 0))
+        return;
+    report.boundary_share = pieces.boundary_area / area;
+    report.sheet_share = pieces.sheet_area / area;
+    report.interior_share = pieces.interior_area / area;
+}
+
+openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
+                                 const WrapOptions& options, WrapReport& report,
+                                 const StageProgress& progress)
+{
+    const WindingNumber winding(triangles);
+    WrapPieces pieces = sort_pieces(triangles, winding, progress);
+    auto field = wrap_field(pieces, winding, options.sheet_voxels, progress);
+    if (!(openvdb::tools::minMax(field->tree()).min() < 0)) {
+        pieces = all_sheets(triangles);
+        field = wrap_field(pieces, winding, options.sheet_voxels, progress);
+    }
+    set_shares(report, pieces);
+    report.voxels = field->activeVoxelCount();
+    return field;
+}
+
+} // namespace
+
+WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "wrap");
+    check_options(options);
+    if (mesh.points.empty() || mesh.triangles.empty())
+        fail<GeometryError>("the mesh has ", mesh.points.size(), " points and ",
+                            mesh.triangles.size(), " triangles");
+    const Bounds bounds = bounds_of(mesh.points);
+    const Vec3d centre = 0.5 * (bounds.low + bounds.high);
+    WrapResult result;
+    const double voxel = result.report.voxel_size = voxel_size_for(bounds, options);
+
+    const auto field = field_of(in_voxels(mesh, centre, voxel), options, result.report, progress);
+    const auto to_world = [&](const Vec3d& index) { return centre + voxel * index; };
+    result.mesh = contour_mapped(*field, to_world, {options.adaptivity, !options.keep_voids},
+                                 result.report.contour, interrupter);
+    const double spacing = kDistanceSpacingVoxels * voxel;
+    result.report.input_to_wrap = surface_distance(mesh, result.mesh, spacing, interrupter);
+    result.report.wrap_to_input = surface_distance(result.mesh, mesh, spacing, interrupter);
+    return result;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inspect/marks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell
+{
+
+using openvdb::Vec3d;
+
+FloatLimits float_limits(const TriangleMesh& mesh)
+{
+    FloatLimits limits;
+    if (mesh.points.empty())
+        return limits;
+    float farthest = 0;
+    for (const openvdb::Vec3s& p : mesh.points)
+        for (int axis = 0; axis < 3; ++axis)
+            farthest = std::max(farthest, std::abs(p[axis]));
+    const float next = std::nextafter(farthest, std::numeric_limits<float>::infinity());
+    limits.farthest = farthest;
+    limits.spacing = double(next) - double(farthest);
+    const Bounds bounds = bounds_of(mesh.points);
+    const Vec3d size = bounds.high - bounds.low;
+    const double longest = std::max({size[0], size[1], size[2]});
+    if (longest > 0)
+        limits.digits = static_cast<int>(std::lround(std::log2(longest / limits.spacing)));
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        for (int side = 0; side < 3; ++side) {
+            const double length =
+                (Vec3d(mesh.points[t[side]]) - Vec3d(mesh.points[t[(side + 1) % 3]])).length();
+            if (length > 0)
+                shortest = std::min(shortest, length);
+        }
+    limits.shortest_edge = std::isfinite(shortest) ? shortest : 0;
+    return limits;
+}
+
+} // namespace vdb_shell

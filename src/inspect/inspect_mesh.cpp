@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/inspect/inspect_mesh.h"
+
+#include "inspect/marks.h"
+#include "mesh/boundary_loops.h"
+#include "mesh/orientation.h"
+#include "shell/grow/directions.h"
+#include "vdb_shell/step/directions.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+
+/// Vertices that even growth's mended directions leave blind.
+std::vector<std::uint32_t> find_blind_vertices(const TriangleMesh& mesh)
+{
+    Directions directions;
+    directions.inward = pseudo_normals(mesh);
+    directions.visibility = visibility_of(mesh, directions.inward);
+    for (Vec3d& d : directions.inward)
+        d = -d;
+    growth::mend_directions(mesh, directions);
+    std::vector<char> used(mesh.points.size());
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            used[t[corner]] = 1;
+    std::vector<std::uint32_t> blind;
+    for (std::uint32_t v = 0; v < used.size(); ++v)
+        if (used[v] && directions.visibility[v] <= 0)
+            blind.push_back(v);
+    return blind;
+}
+
+void mark_orientation(DefectMarks& marks, std::size_t triangle_count)
+{
+    const Orientation orientation = consistent_orientation(marks.uses, triangle_count);
+    std::vector<char> seen(orientation.one_sided.size());
+    for (std::uint32_t t = 0; t < triangle_count; ++t) {
+        if (orientation.turn[t])
+            marks.flipped.push_back(t);
+        const std::uint32_t piece = orientation.piece_of[t];
+        if (orientation.one_sided[piece] && !seen[piece])
+            marks.one_sided.push_back(t);
+        seen[piece] = 1;
+    }
+}
+
+std::vector<BoundaryLoop> measure_loops(const TriangleMesh& mesh,
+                                        const std::vector<Edge>& boundary_edges)
+{
+    std::vector<BoundaryLoop> loops;
+    for (const BoundaryWalk& walk : boundary_walks(boundary_edges)) {
+        BoundaryLoop loop;
+        loop.first_point = *std::min_element(walk.points.begin(), walk.points.end());
+        loop.closed = walk.closed;
+        loop.edges = walk.points.size() - (walk.closed ? 0 : 1);
+        for (std::size_t i = 0; i < loop.edges; ++i) {
+            const std::uint32_t to = walk.points[(i + 1) % walk.points.size()];
+            loop.length += (Vec3d(mesh.points[to]) - Vec3d(mesh.points[walk.points[i]])).length();
+        }
+        loops.push_back(loop);
+    }
+    std::stable_sort(loops.begin(), loops.end(), [](const BoundaryLoop& a, const BoundaryLoop& b) {
+        return a.first_point < b.first_point;
+    });
+    return loops;
+}
+
+/// The flipped triangles, those that share an edge together.
+std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t triangle_count)
+{
+    std::vector<char> flipped(triangle_count);
+    for (const std::uint32_t t : marks.flipped)
+        flipped[t] = 1;
+    std::vector<EdgeUse> between;
+    for (const EdgeUse& use : marks.uses)
+        if (flipped[use.triangle])
+            between.push_back(use);
+    std::vector<std::uint32_t> parent(triangle_count);
+    std::iota(parent.begin(), parent.end(), 0U);
+    auto root_of = [&](std::uint32_t t) {
+        while (parent[t] != t)
+            t = parent[t] = parent[parent[t]];
+        return t;
+    };
+    for (std::size_t i = 1; i < between.size(); ++i) {
+        if (between[i].edge != between[i - 1].edge)
+            continue;
+        const std::uint32_t a = root_of(between[i].triangle), b = root_of(between[i - 1].triangle);
+        parent[std::max(a, b)] = std::min(a, b);
+    }
+    std::vector<FlippedPatch> patches;
+    std::vector<std::uint32_t> patch_of(triangle_count);
+    for (const std::uint32_t t : marks.flipped) {
+        const std::uint32_t root = root_of(t);
+        if (root == t) {
+            patch_of[t] = static_cast<std::uint32_t>(patches.size());
+            patches.push_back({t, 0});
+        }
+        ++patches[patch_of[root]].triangles;
+    }
+    return patches;
+}
+
+} // namespace
+
+DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size)
+{
+    DefectMarks marks;
+    marks.uses = sorted_edge_uses(mesh.triangles);
+    marks.surface = find_defects(mesh, marks.uses);
+    mark_orientation(marks, mesh.triangles.size());
+    marks.blind = find_blind_vertices(mesh);
+    marks.thin = find_thin_triangles(mesh, voxel_size);
+    return marks;
+}
+
+MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options)
+{
+    require_well_formed(mesh, "inspect_mesh");
+    MeshInspection inspection;
+    if (mesh.triangles.empty())
+        return inspection;
+    const Bounds bounds = bounds_of(mesh.points);
+    // All points in one place have no voxel size by resolution; the triangles say what is wrong.
+    if (options.level_set.voxel_size || diagonal_of(bounds) > 0)
+        inspection.voxel_size = resolve_voxel_size(mesh, options.level_set);
+    const DefectMarks marks = mark_defects(mesh, inspection.voxel_size);
+    inspection.check = summarise(mesh, marks.uses, marks.surface);
+    inspection.boundary_loops = measure_loops(mesh, marks.surface.boundary_edges);
+    inspection.flipped_patches = patches_of(marks, mesh.triangles.size());
+    inspection.one_sided_pieces = summary_of(marks.one_sided);
+    inspection.blind_vertices = summary_of(marks.blind);
+    inspection.thin_triangles = summary_of(marks.thin);
+    inspection.floats = float_limits(mesh);
+    return inspection;
+}
+
+} // namespace vdb_shell

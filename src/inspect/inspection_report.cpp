@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/inspect/inspect_mesh.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sstream>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using nlohmann::ordered_json;
+
+ordered_json findings_json(const std::vector<Finding>& findings)
+{
+    ordered_json list = ordered_json::array();
+    for (const Finding& finding : findings)
+        list.push_back({{"kind", finding.kind},
+                        {"text", finding.text},
+                        {"count", finding.count},
+                        {"first", finding.first},
+                        {"blocks", finding.blocks},
+                        {"mend", finding.mend}});
+    return list;
+}
+
+ordered_json components_json(const MeshCheck& check)
+{
+    ordered_json list = ordered_json::array();
+    for (const Component& part : check.components)
+        list.push_back({{"triangles", part.triangles},
+                        {"first_triangle", part.first_triangle},
+                        {"volume", part.volume},
+                        {"closed", part.closed},
+                        {"euler", part.euler},
+                        {"nesting_depth", part.nesting_depth},
+                        {"inside_out", part.inside_out}});
+    return list;
+}
+
+ordered_json loops_json(const MeshInspection& inspection)
+{
+    ordered_json list = ordered_json::array();
+    for (const BoundaryLoop& loop : inspection.boundary_loops)
+        list.push_back({{"first_point", loop.first_point},
+                        {"edges", loop.edges},
+                        {"length", loop.length},
+                        {"closed", loop.closed}});
+    return list;
+}
+
+ordered_json patches_json(const MeshInspection& inspection)
+{
+    ordered_json list = ordered_json::array();
+    for (const FlippedPatch& patch : inspection.flipped_patches)
+        list.push_back({{"first_triangle", patch.first_triangle}, {"triangles", patch.triangles}});
+    return list;
+}
+
+void put(std::ostream& out, const Finding& finding)
+{
+    out << (finding.blocks ? "  in the way  " : "  take note   ");
+    if (!finding.first.empty())
+        out << finding.count << ' ';
+    out << finding.text;
+    const char* before = ": ";
+    for (const std::string& element : finding.first) {
+        out << before << element;
+        before = "; ";
+    }
+    if (finding.first.size() < finding.count && !finding.first.empty())
+        out << "; ...";
+    if (!finding.mend.empty())
+        out << "\n                -> " << finding.mend;
+    out << '\n';
+}
+
+} // namespace
+
+std::string inspection_text(const std::string& name, const ReadReport& read,
+                            const MeshInspection& inspection)
+{
+    const MeshCheck& check = inspection.check;
+    const std::vector<Finding> findings = findings_of(inspection);
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << name << ": " << read.format << ", " << check.points << " points ("
+        << read.welded_vertices << " welded, " << read.unused_vertices << " unused), "
+        << check.triangles << " triangles (" << read.skipped_faces.size()
+        << " faces skipped), components: " << check.components.size() << "\n  volume "
+        << check.volume << ", voxel " << inspection.voxel_size << ", shortest edge "
+        << inspection.floats.shortest_edge << ", coordinates up to " << inspection.floats.farthest
+        << " in steps of " << inspection.floats.spacing << '\n';
+    for (const Finding& finding : findings)
+        put(out, finding);
+    out << (usable(inspection) ? "  usable as it is\n" : "  NOT usable as it is\n");
+    return out.str();
+}
+
+std::string inspection_json(const std::string& name, const ReadReport& read,
+                            const MeshInspection& inspection)
+{
+    const MeshCheck& check = inspection.check;
+    const FloatLimits& floats = inspection.floats;
+    ordered_json json;
+    json["source"] = name;
+    json["usable"] = usable(inspection);
+    json["format"] = read.format;
+    json["points"] = check.points;
+    json["triangles"] = check.triangles;
+    json["welded_vertices"] = read.welded_vertices;
+    json["unused_vertices"] = read.unused_vertices;
+    json["skipped_faces"] = read.skipped_faces;
+    json["volume"] = check.volume;
+    json["voxel_size"] = inspection.voxel_size;
+    json["findings"] = findings_json(findings_of(inspection));
+    json["boundary_loops"] = loops_json(inspection);
+    json["flipped_patches"] = patches_json(inspection);
+    json["components"] = components_json(check);
+    json["floats"] = {{"farthest", floats.farthest},
+                      {"spacing", floats.spacing},
+                      {"digits", floats.digits},
+                      {"shortest_edge", floats.shortest_edge}};
+    // A file name may hold bytes that are no UTF-8.
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/surface_defects.h"
+#include "vdb_shell/inspect/inspect_mesh.h"
+
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// All that inspect_mesh counts, every element of it, ascending.
+struct DefectMarks {
+    std::vector<EdgeUse> uses;
+    SurfaceDefects surface;
+    std::vector<std::uint32_t> flipped, one_sided; ///< triangles; first triangles of pieces
+    std::vector<std::uint32_t> blind;              ///< points
+    std::vector<std::uint32_t> thin;               ///< triangles
+};
+DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size);
+
+/// See MeshInspection::thin_triangles.
+std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double voxel_size);
+
+FloatLimits float_limits(const TriangleMesh& mesh);
+
+} // namespace vdb_shell

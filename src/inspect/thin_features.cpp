@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inspect/marks.h"
+
+#include "core/parallel.h"
+#include "shell/grow/box_tree.h"
+
+#include <cmath>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+
+struct Ray {
+    Vec3d from, along; ///< along: unit length, or zero for a triangle without area
+};
+
+Ray inward_from(const TriangleMesh& mesh, const Vec3I& t)
+{
+    const Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
+    const Vec3d cross = (c - a).cross(b - a);
+    const double length = cross.length();
+    return {(a + b + c) / 3.0, length > 0 ? cross / length : Vec3d(0.0)};
+}
+
+/// Where the ray leaves the solid through the triangle; infinite where it does not.
+double leaves_through(const TriangleMesh& mesh, const Vec3I& t, const Ray& ray)
+{
+    const Vec3d a(mesh.points[t[0]]);
+    const Vec3d ab = Vec3d(mesh.points[t[1]]) - a, ac = Vec3d(mesh.points[t[2]]) - a;
+    const Vec3d across = ray.along.cross(ac);
+    const double det = ab.dot(across);
+    if (!(det < 0)) // parallel to it, or entering
+        return HUGE_VAL;
+    const Vec3d from_a = ray.from - a;
+    const double u = from_a.dot(across) / det;
+    const Vec3d q = from_a.cross(ab);
+    const double v = ray.along.dot(q) / det;
+    const double distance = ac.dot(q) / det;
+    return u >= 0 && v >= 0 && u + v <= 1 && distance >= 0 ? distance : HUGE_VAL;
+}
+
+bool share_a_corner(const Vec3I& a, const Vec3I& b)
+{
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (a[i] == b[j])
+                return true;
+    return false;
+}
+
+} // namespace
+
+std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double voxel_size)
+{
+    std::vector<growth::Box> boxes(mesh.triangles.size());
+    for (std::size_t t = 0; t < boxes.size(); ++t)
+        for (int corner = 0; corner < 3; ++corner)
+            boxes[t].add(Vec3d(mesh.points[mesh.triangles[t][corner]]));
+    growth::BoxTree tree;
+    tree.build(std::move(boxes));
+    std::vector<char> thin(mesh.triangles.size());
+    for_each_index(thin.size(), [&](std::size_t t) {
+        const Ray ray = inward_from(mesh, mesh.triangles[t]);
+        if (ray.along.lengthSqr() == 0)
+            return;
+        tree.for_each_on_ray(ray.from, ray.along, voxel_size, [&](int other) {
+            const Vec3I& opposite = mesh.triangles[static_cast<std::size_t>(other)];
+            thin[t] =
+                static_cast<char>(thin[t] || (!share_a_corner(mesh.triangles[t], opposite) &&
+                                              leaves_through(mesh, opposite, ray) < voxel_size));
+        });
+    });
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t t = 0; t < thin.size(); ++t)
+        if (thin[t])
+            found.push_back(t);
+    return found;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+namespace vdb_shell
+{
+
+struct Simplified {
+    TriangleMesh mesh; ///< its points are some of the input's, unchanged
+    int repeats = 0;   ///< how often some vertices had to be held
+};
+
+/// Edge collapses of OpenMesh's decimater, in the order of their quadric error, that move the
+/// surface by no more than `tolerance` (world units; the distance from what was collapsed to what
+/// is left), nor turn a normal far. What comes out is closed, manifold and embedded like what went
+/// in. No edge longer than `longest_edge` is collapsed: what is flat keeps triangles of about that
+/// size, and the distances do not cost more and more. Where triangles touch, the vertices around
+/// them are held and all is done anew; the input itself is the last resort. Precondition: closed,
+/// manifold, embedded.
+Simplified simplify(const TriangleMesh& mesh, double tolerance, double longest_edge,
+                    Interrupter* interrupter);
+
+} // namespace vdb_shell

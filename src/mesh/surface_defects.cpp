@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/surface_defects.h"
+
+#include "core/box_pairs.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+template <typename Flags> std::vector<std::uint32_t> raised(const Flags& flags)
+{
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i < flags.size(); ++i)
+        if (flags[i])
+            indices.push_back(i);
+    return indices;
+}
+
+void look_at_edges(const std::vector<EdgeUse>& uses, SurfaceDefects& defects)
+{
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (end < uses.size() && uses[end].edge == uses[begin].edge)
+            ++end;
+        const Edge& edge = uses[begin].edge;
+        if (edge[0] == edge[1])
+            continue; // of a triangle that is listed as degenerate
+        if (end - begin == 1)
+            defects.boundary_edges.push_back(edge);
+        else if (end - begin > 2)
+            defects.non_manifold_edges.push_back(edge);
+        else if (uses[begin].forward == uses[begin + 1].forward)
+            defects.inconsistent_edges.push_back(edge);
+    }
+}
+
+/// Whether the triangles around `vertex` form one fan: the edges opposite to the vertex one path or
+/// one ring.
+bool forms_one_fan(const TriangleMesh& mesh, const VertexTriangles::Range& around,
+                   std::uint32_t vertex)
+{
+    // An end of an opposite edge, with the number of the edge.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
+    std::uint32_t edges = 0;
+    for (const std::uint32_t t : around) {
+        const openvdb::Vec3I& corner = mesh.triangles[t];
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
+            continue;
+        for (int k = 0; k < 3; ++k)
+            if (corner[k] != vertex)
+                ends.emplace_back(corner[k], edges);
+        ++edges;
+    }
+    std::sort(ends.begin(), ends.end());
+    std::vector<std::uint32_t> parent(edges);
+    std::iota(parent.begin(), parent.end(), 0U);
+    auto root_of = [&](std::uint32_t i) {
+        while (parent[i] != i)
+            i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    std::uint32_t pieces = edges;
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+        if (ends[i].first != ends[i - 1].first)
+            continue;
+        if (i > 1 && ends[i].first == ends[i - 2].first)
+            return false;
+        const std::uint32_t a = root_of(ends[i - 1].second), b = root_of(ends[i].second);
+        pieces -= a != b;
+        parent[a] = b;
+    }
+    return pieces <= 1;
+}
+
+std::vector<std::uint32_t> find_non_manifold_vertices(const TriangleMesh& mesh)
+{
+    const VertexTriangles star = triangles_around_vertices(mesh.points.size(), mesh.triangles);
+    std::vector<char> bad(mesh.points.size());
+    for_each_index(bad.size(), [&](std::size_t v) {
+        bad[v] = !forms_one_fan(mesh, star.around(v), static_cast<std::uint32_t>(v));
+    });
+    return raised(bad);
+}
+
+std::vector<char> find_degenerate(const TriangleMesh& mesh)
+{
+    std::vector<char> degenerate(mesh.triangles.size());
+    for_each_index(degenerate.size(), [&](std::size_t t) {
+        const openvdb::Vec3I& corner = mesh.triangles[t];
+        degenerate[t] = exact::collinear(mesh.points[corner[0]], mesh.points[corner[1]],
+                                         mesh.points[corner[2]]);
+    });
+    return degenerate;
+}
+
+std::array<std::uint32_t, 3> sorted_corners(const openvdb::Vec3I& triangle)
+{
+    std::array<std::uint32_t, 3> corners{triangle[0], triangle[1], triangle[2]};
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
+std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
+{
+    std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> sorted;
+    sorted.reserve(mesh.triangles.size());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        sorted.emplace_back(sorted_corners(mesh.triangles[t]), t);
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<char> duplicate(mesh.triangles.size());
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        duplicate[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
+    return raised(duplicate);
+}
+
+std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
+                                                  const std::vector<char>& degenerate)
+{
+    const std::vector<TrianglePair> pairs =
+        overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles));
+    std::vector<char> touching(pairs.size());
+    for_each_index(pairs.size(), [&](std::size_t i) {
+        const auto [first, second] = pairs[i];
+        const openvdb::Vec3I &a = mesh.triangles[first], &b = mesh.triangles[second];
+        // Degenerate and duplicate triangles are listed as what they are.
+        touching[i] = !degenerate[first] && !degenerate[second] &&
+                      sorted_corners(a) != sorted_corners(b) &&
+                      exact::triangles_touch(mesh.points, a, b);
+    });
+    std::vector<TrianglePair> found;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (touching[i])
+            found.push_back(pairs[i]);
+    return found;
+}
+
+} // namespace
+
+SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses)
+{
+    SurfaceDefects defects;
+    look_at_edges(sorted_uses, defects);
+    defects.non_manifold_vertices = find_non_manifold_vertices(mesh);
+    const std::vector<char> degenerate = find_degenerate(mesh);
+    defects.degenerate_triangles = raised(degenerate);
+    defects.duplicate_triangles = find_duplicates(mesh);
+    defects.self_intersections = find_self_intersections(mesh, degenerate);
+    return defects;
+}
+
+} // namespace vdb_shell

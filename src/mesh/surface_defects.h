@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/topology.h"
+#include "vdb_shell/mesh/check_mesh.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// The defects that check_mesh counts, all of them, ascending.
+struct SurfaceDefects {
+    std::vector<Edge> boundary_edges, non_manifold_edges, inconsistent_edges;
+    std::vector<std::uint32_t> non_manifold_vertices, degenerate_triangles, duplicate_triangles;
+    std::vector<TrianglePair> self_intersections;
+};
+
+SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses);
+
+template <typename Element> void add_to(Defect<Element>& defect, const Element& element)
+{
+    if (defect.count++ < Defect<Element>::kFirstShown)
+        defect.first.push_back(element);
+}
+
+/// How many, and the first of them.
+template <typename Element> Defect<Element> summary_of(const std::vector<Element>& elements)
+{
+    Defect<Element> defect;
+    for (const Element& element : elements)
+        add_to(defect, element);
+    return defect;
+}
+
+/// Throws InvalidOption unless the points are finite and the corners index them.
+void require_well_formed(const TriangleMesh& mesh, const std::string& caller);
+
+/// What check_mesh says, given the defects.
+MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+                    const SurfaceDefects& defects);
+
+} // namespace vdb_shell
