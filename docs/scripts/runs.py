@@ -15,13 +15,16 @@ CLEAN_MESHES = [
 METHODS = ["certified", "thickest"]
 
 
-def arguments(description):
+def arguments(description, tables=None):
+    """`tables`: names that --tables may list; without it the option does not exist."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--results")
+    if tables:
+        parser.add_argument("--tables", nargs="+", choices=tables, default=tables)
     return parser.parse_args()
 
 
@@ -44,19 +47,24 @@ def build(command, mesh, flags):
 
 def figures(report):
     coverage, certificate = report["coverage"], report["certificate"]
+    scale, cut, growth = report.get("scale") or {}, report.get("cut") or {}, report.get("growth") or {}
     failed = {name: value for name, value in certificate.items() if isinstance(value, dict) and value.get("count")}
     return {"certified": certificate["certified"], "failed": failed, "fill": report["volume"]["fill"],
             "inverted": report["tets"]["inverted"], "triangles": report["mesh"]["triangles"],
             "samples": coverage["samples"], "in_several": coverage["in_several"], "in_none": coverage["in_none"],
-            "pinned": report["prisms"]["pinned_vertices"]}
+            "pinned": report["prisms"]["pinned_vertices"], "tets": report["tets"]["tets"],
+            "min_ratio": report["quality"]["mean_ratio"]["min"],
+            "p1_ratio": report["quality"]["mean_ratio"]["p1"], "moved": cut.get("moved_points"),
+            "uncut": cut.get("uncut_pillars"), "shortened": scale.get("shortened_pillars"),
+            "scaled_pins": scale.get("pinned_pillars"), "tets_below": growth.get("tets_below_quality")}
 
 
 def table(head, rows):
     return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] + ["| " + " | ".join(row) + " |" for row in rows]
 
 
-def replace_tables(page, lines):
-    begin, end = "<!-- tables: begin -->", "<!-- tables: end -->"
+def replace_tables(page, lines, section="tables"):
+    begin, end = f"<!-- {section}: begin -->", f"<!-- {section}: end -->"
     old = page.read_text()
     before, after = old[:old.index(begin) + len(begin)], old[old.index(end):]
     page.write_text(before + "\n\n" + "\n".join(lines) + "\n\n" + after)

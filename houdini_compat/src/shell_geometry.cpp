@@ -2,6 +2,7 @@
 #include "vdb_shell/houdini/shell_geometry.h"
 
 #include "vdb_shell/certify/quality.h"
+#include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
 
 #include "shell_names.h"
@@ -67,8 +68,22 @@ Attribute vectors(const char* name, const char* meaning, std::size_t count, cons
     return {name, 3, meaning, std::move(values)};
 }
 
+template <typename Belongs> Group group(const char* name, std::size_t count, const Belongs& belongs)
+{
+    Group made{name, std::vector<bool>(count)};
+    for (std::size_t i = 0; i < count; ++i)
+        made.members[i] = belongs(i);
+    return made;
+}
+
+bool has_layers(const ShellStack& stack)
+{
+    return layered(stack.layers.size(), stack.skin);
+}
+
 /// The names of those reasons that occur, in the order of StopReason.
-Attribute stop_reasons(const PrismShell& shell, const std::vector<std::uint32_t>& vertex)
+Attribute stop_reasons(const char* name, const PrismShell& shell,
+                       const std::vector<std::uint32_t>& vertex)
 {
     std::array<bool, kStopReasonCount> used{};
     for (const StopReason reason : shell.stop)
@@ -82,108 +97,161 @@ Attribute stop_reasons(const PrismShell& shell, const std::vector<std::uint32_t>
         }
     for (const std::uint32_t v : vertex)
         strings.index.push_back(place[static_cast<std::size_t>(shell.stop[v])]);
-    return {kStopReason, 1, "", std::move(strings)};
+    return {name, 1, "", std::move(strings)};
 }
 
-void add_points(const PrismShell& shell, const ShellPoints& points, HoudiniGeometry& geometry)
+void add_point_attributes(const ShellStack& stack, const ShellPoints& points,
+                          HoudiniGeometry& geometry)
 {
-    const std::size_t count = points.position.size();
-    const auto normals_above = layer_normals(shell.outer, shell.triangles);
-    const auto normals_below = layer_normals(shell.inner, shell.triangles);
-    const auto is_outer = [&](std::size_t i) { return points.layer[i] == 0; };
+    const std::size_t count = points.position.size(), last = stack.layers.size();
+    std::vector<std::vector<Vec3s>> normals;
+    for (std::size_t k = 0; k <= last; ++k)
+        normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
     const auto vertex = [&](std::size_t i) { return points.vertex[i]; };
+    const auto surface = [&](std::size_t i) { return points.layer[i]; };
     const auto position = [&](std::size_t i) { return points.position[i]; };
     geometry.points = count;
     geometry.point_attributes = {
         vectors("P", "point", count, position),
         vectors("N", "normal", count,
-                [&](std::size_t i) {
-                    return (is_outer(i) ? normals_above : normals_below)[vertex(i)];
-                }),
+                [&](std::size_t i) { return normals[surface(i)][vertex(i)]; }),
         vectors("rest", "", count, position),
-        vectors(
-            kOpposite, "point", count,
-            [&](std::size_t i) { return (is_outer(i) ? shell.inner : shell.outer)[vertex(i)]; }),
-        floats("thickness", count, [&](std::size_t i) { return shell.length(vertex(i)); }),
-        floats("depth", count, [&](std::size_t i) { return is_outer(i) ? 0 : 1; }),
+        vectors(kOpposite, "point", count,
+                [&](std::size_t i) { return opposite_of(stack, surface(i), vertex(i)); }),
+        floats("thickness", count, [&](std::size_t i) { return thickness_of(stack, vertex(i)); }),
+        floats("depth", count,
+               [&](std::size_t i) { return double(surface(i)) / static_cast<double>(last); }),
         integers(kSourceVertex, count, 1, [&](std::size_t i, int) { return vertex(i); }),
-        stop_reasons(shell, points.vertex)};
-    const auto group = [&](const char* name, const auto& belongs) {
-        Group made{name, std::vector<bool>(count)};
-        for (std::size_t i = 0; i < count; ++i)
-            made.members[i] = belongs(i);
-        geometry.point_groups.push_back(std::move(made));
-    };
-    group("outer", is_outer);
-    group("inner", [&](std::size_t i) { return !is_outer(i); });
-    group("pinned", [&](std::size_t i) { return shell.pinned(vertex(i)); });
+        stop_reasons(kStopReason, stack.layers.back(), points.vertex)};
+    if (on_both_sides(stack))
+        geometry.point_attributes.push_back(
+            stop_reasons(kOuterStop, stack.layers.front(), points.vertex));
+    if (has_layers(stack))
+        geometry.point_attributes.push_back(
+            integers(kSurface, count, 1, [&](std::size_t i, int) { return surface(i); }));
 }
 
-/// The tets, then the outer triangles, then the inner ones; each in Houdini's orientation.
-void add_primitives(const ShellFile& file, const ShellPoints& points, HoudiniGeometry& geometry)
+void add_point_groups(const ShellStack& stack, const ShellPoints& points, HoudiniGeometry& geometry)
+{
+    const auto add = [&](const char* name, const auto& belongs) {
+        geometry.point_groups.push_back(group(name, points.position.size(), belongs));
+    };
+    add("outer", [&](std::size_t i) { return points.layer[i] == 0; });
+    add("inner", [&](std::size_t i) { return points.layer[i] == stack.layers.size(); });
+    add("pinned", [&](std::size_t i) { return pinned_throughout(stack, points.vertex[i]); });
+    // By id: where the pillar above is pinned, the skin's point is that of a surface farther out.
+    if (has_layers(stack))
+        add("skin", [&](std::size_t i) { return points.id[stack.skin][points.vertex[i]] == i; });
+}
+
+/// What a primitive belongs to; a triangle is that of its prism on `surface`.
+struct Part {
+    std::size_t prism = 0, layer = 0, surface = 0;
+};
+
+/// Of each primitive: the tets, then the triangles of the shown surfaces. A prism between those
+/// that has no tets either follows as the triangle that it has collapsed to, or nothing would tell
+/// its diagonals.
+std::vector<Part> parts_of(const ShellFile& file)
+{
+    const std::size_t layers = file.stack.layers.size(), prisms = file.stack.triangles().size();
+    std::vector<Part> parts;
+    std::vector<bool> told(layers * prisms, false);
+    const auto add = [&](const Part& part) {
+        told[part.layer * prisms + part.prism] = true;
+        parts.push_back(part);
+    };
+    for (std::size_t t = 0; t < file.tets.tets.size(); ++t)
+        add({file.tets.prism[t], file.tets.prism_layer[t], 0});
+    for (const std::size_t surface : shown_surfaces(layers, file.stack.skin))
+        for (std::size_t p = 0; p < prisms; ++p)
+            add({p, layer_at(surface, layers), surface});
+    for (std::size_t i = 0; i < told.size(); ++i)
+        if (!told[i])
+            parts.push_back({i % prisms, i / prisms, i / prisms});
+    return parts;
+}
+
+/// Each in Houdini's orientation.
+void add_primitives(const ShellFile& file, const ShellPoints& points,
+                    const std::vector<Part>& parts, HoudiniGeometry& geometry)
 {
     for (const openvdb::Vec4I& t : file.tets.tets) {
         for (const int corner : {0, 1, 3, 2})
             geometry.vertex_point.push_back(points.id_of_tet_point[t[corner]]);
         geometry.primitives.push_back({PrimitiveType::tetrahedron, 4});
     }
-    for (const bool inner : {false, true})
-        for (const Vec3I& t : file.stack.layers.front().triangles) {
-            for (const int corner : {0, 2, 1})
-                geometry.vertex_point.push_back(inner ? points.id[1][t[corner]] : t[corner]);
-            geometry.primitives.push_back({PrimitiveType::polygon, 3});
-        }
+    for (std::size_t i = file.tets.tets.size(); i < parts.size(); ++i) {
+        const Vec3I& t = file.stack.triangles()[parts[i].prism];
+        for (const int corner : {0, 2, 1})
+            geometry.vertex_point.push_back(points.id[parts[i].surface][t[corner]]);
+        geometry.primitives.push_back({PrimitiveType::polygon, 3});
+    }
 }
 
 /// Each tet's mean ratio, and for triangles the worst of their prism's tets; 0 where it has none.
-std::vector<float> qualities(const TetMesh& tets, std::size_t prisms)
+std::vector<float> qualities(const ShellFile& file, const std::vector<Part>& parts)
 {
+    const TetMesh& tets = file.tets;
+    const std::size_t prisms = file.stack.triangles().size();
+    const auto prism_of = [&](std::size_t i) { return parts[i].layer * prisms + parts[i].prism; };
     std::vector<float> quality;
-    std::vector<float> worst(prisms, 0.0f);
-    std::vector<bool> seen(prisms, false);
+    std::vector<float> worst(file.stack.layers.size() * prisms, 0.0f);
+    std::vector<bool> seen(worst.size(), false);
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         const auto corner = [&](int k) { return Vec3d(tets.points[tets.tets[t][k]]); };
         quality.push_back(
             static_cast<float>(mean_ratio(corner(0), corner(1), corner(2), corner(3))));
-        const std::uint32_t prism = tets.prism[t];
+        const std::size_t prism = prism_of(t);
         worst[prism] = seen[prism] ? std::min(worst[prism], quality.back()) : quality.back();
         seen[prism] = true;
     }
-    for (int side = 0; side < 2; ++side)
-        quality.insert(quality.end(), worst.begin(), worst.end());
+    for (std::size_t i = tets.tets.size(); i < parts.size(); ++i)
+        quality.push_back(worst[prism_of(i)]);
     return quality;
 }
 
-void add_primitive_attributes(const ShellFile& file, HoudiniGeometry& geometry)
+void add_primitive_attributes(const ShellFile& file, const std::vector<Part>& parts,
+                              HoudiniGeometry& geometry)
 {
-    const std::size_t tets = file.tets.tets.size(),
-                      prisms = file.stack.layers.front().triangles.size();
-    const std::size_t count = tets + 2 * prisms;
-    const auto prism = [&](std::size_t i) {
-        return i < tets ? file.tets.prism[i] : (i - tets) % prisms;
-    };
+    const std::size_t count = parts.size();
     geometry.primitive_attributes = {
-        integers(kPrism, count, 1, [&](std::size_t i, int) { return prism(i); }),
-        integers(kLayer, count, 1, [](std::size_t, int) { return 0; }),
-        {"quality", 1, "", qualities(file.tets, prisms)},
+        integers(kPrism, count, 1, [&](std::size_t i, int) { return parts[i].prism; }),
+        integers(kLayer, count, 1, [&](std::size_t i, int) { return parts[i].layer; }),
+        {"quality", 1, "", qualities(file, parts)},
         integers(kSplitOrder, count, 3, [&](std::size_t i, int k) {
-            return file.stack.splits.front().order[prism(i)][static_cast<std::size_t>(k)];
+            const PrismSplit& split = file.stack.splits[parts[i].layer];
+            return split.order[parts[i].prism][static_cast<std::size_t>(k)];
         })};
-    const auto group = [&](const char* name, const auto& belongs) {
-        Group made{name, std::vector<bool>(count)};
-        for (std::size_t i = 0; i < count; ++i)
-            made.members[i] = belongs(i);
-        geometry.primitive_groups.push_back(std::move(made));
+}
+
+void add_primitive_groups(const ShellFile& file, const std::vector<Part>& parts,
+                          HoudiniGeometry& geometry)
+{
+    const ShellStack& stack = file.stack;
+    const std::size_t tets = file.tets.tets.size(), prisms = stack.triangles().size();
+    const auto surfaces = shown_surfaces(stack.layers.size(), stack.skin);
+    const std::size_t collapsed = tets + surfaces.size() * prisms;
+    const auto add = [&](const char* name, const auto& belongs) {
+        geometry.primitive_groups.push_back(group(name, parts.size(), belongs));
     };
-    const auto is_pinned = [&](std::size_t i) {
-        const Vec3I& t = file.stack.layers.front().triangles[prism(i)];
-        return file.stack.layers.front().pinned(t[0]) && file.stack.layers.front().pinned(t[1]) &&
-               file.stack.layers.front().pinned(t[2]);
+    const auto on_surface = [&](std::size_t surface) {
+        return [&, surface](std::size_t i) {
+            return i >= tets && i < collapsed && parts[i].surface == surface;
+        };
     };
-    group("shell", [&](std::size_t i) { return i < tets; });
-    group("outer", [&](std::size_t i) { return i >= tets && i < tets + prisms; });
-    group("inner", [&](std::size_t i) { return i >= tets + prisms; });
-    group("pinned", is_pinned);
+    add("shell", [&](std::size_t i) { return i < tets; });
+    add("outer", on_surface(0));
+    add("inner", on_surface(stack.layers.size()));
+    add("pinned", [&](std::size_t i) {
+        const Vec3I& t = stack.triangles()[parts[i].prism];
+        return pinned_throughout(stack, t[0]) && pinned_throughout(stack, t[1]) &&
+               pinned_throughout(stack, t[2]);
+    });
+    if (!has_layers(stack))
+        return;
+    add("skin", on_surface(stack.skin));
+    add(kCollapsed, [&](std::size_t i) { return i >= collapsed; });
 }
 
 void add_text(HoudiniGeometry& geometry, const char* name, const std::string& text)
@@ -231,11 +299,19 @@ void add_figures(HoudiniGeometry& geometry, const std::string& report_json)
 
 void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 {
-    add_count(geometry, kSchema, 1);
-    add_count(geometry, kVertices, file.stack.layers.front().outer.size());
-    add_count(geometry, kPrisms, file.stack.layers.front().triangles.size());
+    const ShellCounts counts = counts_of(file.stack, file.tets);
+    std::size_t ripples = 0;
+    for (const PrismSplit& split : file.stack.splits)
+        ripples += split.ripples;
+    add_count(geometry, kSchema, has_layers(file.stack) ? kLayeredSchema : 1);
+    add_count(geometry, kVertices, static_cast<std::size_t>(counts.vertices));
+    add_count(geometry, kPrisms, static_cast<std::size_t>(counts.prisms));
     add_count(geometry, kTets, file.tets.tets.size());
-    add_count(geometry, kRipples, file.stack.splits.front().ripples);
+    if (has_layers(file.stack)) {
+        add_count(geometry, kLayers, file.stack.layers.size());
+        add_count(geometry, kSkin, file.stack.skin);
+    }
+    add_count(geometry, kRipples, ripples);
     add_text(geometry, kCreator, "vdb_shell " VDB_SHELL_VERSION);
     add_text(geometry, kOrientation, kOrientationText);
     add_text(geometry, kChecksum, checksum_of(file.stack, file.tets));
@@ -244,16 +320,31 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
     add_figures(geometry, file.report_json);
 }
 
+/// Each vertex has a point on every surface of the shell that is read back, so their number must
+/// be bounded by what the file holds.
+void require_readable(const ShellStack& stack)
+{
+    const std::size_t vertices = stack.surface(0).size(), triangles = stack.triangles().size();
+    if (has_layers(stack) && vertices > 3 * triangles)
+        throw InvalidOption(
+            "the shell cannot be written as Houdini geometry: " + std::to_string(vertices) +
+            " vertices cannot all be corners of " + std::to_string(triangles) + " triangles");
+}
+
 } // namespace
 
 HoudiniGeometry shell_geometry(const ShellFile& file)
 {
     vdb_shell::require_consistent(file.stack, file.tets);
+    require_readable(file.stack);
     const ShellPoints points = number_points(file.stack, file.tets);
+    const std::vector<Part> parts = parts_of(file);
     HoudiniGeometry geometry;
-    add_points(file.stack.layers.front(), points, geometry);
-    add_primitives(file, points, geometry);
-    add_primitive_attributes(file, geometry);
+    add_point_attributes(file.stack, points, geometry);
+    add_point_groups(file.stack, points, geometry);
+    add_primitives(file, points, parts, geometry);
+    add_primitive_attributes(file, parts, geometry);
+    add_primitive_groups(file, parts, geometry);
     add_detail(file, geometry);
     return geometry;
 }

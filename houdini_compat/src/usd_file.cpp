@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "usd_text.h"
+#include "write/point_grids.h"
 #include "write/text_out.h"
 #include "write/vdb_metadata.h"
 
@@ -141,78 +142,108 @@ void write_header(Stage& stage, const Samples& samples, const UsdOptions& option
     stage.line("");
 }
 
-void write_surface(Stage& stage)
+const std::vector<Vec3s>& skin_of(const UsdSample& sample)
+{
+    return sample.shell->stack.surface(sample.shell->stack.skin);
+}
+
+/// More than one layer below the surface; all samples have the same.
+bool has_layers(const Samples& samples)
+{
+    const ShellStack& stack = samples.front().shell->stack;
+    return stack.layers.size() > 1 || stack.skin > 0;
+}
+
+void write_stops(Stage& stage, const Samples& samples)
+{
+    const auto reasons_of = [](const PrismShell& layer) {
+        std::vector<std::int32_t> reasons;
+        for (const StopReason reason : layer.stop)
+            reasons.push_back(std::int32_t(reason));
+        return usd_array(reasons);
+    };
+    stage.primvar("int[] primvars:stopReason",
+                  [&](const UsdSample& s) { return reasons_of(s.shell->stack.layers.back()); });
+    if (on_both_sides(samples.front().shell->stack))
+        stage.primvar("int[] primvars:stopReasonOuter", [&](const UsdSample& s) {
+            return reasons_of(s.shell->stack.layers.front());
+        });
+}
+
+void write_surface(Stage& stage, const Samples& samples)
 {
     stage.open("def Mesh \"surface\"");
-    stage.attribute("float3[] extent", [](const UsdSample& s) {
-        return extent_of(s.shell->stack.layers.front().outer);
-    });
+    stage.attribute("float3[] extent", [](const UsdSample& s) { return extent_of(skin_of(s)); });
     stage.attribute("int[] faceVertexCounts", [](const UsdSample& s) {
-        return usd_array(
-            std::vector<std::int32_t>(s.shell->stack.layers.front().triangles.size(), 3));
+        return usd_array(std::vector<std::int32_t>(s.shell->stack.triangles().size(), 3));
     });
     stage.attribute("int[] faceVertexIndices", [](const UsdSample& s) {
         std::vector<std::uint32_t> corners;
-        for (const Vec3I& triangle : s.shell->stack.layers.front().triangles)
+        for (const Vec3I& triangle : s.shell->stack.triangles())
             corners.insert(corners.end(), {triangle[0], triangle[1], triangle[2]});
         return usd_array(corners);
     });
     stage.line("uniform token orientation = \"rightHanded\"");
-    stage.attribute("point3f[] points", [](const UsdSample& s) {
-        return usd_array(s.shell->stack.layers.front().outer);
-    });
-    stage.primvar("int[] primvars:stopReason", [](const UsdSample& s) {
-        std::vector<std::int32_t> reasons;
-        for (const StopReason reason : s.shell->stack.layers.front().stop)
-            reasons.push_back(std::int32_t(reason));
-        return usd_array(reasons);
-    });
+    stage.attribute("point3f[] points", [](const UsdSample& s) { return usd_array(skin_of(s)); });
+    write_stops(stage, samples);
     stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
         std::vector<float> lengths;
-        for (std::size_t v = 0; v < s.shell->stack.layers.front().outer.size(); ++v)
-            lengths.push_back(float(s.shell->stack.layers.front().length(v)));
+        for (std::size_t v = 0; v < skin_of(s).size(); ++v)
+            lengths.push_back(thickness_of(s.shell->stack, v));
         return usd_array(lengths);
     });
     stage.line("uniform token subdivisionScheme = \"none\"");
     stage.close();
 }
 
-/// A value for each point of the tets, from its pillar and its distance below the surface.
+/// A value for each point of the tets.
 template <typename Value> std::string per_point(const UsdSample& sample, const Value& value)
 {
-    const TetMesh& tets = sample.shell->tets;
-    using Result = decltype(value(std::size_t(), 0.0));
+    using Result = decltype(value(std::size_t()));
     std::vector<Result> values;
-    for (std::size_t i = 0; i < tets.points.size(); ++i) {
-        const Vec3d top(sample.shell->stack.layers.front().outer[tets.source_vertex[i]]);
-        values.push_back(value(i, (Vec3d(tets.points[i]) - top).length()));
-    }
+    for (std::size_t i = 0; i < sample.shell->tets.points.size(); ++i)
+        values.push_back(value(i));
     return usd_array(values);
 }
 
 void write_tet_primvars(Stage& stage)
 {
     stage.primvar("float[] primvars:depth", [](const UsdSample& s) {
-        return per_point(s, [&](std::size_t i, double below) {
-            const double length =
-                s.shell->stack.layers.front().length(s.shell->tets.source_vertex[i]);
-            return length > 0.0 ? float(below / length) : 0.0f;
-        });
+        const double layers = double(s.shell->stack.layers.size());
+        return per_point(s, [&](std::size_t i) { return float(s.shell->tets.layer[i] / layers); });
     });
     stage.primvar("int[] primvars:layer", [](const UsdSample& s) {
-        return per_point(
-            s, [&](std::size_t i, double) { return std::int32_t(s.shell->tets.layer[i]); });
+        return per_point(s, [&](std::size_t i) { return std::int32_t(s.shell->tets.layer[i]); });
     });
     stage.primvar("int[] primvars:sourceVertex",
                   [](const UsdSample& s) { return usd_array(s.shell->tets.source_vertex); });
     stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
-        return per_point(s, [&](std::size_t i, double) {
-            return float(s.shell->stack.layers.front().length(s.shell->tets.source_vertex[i]));
+        return per_point(s, [&](std::size_t i) {
+            return thickness_of(s.shell->stack, s.shell->tets.source_vertex[i]);
         });
     });
 }
 
-void write_tets(Stage& stage)
+/// Not primvars: those that are uniform count the faces that are drawn, not the tets.
+void write_tet_properties(Stage& stage, const Samples& samples)
+{
+    if (has_layers(samples)) {
+        stage.attribute("custom int[] userProperties:layer", [](const UsdSample& s) {
+            const std::vector<std::uint8_t>& layers = s.shell->tets.prism_layer;
+            return usd_array(std::vector<std::int32_t>(layers.begin(), layers.end()));
+        });
+        stage.attribute("custom int userProperties:layers", [](const UsdSample& s) {
+            return std::to_string(s.shell->stack.layers.size());
+        });
+    }
+    stage.attribute("custom int[] userProperties:prism",
+                    [](const UsdSample& s) { return usd_array(s.shell->tets.prism); });
+    if (has_layers(samples))
+        stage.attribute("custom int userProperties:skin",
+                        [](const UsdSample& s) { return std::to_string(s.shell->stack.skin); });
+}
+
+void write_tets(Stage& stage, const Samples& samples)
 {
     stage.open("def TetMesh \"tets\"");
     stage.attribute("float3[] extent",
@@ -226,9 +257,7 @@ void write_tets(Stage& stage)
     });
     stage.attribute("int4[] tetVertexIndices",
                     [](const UsdSample& s) { return usd_array(s.shell->tets.tets); });
-    // Not a primvar: those that are uniform count the faces that are drawn, not the tets.
-    stage.attribute("custom int[] userProperties:prism",
-                    [](const UsdSample& s) { return usd_array(s.shell->tets.prism); });
+    write_tet_properties(stage, samples);
     stage.close();
 }
 
@@ -279,22 +308,34 @@ void require_positive(const fs::path& path, const char* what, double value)
                          ", expected a positive finite number");
 }
 
+/// Prims and attributes are the same at all times.
+void require_alike(const fs::path& path, const std::string& name, const UsdSample& sample,
+                   const UsdSample& first)
+{
+    const ShellStack &stack = sample.shell->stack, &other = first.shell->stack;
+    if (stack.layers.size() != other.layers.size() || stack.skin != other.skin)
+        refuse(path, name + ": it has " + std::to_string(stack.layers.size()) +
+                         " layers, the surface is number " + std::to_string(stack.skin) +
+                         "; sample 0 has " + std::to_string(other.layers.size()) + " and " +
+                         std::to_string(other.skin));
+    if (stack.triangles() != other.triangles())
+        refuse(path, name + ": its surface has other triangles than that of sample 0");
+    if (sample.volume.empty() != first.volume.empty())
+        refuse(path, name + ": all samples have a volume or none has");
+}
+
 void require_fitting(const fs::path& path, const Samples& samples)
 {
     if (samples.empty())
         refuse(path, "a stage needs at least one sample");
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        const UsdSample &sample = samples[i], &first = samples.front();
+        const UsdSample& sample = samples[i];
         const std::string name = "sample " + std::to_string(i) + " at " + usd_value(sample.time);
         if (!std::isfinite(sample.time) || (i > 0 && !(sample.time > samples[i - 1].time)))
             refuse(path, name + ": times must be finite and increase");
-        if (!sample.shell)
+        if (!sample.shell || sample.shell->stack.layers.empty())
             refuse(path, name + ": it has no shell");
-        if (sample.shell->stack.layers.front().triangles !=
-            first.shell->stack.layers.front().triangles)
-            refuse(path, name + ": its surface has other triangles than that of sample 0");
-        if (sample.volume.empty() != first.volume.empty())
-            refuse(path, name + ": all samples have a volume or none has");
+        require_alike(path, name, sample, samples.front());
         if (!sample.volume.empty() && !(sample.shell->surface && sample.shell->depth))
             refuse(path, name + ": it has a volume but no grids");
     }
@@ -343,9 +384,9 @@ void write_usd(const fs::path& path, const Samples& samples, const UsdOptions& o
         Stage stage(out, samples);
         write_header(stage, samples, options);
         stage.open("def Xform \"shell\" (\n    kind = \"component\"\n)");
-        write_surface(stage);
+        write_surface(stage, samples);
         stage.line("");
-        write_tets(stage);
+        write_tets(stage, samples);
         if (!samples.front().volume.empty()) {
             stage.line("");
             write_grids(stage, path);

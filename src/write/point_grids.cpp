@@ -129,27 +129,6 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
     return Vec3s(sum / double(count));
 }
 
-/// The next point of the pillar: below, or above where there is nothing below.
-const Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex)
-{
-    const bool last = surface == stack.layers.size();
-    return stack.surface(last ? surface - 1 : surface + 1)[vertex];
-}
-
-float thickness_of(const ShellStack& stack, std::size_t vertex)
-{
-    double sum = 0.0;
-    for (const PrismShell& layer : stack.layers)
-        sum += layer.length(vertex);
-    return float(sum);
-}
-
-bool pinned_throughout(const ShellStack& stack, std::size_t vertex)
-{
-    return std::all_of(stack.layers.begin(), stack.layers.end(),
-                       [&](const PrismShell& layer) { return layer.pinned(vertex); });
-}
-
 void add_stop_reasons(Builder& builder, const ShellStack& stack, const ShellPoints& points)
 {
     const auto add = [&](const char* name, const PrismShell& layer) {
@@ -240,6 +219,26 @@ PointDataGrid::Ptr make_tet_points(const ShellStack& stack, const TetMesh& tets,
 }
 
 } // namespace
+
+const Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex)
+{
+    const bool last = surface == stack.layers.size();
+    return stack.surface(last ? surface - 1 : surface + 1)[vertex];
+}
+
+float thickness_of(const ShellStack& stack, std::size_t vertex)
+{
+    double sum = 0.0;
+    for (const PrismShell& layer : stack.layers)
+        sum += layer.length(vertex);
+    return float(sum);
+}
+
+bool pinned_throughout(const ShellStack& stack, std::size_t vertex)
+{
+    return std::all_of(stack.layers.begin(), stack.layers.end(),
+                       [&](const PrismShell& layer) { return layer.pinned(vertex); });
+}
 
 std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
                                  const std::vector<Vec3I>& triangles)

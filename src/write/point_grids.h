@@ -46,6 +46,12 @@ struct ShellPoints {
 /// Precondition: require_consistent.
 ShellPoints number_points(const ShellStack& stack, const TetMesh& tets);
 
+/// The next point of the pillar: below, or above where there is nothing below.
+const openvdb::Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex);
+/// Of the whole pillar, from the outermost surface to the innermost.
+float thickness_of(const ShellStack& stack, std::size_t vertex);
+bool pinned_throughout(const ShellStack& stack, std::size_t vertex);
+
 /// Unit normals of a layer, each the sum of its triangles' area vectors; zero where they cancel.
 std::vector<openvdb::Vec3s> layer_normals(const std::vector<openvdb::Vec3s>& points,
                                           const std::vector<openvdb::Vec3I>& triangles);

@@ -186,6 +186,13 @@ void line_figures(std::ostringstream& out, const LineReport& lines)
     line(out, "  in voxels", spread(lines.length_voxels));
 }
 
+void growth_line(std::ostringstream& out, const GrowReport& grow)
+{
+    line(out, "growth",
+         number(grow.rounds, 12) + " rounds, " + number(grow.flips, 12) + " diagonals turned, " +
+             number(grow.released, 12) + " pins released");
+}
+
 /// What the stages after growth had to give up.
 void concession_lines(std::ostringstream& out, const ShellReport& report)
 {
@@ -283,6 +290,8 @@ std::string report_text(const ShellReport& report)
         line(out, "outward", "");
         line_figures(out, report.outside->lines);
     }
+    if (report.grow)
+        growth_line(out, *report.grow);
     concession_lines(out, report);
     layer_lines(out, report);
     line(out, "prisms",

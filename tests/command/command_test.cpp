@@ -112,6 +112,27 @@ TEST_F(Command, WritesAndReadsHoudiniGeometry)
     expect_refusal("check " + file("half.bgeo"), ExitCode::read_error, {"half.bgeo", "byte"});
 }
 
+TEST_F(Command, LayersOnBothSidesInHoudiniGeometryAndUsd)
+{
+    const std::string ring = mesh_file("torus.obj", torus(1.0, 0.3, 24, 12));
+    const std::vector<std::string> names{"t.bgeo.sc", "t.bgeo", "t.geo"};
+    std::string outputs = " -o " + file("t.vdb") + " -o " + file("t.usda");
+    for (const std::string& name : names)
+        outputs += " -o " + file(name);
+    const Outcome built = run("build " + ring + kCoarse + "--layers 3 --side both" + outputs);
+    ASSERT_EQ(built.status, ExitCode::success) << built.err;
+    for (const std::string& name : names) {
+        const Outcome check = run("check " + file(name));
+        EXPECT_EQ(check.status, ExitCode::success) << check.out << check.err;
+        EXPECT_EQ(check.out.find("FAILED"), std::string::npos) << check.out;
+        ASSERT_EQ(run("convert " + file("t.vdb") + " -o " + file("again." + name)).status,
+                  ExitCode::success);
+        EXPECT_EQ(read_bytes(folder / ("again." + name)), read_bytes(folder / name)) << name;
+    }
+    EXPECT_NE(read_bytes(folder / "t.usda").find("int userProperties:skin = 3"), std::string::npos);
+    expect_refusal("check " + file("t.usda"), ExitCode::read_error, {"t.usda"});
+}
+
 TEST_F(Command, BuildsFromHoudiniPolygons)
 {
     // A box of quads, clockwise seen from outside.

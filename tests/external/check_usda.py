@@ -40,6 +40,11 @@ SCHEMA = {
                      "filePath": "asset"},
 }
 
+# All of these or none, where there is more than one layer below the surface.
+LAYERED = {"userProperties:layer": "custom int[]", "userProperties:layers": "custom int",
+           "userProperties:skin": "custom int"}
+BOTH_SIDED = {"primvars:stopReasonOuter": "int[]"}
+
 
 class Prim:
     def __init__(self, kind, name):
@@ -191,9 +196,13 @@ class Check:
             self.failures.append(what)
 
     def schema(self, prim):
-        known = SCHEMA.get(prim.kind)
-        self.that(known is not None, f"{prim.name}: no schema {prim.kind}")
-        self.that(prim.types == (known or {}), f"{prim.name}: attributes {prim.types}, expected {known}")
+        known = dict(SCHEMA.get(prim.kind, {}))
+        self.that(prim.kind in SCHEMA, f"{prim.name}: no schema {prim.kind}")
+        if prim.kind == "TetMesh" and set(LAYERED) & set(prim.types):
+            known.update(LAYERED)
+        if prim.kind == "Mesh" and set(BOTH_SIDED) & set(prim.types):
+            known.update(BOTH_SIDED)
+        self.that(prim.types == known, f"{prim.name}: attributes {prim.types}, expected {known}")
         for name, declared in prim.types.items():
             values = prim.samples.get(name, {}).values() or [prim.values.get(name)]
             size = re.search(r"(?:int|float|point)(\d)f?\[\]$", declared)
@@ -202,7 +211,9 @@ class Check:
                 if size and value is not None:
                     self.that(all(isinstance(v, tuple) and len(v) == int(size[1]) for v in value),
                               f"{prim.name}.{name}: not all are {declared}")
-                if declared.split()[-1].startswith("int") and value is not None:
+                if declared.split()[-1] == "int":
+                    self.that(isinstance(value, int), f"{prim.name}.{name}: {value} is no int")
+                elif declared.split()[-1].startswith("int") and value is not None:
                     flat = [x for v in value for x in (v if isinstance(v, tuple) else (v,))]
                     self.that(all(isinstance(x, int) and -2**31 <= x < 2**31 for x in flat),
                               f"{prim.name}.{name}: not all are int32")
@@ -266,18 +277,50 @@ class Check:
         self.facts.append(f"{len(tets)} tets of volume {total:.6g} in {len(surface)} faces")
 
     def link(self, surface, tets, time):
-        outer, points = surface.at("points", time), tets.at("points", time)
-        source, depth = tets.at("primvars:sourceVertex", time), tets.at("primvars:depth", time)
-        thickness = surface.at("primvars:thickness", time)
-        self.that(all(0 <= v < len(outer) for v in source), "tets: a source vertex is out of range")
-        self.that(all(points[i] == outer[v] for i, v in enumerate(source) if depth[i] == 0),
-                  "tets: an outer point is not its surface vertex")
-        self.that(all(0 <= d <= 1 for d in depth), "tets: a depth outside 0 to 1")
+        """What the tets say of the surface, which is surface `skin` of layers + 1."""
+        skin_points, points = surface.at("points", time), tets.at("points", time)
+        source, layer = tets.at("primvars:sourceVertex", time), tets.at("primvars:layer", time)
+        depth, thickness = tets.at("primvars:depth", time), surface.at("primvars:thickness", time)
+        layers = tets.at("userProperties:layers", time) or 1
+        skin = tets.at("userProperties:skin", time) or 0
+        self.that(layers >= 1 and 0 <= skin <= layers, f"tets: surface {skin} of {layers} layers")
+        self.that(("primvars:stopReasonOuter" in surface.types) == (0 < skin < layers),
+                  f"surface: reasons of {layers} layers, the surface is number {skin}")
+        self.that(all(0 <= v < len(skin_points) for v in source), "tets: a source vertex is out of range")
+        self.that(all(0 <= k <= layers and single(k / layers) == single(d) for k, d in zip(layer, depth)),
+                  "tets: a depth is not that of its layer")
+        if self.failures:
+            return
+        pillars = collections.defaultdict(list)
         for i, v in enumerate(source):
-            below = sum(x * x for x in sub(points[i], outer[v])) ** 0.5
-            self.that(abs(below - depth[i] * thickness[v]) <= 1e-5 * (thickness[v] + 1e-30),
-                      f"tets: point {i} lies {below} deep, stated {depth[i]} of {thickness[v]}")
+            pillars[v].append(i)
             self.that(thickness[v] == tets.at("primvars:thickness", time)[i], f"tets: thickness {i}")
+        for v, pillar in pillars.items():
+            self.pillar(v, [layer[i] for i in pillar], [points[i] for i in pillar], thickness[v],
+                        skin, skin_points[v])
+        self.prisms(surface, tets, time, layers)
+        self.facts.append(f"{layers} layers, the surface is number {skin}")
+
+    def pillar(self, v, layers, points, thickness, skin, skin_point):
+        """Its points from the outermost on; pinned layers have none of their own."""
+        self.that(all(a < b for a, b in zip(layers, layers[1:])), f"tets: vertex {v} in layers {layers}")
+        length = sum(sum(x * x for x in sub(a, b)) ** 0.5 for a, b in zip(points, points[1:]))
+        self.that(abs(length - thickness) <= 1e-5 * (thickness + 1e-30),
+                  f"tets: vertex {v} has {length} of pillars, stated {thickness}")
+        at_skin = [p for k, p in zip(layers, points) if k <= skin][-1:]
+        self.that(at_skin == [skin_point], f"tets: vertex {v} of the surface is not at {at_skin}")
+
+    def prisms(self, surface, tets, time, layers):
+        corners = surface.at("faceVertexIndices", time)
+        source, layer = tets.at("primvars:sourceVertex", time), tets.at("primvars:layer", time)
+        prism = tets.at("userProperties:prism", time)
+        tet_layer = tets.at("userProperties:layer", time) or [0] * len(prism)
+        self.that(len(tet_layer) == len(prism), f"tets: {len(tet_layer)} layers")
+        for t, (tet, p, k) in enumerate(zip(tets.at("tetVertexIndices", time), prism, tet_layer)):
+            self.that(0 <= k < layers and max(layer[c] for c in tet) == k + 1,
+                      f"tets: tet {t} is in layer {k}")
+            self.that({source[c] for c in tet} <= set(corners[3 * p:3 * p + 3]),
+                      f"tets: tet {t} is not in prism {p}")
 
     def volume(self, volume, time):
         for name, kind in (("surface", "levelSet"), ("depth", "fogVolume")):
@@ -372,6 +415,12 @@ def spoil(text):
     yield "a wrong extent", change(r"(extent = \[\()[^,]*", r"\g<1>-77")
     yield "a thickness less", change(r"(primvars:thickness = \[)[^,]*, ", r"\1")
     yield "a wrong depth", change(r"(primvars:depth = \[)0", r"\g<1>0.5")
+    yield "a tet of another prism", change(r"(userProperties:prism = \[)0", r"\g<1>7")
+    if "userProperties:skin" in text:
+        yield "another surface", change(r"(userProperties:skin = )\d+", r"\g<1>0")
+        yield "a layer less", change(r"(userProperties:layers = )\d+", r"\g<1>1")
+        yield "a tet of another layer", change(r"(userProperties:layer = \[)0", r"\g<1>1")
+        yield "a point of another layer", change(r"(primvars:layer = \[)0", r"\g<1>1")
     yield "a wrong type", change(r"TetMesh", "TetMesch")
     yield "a wrong attribute", change(r"int4\[\] tet", "int3[] tet")
     yield "no end", text[:text.rindex("}")]

@@ -1,13 +1,17 @@
 # Builds shells of the sample meshes and has decode_bgeo.py compare their three Houdini forms.
 file(MAKE_DIRECTORY ${WORK})
-foreach(mesh box sphere torus)
+foreach(mesh box sphere torus layers)
   set(outputs)
   set(files)
   foreach(extension geo bgeo bgeo.sc)
     list(APPEND files ${WORK}/${mesh}.${extension})
     list(APPEND outputs -o ${WORK}/${mesh}.${extension})
   endforeach()
-  execute_process(COMMAND ${COMMAND} build -q ${MESHES}/${mesh}.obj --resolution 32 --samples 1000 ${outputs}
+  set(source ${mesh}.obj)
+  if(mesh STREQUAL layers)
+    set(source torus.obj --layers 2 --side both)
+  endif()
+  execute_process(COMMAND ${COMMAND} build -q ${MESHES}/${source} --resolution 32 --samples 1000 ${outputs}
                   COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${PYTHON} ${DECODER} --same ${files} RESULT_VARIABLE status)
   if(status EQUAL 77)

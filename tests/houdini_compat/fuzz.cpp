@@ -107,6 +107,8 @@ const char* const kOthersText =
 std::vector<std::string> seeds(Format format)
 {
     const auto shell = houdini::shell_geometry(scaled_shell_file(unit_tetrahedron(), 0.5f, {2}));
+    const auto layers = houdini::shell_geometry(
+        layered_shell_file(unit_tetrahedron(), {2.0f, 1.5f, 1.0f, 0.5f}, 1, {1, 2, 3}, 1));
     HoudiniGeometry surface;
     const TriangleMesh cube = box({0, 0, 0}, {1, 1, 1});
     surface.points = cube.points.size();
@@ -121,7 +123,7 @@ std::vector<std::string> seeds(Format format)
     const HoudiniGeometry others = houdini::parse_geometry(kOthersText, "others").geometry;
     const Format inside = format == Format::compressed ? Format::binary : format;
     std::vector<std::string> made{written(shell, inside), written(surface, inside),
-                                  written(rich_geometry(), inside)};
+                                  written(rich_geometry(), inside), written(layers, inside)};
     if (format == Format::text)
         made.emplace_back(kOthersText);
     else

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace vdb_shell::test
 {
@@ -124,6 +125,38 @@ inline ShellFile scaled_shell_file(const TriangleMesh& surface, float scale,
     file.parameters_json = "{\"a\": 1}";
     file.report_json = "{\"volume\": {\"fill\": 0.25}, \"certificate\": {\"certified\": true}, "
                        "\"prisms\": {\"pinned_vertices\": 3}}";
+    return file;
+}
+
+/// Surfaces that are `surface` scaled about the origin by each of `scales`, from the outermost on;
+/// vertices of `pinned` stay in the innermost layers, from `pinned_from` on. Each layer is split in
+/// a way of its own.
+inline ShellFile layered_shell_file(const TriangleMesh& surface, const std::vector<float>& scales,
+                                    std::size_t skin, const std::set<std::uint32_t>& pinned = {},
+                                    std::size_t pinned_from = 0)
+{
+    ShellFile file;
+    file.stack.skin = skin;
+    std::vector<openvdb::Vec3s> above = surface.points;
+    for (openvdb::Vec3s& p : above)
+        p *= scales[0];
+    for (std::size_t k = 0; k + 1 < scales.size(); ++k) {
+        PrismShell layer{above, above, surface.triangles, {}};
+        for (std::uint32_t v = 0; v < surface.points.size(); ++v) {
+            if (k < pinned_from || pinned.count(v) == 0)
+                layer.inner[v] = surface.points[v] * scales[k + 1];
+            layer.stop.push_back(StopReason((v + (k < skin ? 1 : 0)) % kStopReasonCount));
+        }
+        above = layer.inner;
+        const bool even = k % 2 == 0;
+        file.stack.splits.push_back(split_prisms(
+            layer, {even ? SplitRule::vertex_index : SplitRule::length_descending, 1}));
+        file.stack.layers.push_back(std::move(layer));
+    }
+    file.stack.splits.front().ripples = 3;
+    file.tets = make_tets(file.stack);
+    file.parameters_json = "{\"a\": 1}";
+    file.report_json = "{\"volume\": {\"fill\": 0.25}}";
     return file;
 }
 

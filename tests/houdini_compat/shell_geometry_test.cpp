@@ -8,6 +8,7 @@
 #include "vdb_shell/write/verify_file.h"
 
 #include "houdini_compat/geometries.h"
+#include "houdini_compat/round_trip.h"
 #include "support/files.h"
 #include "support/shapes.h"
 
@@ -22,10 +23,9 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3s;
-using test::kFormats;
-using test::same_values;
+using test::expect_round_trips;
+using test::expect_same_shell;
 using test::scaled_shell_file;
-using test::written;
 
 /// With pinned corners, of which triangle 0 has all, and zeros of both signs.
 ShellFile pinned_shell()
@@ -39,37 +39,6 @@ ShellFile pinned_shell()
     file.stack.layers.front().inner[first[0]][2] = 0.0f;
     file.tets = make_tets(file.stack);
     return file;
-}
-
-void expect_same_shell(const ShellFile& found, const ShellFile& file)
-{
-    EXPECT_TRUE(same_values(found.stack.layers.front().outer, file.stack.layers.front().outer));
-    EXPECT_TRUE(same_values(found.stack.layers.front().inner, file.stack.layers.front().inner));
-    EXPECT_EQ(found.stack.layers.front().triangles, file.stack.layers.front().triangles);
-    EXPECT_EQ(found.stack.layers.front().stop, file.stack.layers.front().stop);
-    EXPECT_EQ(found.stack.splits.front().order, file.stack.splits.front().order);
-    EXPECT_EQ(found.stack.splits.front().ripples, file.stack.splits.front().ripples);
-    EXPECT_TRUE(same_values(found.tets.points, file.tets.points));
-    EXPECT_EQ(found.tets.tets, file.tets.tets);
-    EXPECT_EQ(found.tets.prism, file.tets.prism);
-    EXPECT_EQ(found.tets.source_vertex, file.tets.source_vertex);
-    EXPECT_EQ(found.tets.layer, file.tets.layer);
-    EXPECT_EQ(found.parameters_json, file.parameters_json);
-    EXPECT_EQ(found.report_json, file.report_json);
-}
-
-void expect_round_trips(const ShellFile& file)
-{
-    const HoudiniGeometry geometry = shell_geometry(file);
-    EXPECT_NO_THROW(require_consistent(geometry));
-    for (const Format format : kFormats) {
-        const std::string bytes = written(geometry, format);
-        const HoudiniGeometry read = parse_geometry(bytes, "x").geometry;
-        EXPECT_TRUE(test::same_geometry(read, geometry)) << name_of(format);
-        const ShellFile back = shell_of_geometry(read, "x");
-        expect_same_shell(back, file);
-        EXPECT_EQ(written(shell_geometry(back), format), bytes) << name_of(format);
-    }
 }
 
 TEST(ShellGeometry, EveryFormGivesTheSameShellBackBitForBit)

@@ -2,6 +2,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/usd_file.h"
 
+#include "houdini_compat/geometries.h"
 #include "support/files.h"
 #include "support/shapes.h"
 #include "usd_text.h"
@@ -162,6 +163,35 @@ TEST_F(Usd, AShellWithoutAnyTetIsAStageToo)
     expect_good(folder / "s.usda");
 }
 
+TEST_F(Usd, LayersShareOneSurface)
+{
+    const TriangleMesh sphere = icosphere(1.0, 1);
+    const openvdb::Vec3I t = sphere.triangles[0];
+    struct Kind {
+        std::vector<float> scales;
+        std::size_t skin;
+    };
+    for (const Kind& kind : {Kind{{1.0f, 0.75f, 0.5f, 0.25f}, 0}, Kind{{1.5f, 1.0f}, 1},
+                             Kind{{2.0f, 1.5f, 1.0f, 0.5f}, 2}}) {
+        const ShellFile free = layered_shell_file(sphere, kind.scales, kind.skin);
+        // Everywhere else the surface has a point of its own.
+        const ShellFile pinned =
+            layered_shell_file(sphere, kind.scales, kind.skin, {t[0], t[1], t[2]}, kind.skin);
+        for (const ShellFile* file : {&free, &pinned}) {
+            write_usd(folder / "s.usda", {{0.0, file, {}}});
+            expect_good(folder / "s.usda");
+            EXPECT_NEAR(enclosed(file->tets, boundary_triangles(file->tets)), volume_of(file->tets),
+                        1e-6);
+        }
+        const std::string text = read_bytes(folder / "s.usda");
+        EXPECT_NE(text.find("int userProperties:skin = " + std::to_string(kind.skin)),
+                  std::string::npos);
+    }
+    const ShellFile one = scaled_shell_file(sphere, 0.5f);
+    write_usd(folder / "s.usda", {{0.0, &one, {}}});
+    EXPECT_EQ(read_bytes(folder / "s.usda").find("userProperties:layer"), std::string::npos);
+}
+
 TEST_F(Usd, WhatMovesIsTimeSampledAndNothingElse)
 {
     const TriangleMesh sphere = icosphere(1.0, 1);
@@ -201,6 +231,7 @@ TEST_F(Usd, RefusesWhatIsNoStage)
 {
     const ShellFile sphere = hand_made_file(hand_made_shell(icosphere(1.0, 1), 0.7), 0.1);
     const ShellFile other = hand_made_file(hand_made_shell(unit_tetrahedron(), 0.7), 0.1);
+    const ShellFile layers = layered_shell_file(icosphere(1.0, 1), {1.0f, 0.75f, 0.5f}, 0);
     ShellFile without = sphere;
     without.depth = nullptr;
     const UsdSample good{1.0, &sphere, {}};
@@ -209,6 +240,7 @@ TEST_F(Usd, RefusesWhatIsNoStage)
     expect_refusal({{std::nan(""), &sphere, {}}}, {}, {"sample 0", "finite"});
     expect_refusal({{1.0, nullptr, {}}}, {}, {"sample 0", "no shell"});
     expect_refusal({good, {2.0, &other, {}}}, {}, {"sample 1", "other triangles"});
+    expect_refusal({good, {2.0, &layers, {}}}, {}, {"sample 1", "2 layers", "1 and 0"});
     expect_refusal({good, {2.0, &sphere, "a.vdb"}}, {}, {"sample 1", "volume"});
     expect_refusal({{1.0, &without, "a.vdb"}}, {}, {"sample 0", "no grids"});
     expect_refusal({good}, {UpAxis::y, 0.0}, {"metres per unit", "0"});

@@ -9,6 +9,7 @@
 #include "shell/grow/start.h"
 #include "support/files.h"
 #include "support/shapes.h"
+#include "support/stacks.h"
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
@@ -32,6 +33,7 @@ namespace
 using namespace vdb_shell;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
+using test::bumpy_sphere;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -119,18 +121,6 @@ void expect_sound(const GrowResult& result, Method method)
 std::size_t count_of(const PrismShell& shell, StopReason reason)
 {
     return static_cast<std::size_t>(std::count(shell.stop.begin(), shell.stop.end(), reason));
-}
-
-/// A solid without symmetry: bumps of several lengths on a sphere.
-TriangleMesh bumpy_sphere()
-{
-    TriangleMesh mesh = test::icosphere(1.0, 3);
-    for (Vec3s& p : mesh.points) {
-        const Vec3d d(p);
-        p = Vec3s(d * (1 + 0.25 * std::sin(5 * d[0] + 1) * std::sin(4 * d[1]) +
-                       0.1 * std::cos(7 * d[2] + d[0])));
-    }
-    return mesh;
 }
 
 /// A pyramid over a U. No point of the U sees all its sides, so no direction at the apex (the last

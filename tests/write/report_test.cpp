@@ -127,6 +127,41 @@ TEST(Report, SaysWhetherTheShellIsCertified)
               std::string::npos);
 }
 
+TEST(Report, SaysWhatGrowthScalingAndCuttingDid)
+{
+    ShellReport report = good_report();
+    report.grow = GrowReport();
+    EXPECT_NE(report_text(report).find("0 rounds, 0 diagonals turned, 0 pins released"),
+              std::string::npos);
+    EXPECT_EQ(report_text(report).find("min quality"), std::string::npos);
+    report.grow->released = 3;
+    report.grow->quality_rounds = 4;
+    report.grow->tets_below_quality = 51;
+    report.grow->vertices_below_quality = 17;
+    report.scale = ScaleReport{6, 2};
+    report.cut = LayerReport{8, 5};
+    const std::string text = report_text(report);
+    EXPECT_NE(text.find("3 pins released"), std::string::npos) << text;
+    EXPECT_NE(text.find("4 rounds; still below: 51 tets, 17 inner vertices"), std::string::npos);
+    EXPECT_NE(text.find("6 pillars shortened further, 2 of them pinned"), std::string::npos);
+    EXPECT_NE(text.find("8 points between them moved, 5 pillars left whole"), std::string::npos);
+    const json figures = json::parse(report_json(report));
+    EXPECT_EQ(figures.at("/growth/released_pins"_json_pointer), 3);
+    EXPECT_EQ(figures.at("/growth/tets_below_quality"_json_pointer), 51);
+    EXPECT_EQ(figures.at("/scale/shortened_pillars"_json_pointer), 6);
+    EXPECT_EQ(figures.at("/cut/uncut_pillars"_json_pointer), 5);
+}
+
+TEST(Report, NamesTheLayerThatFails)
+{
+    ShellReport report = good_report();
+    report.certificate.emplace().layers.resize(3);
+    EXPECT_NE(report_text(report).find("in all 3 layers"), std::string::npos);
+    report.certificate->layers[1].inner_contacts = {1, {{3, 9}}};
+    EXPECT_NE(report_text(report).find("layer 1: inner_contacts 1 (first 3-9)"), std::string::npos);
+    EXPECT_NE(report_text(report).find("not certified"), std::string::npos);
+}
+
 TEST(Report, VerdictNamesEveryFault)
 {
     const auto verdict = [](const ShellReport& report) {

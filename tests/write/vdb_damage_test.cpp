@@ -151,7 +151,7 @@ TEST_F(VdbDamage, MetadataMissingWrongOrTooNew)
     with("vdb_shell_points_file", openvdb::StringMetadata("../elsewhere.vdb"));
     expect_complaint({"../elsewhere.vdb"});
     with("vdb_shell_schema", openvdb::Int32Metadata(kShellSchema + 1));
-    expect_complaint({"schema is 2"});
+    expect_complaint({"schema is " + std::to_string(kShellSchema + 1)});
     rewrite(
         [](openvdb::GridPtrVec&, openvdb::MetaMap& map) { map.removeMeta("vdb_shell_schema"); });
     expect_complaint({"holds no shell"});

@@ -207,7 +207,7 @@ TEST(VdbFile, TellsItsMetadataWithoutReadingGrids)
     const HandMade made = small_shell();
     write_shell_vdb(folder / "shell.vdb", hand_made_file(made, 0.1));
     const ShellInfo info = read_shell_info(folder / "shell.vdb");
-    EXPECT_EQ(info.schema, kShellSchema);
+    EXPECT_EQ(info.schema, 1);
     EXPECT_EQ(std::size_t(info.vertices), made.shell.outer.size());
     EXPECT_EQ(std::size_t(info.points), made.tets.points.size());
     EXPECT_EQ(std::size_t(info.prisms), made.shell.triangles.size());
@@ -274,8 +274,8 @@ TEST(VdbFile, RefusesWhatCouldNotBeReadBack)
     refused([](ShellFile& f) { f.tets.points[4][0] += 1.0f; });
     refused([](ShellFile& f) { f.tets.tets[2][3] = std::uint32_t(f.tets.points.size()); });
     refused([](ShellFile& f) {
-        PrismShell& shell = f.stack.layers[0];
-        shell.inner[0][2] = f.tets.points[shell.outer.size()][2] = std::nanf("");
+        PrismShell& layer = f.stack.layers[0];
+        layer.inner[0][2] = f.tets.points[layer.outer.size()][2] = std::nanf("");
     });
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }

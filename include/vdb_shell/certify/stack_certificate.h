@@ -26,8 +26,8 @@ struct StackCertificate {
     bool certified() const;
     /// Every layer is locally valid: see Certificate.
     bool locally_valid() const;
-    /// The failures of each layer and of the whole. With several layers each line begins with
-    /// "layer K: ", K from 0, the outermost.
+    /// The failures of each layer, then those of the whole. With several layers a layer's lines
+    /// begin with "layer K: ", K from 0, the outermost.
     std::vector<std::string> failures() const;
 };
 

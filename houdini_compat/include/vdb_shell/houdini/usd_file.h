@@ -26,14 +26,14 @@ struct UsdSample {
     std::filesystem::path volume;
 };
 
-/// Writes a stage as text (.usda): Mesh "surface", right-handed TetMesh "tets" with the faces of
-/// its boundary, and Volume "grids" over the two volumes of the .vdb, by a path relative to the
-/// stage. docs/usd.md lists attributes and primvars. With one sample everything is timeless. With
-/// more, what differs between them is time-sampled. Numbers read back as the same float32, same
-/// bytes for the same input; the file appears whole or not at all.
-/// Throws InvalidOption for no samples, times that do not increase, samples whose surfaces have
-/// different triangles, a volume for some samples only or without grids, options that are not
-/// positive and finite; WriteError.
+/// Writes a stage as text (.usda): Mesh "surface", which is the skin, right-handed TetMesh "tets"
+/// of all layers with the faces of its boundary, and Volume "grids" over the two volumes of the
+/// .vdb, by a path relative to the stage. docs/usd.md lists attributes and primvars. With one
+/// sample everything is timeless. With more, what differs between them is time-sampled. Numbers
+/// read back as the same float32, same bytes for the same input; the file appears whole or not at
+/// all. Throws InvalidOption for no samples, times that do not increase, samples whose surfaces
+/// have different triangles or which have other layers, a volume for some samples only or without
+/// grids, options that are not positive and finite; WriteError.
 void write_usd(const std::filesystem::path& path, const std::vector<UsdSample>& samples,
                const UsdOptions& options = {});
 
