@@ -2,6 +2,7 @@
 #include "vdb_shell/pipeline.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/mesh/split_fans.h"
 
 #include "core/option_names.h"
 #include "core/stage_clock.h"
@@ -29,6 +30,27 @@ void require_sensible(const ShellOptions& options, const openvdb::FloatGrid* thi
                             "would end the lines");
 }
 
+/// Copies of vertices make sense only where nothing else stands in the way: at an edge of three or
+/// more triangles the fans are no fans of one surface.
+bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
+{
+    return options.allow_self_intersections && check.non_manifold_vertices.count > 0 &&
+           check.non_manifold_edges.count == 0;
+}
+
+/// Looks at r.surface and splits its fans where that is allowed.
+void look_at_surface(ShellResult& r, const CheckOptions& options)
+{
+    r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface);
+    if (!may_split_fans(r.report.mesh, options))
+        return;
+    FanSplit split = split_fans(std::move(r.surface));
+    r.surface = std::move(split.mesh);
+    r.report.split_vertices = split.vertices;
+    r.report.vertex_copies = split.copies;
+    r.report.mesh = check_mesh(r.surface);
+}
+
 void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* interrupter)
 {
     LayerResult cut = cut_layers(r.stack, options.layers, prism_test(options), interrupter);
@@ -53,7 +75,7 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
         });
     }
     clock.run("check", [&] {
-        r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface);
+        look_at_surface(r, options.check);
         require_usable(r.report.mesh, options.check,
                        r.report.repair ? name + " after --repair" : name);
         r.surface = turn_outward(std::move(r.surface), r.report.mesh);
@@ -100,6 +122,8 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     clock.run("certificate", [&] {
         r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
     });
+    if (!r.report.certificate->certified())
+        clock.run("overlaps", [&] { r.report.overlaps = find_overlaps(r.tets, interrupter); });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
         // Layers outside are held against what the outermost surface encloses.

@@ -58,7 +58,9 @@ struct SideLines {
 
 /// What the stages made.
 struct ShellResult {
-    TriangleMesh surface; ///< the input, repaired and turned outward when asked
+    /// The input, repaired and turned outward when asked, with copies of vertices of several fans
+    /// where self-intersections are allowed.
+    TriangleMesh surface;
     openvdb::FloatGrid::Ptr level_set;
     Directions directions;            ///< of the side that the shell lies on; of both sides, inward
     LineLengths lengths;              ///< likewise
@@ -70,10 +72,11 @@ struct ShellResult {
 
 /// The whole job on a mesh in memory: wrap or repair when asked, check, level set, smooth,
 /// directions, line stepping, limits, growth (Method::raw: prisms straight from the lengths),
-/// scale, layers, tets, certificate, figures. For an outward shell the stages from directions to
-/// scale run on the reversed surface (shell/sides.h), for both sides once for each. `name` is what
-/// messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the stages
-/// throw. Same result for any number of threads (costs in the report aside).
+/// scale, layers, tets, certificate, overlaps (where it does not certify the whole), figures. For
+/// an outward shell the stages from directions to scale run on the reversed surface
+/// (shell/sides.h), for both sides once for each. `name` is what messages and the report call the
+/// mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for any number
+/// of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

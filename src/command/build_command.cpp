@@ -33,7 +33,8 @@ void add_surface_options(CLI::App& app, BuildArguments& arguments)
                  "Turn closed components that are inside out instead of refusing them")
         ->group("Surface");
     app.add_flag("--allow-self-intersections", arguments.shell.check.allow_self_intersections,
-                 "Accept a surface that crosses itself; its shell overlaps too")
+                 "Accept a surface that crosses itself, copy vertices of several fans, and certify "
+                 "prism by prism")
         ->group("Surface");
 }
 
@@ -276,6 +277,13 @@ ShellFile to_file(const ShellResult& result, const ShellOptions& options, const 
     return file;
 }
 
+std::vector<std::uint8_t> certified_flags(const ShellResult& result)
+{
+    const std::optional<Overlaps>& overlaps = result.report.overlaps;
+    return overlaps ? overlaps->certified
+                    : std::vector<std::uint8_t>(result.tets.tets.size(), std::uint8_t(1));
+}
+
 void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
@@ -317,7 +325,8 @@ int run_build(const BuildArguments& arguments)
         options.repair = arguments.repair_options;
     ShellResult result = read_and_build(arguments, options, &interrupter);
     StageClock(write_cost).run("write", [&] {
-        write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter));
+        write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter),
+                      certified_flags(result));
     });
 
     std::vector<StageCost>& stages = result.report.stages;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command/file_commands.h"
 
+#include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
@@ -85,7 +86,12 @@ int run_info(const FileArguments& arguments)
 int run_convert(const FileArguments& arguments)
 {
     require_possible(arguments.outputs, {arguments.file});
-    write_outputs(arguments.outputs, read_shell(arguments.file));
+    const ShellFile file = read_shell(arguments.file);
+    // Not the file's word: what the tets themselves show.
+    std::vector<std::uint8_t> certified;
+    if (wants_flags(arguments.outputs))
+        certified = find_overlaps(file.tets).certified;
+    write_outputs(arguments.outputs, file, certified);
     return success;
 }
 

@@ -134,7 +134,14 @@ bool wants_vdb(const Outputs& outputs)
                        [](const fs::path& path) { return kind_of(path) == Kind::vdb; });
 }
 
-void write_outputs(const Outputs& outputs, const ShellFile& file)
+bool wants_flags(const Outputs& outputs)
+{
+    return std::any_of(outputs.paths.begin(), outputs.paths.end(),
+                       [](const fs::path& path) { return kind_of(path) == Kind::tets; });
+}
+
+void write_outputs(const Outputs& outputs, const ShellFile& file,
+                   const std::vector<std::uint8_t>& certified)
 {
     for (const fs::path& path : outputs.paths) {
         switch (kind_of(path)) {
@@ -145,7 +152,7 @@ void write_outputs(const Outputs& outputs, const ShellFile& file)
             houdini::write_shell_geometry(path, file);
             break;
         case Kind::tets:
-            write_tets(path, file.tets);
+            write_tets(path, file.tets, certified);
             break;
         case Kind::surface:
             write_mesh(path, grown_surface(file.stack));

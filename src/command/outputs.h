@@ -5,6 +5,7 @@
 #include "vdb_shell/write/cross_section.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -34,8 +35,12 @@ void require_possible(const Outputs& outputs, const std::vector<std::filesystem:
 /// True when some output needs the grids of the file.
 bool wants_vdb(const Outputs& outputs);
 
+/// True when some output has tets, beside which the flags of certified ones can stand.
+bool wants_flags(const Outputs& outputs);
+
 /// Writes every output; a .usda refers to the first .vdb among them. `file.surface` and
-/// `file.depth` may be null unless wants_vdb().
-void write_outputs(const Outputs& outputs, const ShellFile& file);
+/// `file.depth` may be null unless wants_vdb(); `certified` may be empty unless wants_flags().
+void write_outputs(const Outputs& outputs, const ShellFile& file,
+                   const std::vector<std::uint8_t>& certified);
 
 } // namespace vdb_shell::command

@@ -16,7 +16,11 @@ namespace
 {
 
 using Pair = std::array<std::uint32_t, 2>;
-using PairsByThread = tbb::enumerable_thread_specific<std::vector<Pair>>;
+
+struct Collector {
+    const KeepPair& keep;
+    tbb::enumerable_thread_specific<std::vector<Pair>> by_thread;
+};
 
 void store_bounds(const RTCBoundsFunctionArguments* arguments)
 {
@@ -29,13 +33,12 @@ void store_bounds(const RTCBoundsFunctionArguments* arguments)
 
 void store_pairs(void* user, RTCCollision* collisions, unsigned int count)
 {
-    std::vector<Pair>& pairs = static_cast<PairsByThread*>(user)->local();
+    Collector& collector = *static_cast<Collector*>(user);
+    std::vector<Pair>& pairs = collector.by_thread.local();
     for (unsigned int i = 0; i < count; ++i) {
-        const std::uint32_t first = collisions[i].primID0, second = collisions[i].primID1;
-        if (first < second)
-            pairs.push_back({first, second});
-        if (second < first)
-            pairs.push_back({second, first});
+        const auto [low, high] = std::minmax(collisions[i].primID0, collisions[i].primID1);
+        if (low < high && collector.keep(low, high))
+            pairs.push_back({low, high});
     }
 }
 
@@ -59,6 +62,11 @@ std::vector<Box> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
 
 std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes)
 {
+    return overlapping_pairs(boxes, [](std::uint32_t, std::uint32_t) { return true; });
+}
+
+std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes, const KeepPair& keep)
+{
     if (boxes.empty())
         return {};
     RTCDevice device = rtcNewDevice(nullptr);
@@ -73,8 +81,8 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes)
     rtcAttachGeometry(scene, geometry);
     rtcCommitScene(scene);
 
-    PairsByThread by_thread;
-    rtcCollide(scene, scene, store_pairs, &by_thread);
+    Collector collector{keep, {}};
+    rtcCollide(scene, scene, store_pairs, &collector);
     rtcReleaseGeometry(geometry);
     rtcReleaseScene(scene);
     const bool ok = rtcGetDeviceError(device) == RTC_ERROR_NONE;
@@ -83,7 +91,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes)
         throw std::runtime_error("Embree could not collide the bounding boxes");
 
     std::vector<Pair> pairs;
-    for (const std::vector<Pair>& part : by_thread)
+    for (const std::vector<Pair>& part : collector.by_thread)
         pairs.insert(pairs.end(), part.begin(), part.end());
     tbb::parallel_sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

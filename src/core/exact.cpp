@@ -127,6 +127,53 @@ bool segment_touches_triangle(const openvdb::Vec3s& p, const openvdb::Vec3s& q,
            CGAL::do_intersect(Segment(point3(p), point3(q)), triangle3(triangle));
 }
 
+namespace
+{
+
+/// Corners 0 to 3 are the first tet's, 4 to 7 the second's.
+using EightCorners = std::array<openvdb::Vec3s, 8>;
+
+/// Whether the plane through three of the corners has the tets on different sides. Three corners on
+/// one line span none: then all signs are 0.
+bool plane_separates(const EightCorners& corner, std::size_t i, std::size_t j, std::size_t k)
+{
+    std::array<int, 2> side{};
+    for (std::size_t x = 0; x < corner.size(); ++x) {
+        const openvdb::Vec3s& p = corner[x];
+        // Shared corners lie in the plane; exact arithmetic is not needed to see it.
+        if (p == corner[i] || p == corner[j] || p == corner[k])
+            continue;
+        const int sign = orient3d(corner[i], corner[j], corner[k], p);
+        int& own = side[x / 4];
+        if (sign * own < 0 || sign * side[1 - x / 4] > 0)
+            return false;
+        if (sign != 0)
+            own = sign;
+    }
+    return side[0] != 0 || side[1] != 0;
+}
+
+} // namespace
+
+bool tets_overlap(const Tet& first, const Tet& second)
+{
+    EightCorners corner;
+    std::copy(first.begin(), first.end(), corner.begin());
+    std::copy(second.begin(), second.end(), corner.begin() + 4);
+    // Of the planes through three corners (docs/theory.md, section 5), faces separate most pairs.
+    for (std::size_t base = 0; base < 8; base += 4)
+        for (std::size_t left_out = 0; left_out < 4; ++left_out)
+            if (plane_separates(corner, base + (left_out + 1) % 4, base + (left_out + 2) % 4,
+                                base + (left_out + 3) % 4))
+                return false;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = i + 1; j < 8; ++j)
+            for (std::size_t k = std::max<std::size_t>(j + 1, 4); k < 8; ++k)
+                if (plane_separates(corner, i, j, k))
+                    return false;
+    return true;
+}
+
 bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& p,
                  const openvdb::Vec3s& q)
 {

@@ -37,6 +37,13 @@ bool triangles_touch(const Triangle& first, const Triangle& second);
 bool segment_touches_triangle(const openvdb::Vec3s& p, const openvdb::Vec3s& q,
                               const Triangle& triangle);
 
+/// The corners of a tet by value, in any order.
+using Tet = std::array<openvdb::Vec3s, 4>;
+
+/// Whether the interiors of two tets have a common point. Tets that share corners, edges or faces,
+/// or touch from outside, do not. Precondition: neither tet is flat.
+bool tets_overlap(const Tet& first, const Tet& second);
+
 /// Of four points in one plane: whether p and q are not strictly on opposite sides of the line a b.
 bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& p,
                  const openvdb::Vec3s& q);

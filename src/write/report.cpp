@@ -205,6 +205,18 @@ ordered_json outside_json(const OutsideReport& outside)
             {"scale", outside.scale ? scale_json(*outside.scale) : ordered_json()}};
 }
 
+ordered_json overlaps_json(const Overlaps& overlaps)
+{
+    return {{"pairs", defect_json(overlaps.pairs)},
+            {"tets", overlaps.tets},
+            {"certified_tets", overlaps.certified_tets()},
+            {"uncertified_tets", defect_json(overlaps.uncertified)},
+            {"prisms", overlaps.prisms},
+            {"certified_prisms", overlaps.certified_prisms()},
+            {"uncertified_prisms", defect_json(overlaps.uncertified_prisms)},
+            {"certified_volume", overlaps.certified_volume}};
+}
+
 void add_findings(ordered_json& json, const Certificate& certificate)
 {
     for_each_kind(certificate,
@@ -257,6 +269,8 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["wrap"] = report.wrap ? wrap_json(*report.wrap) : ordered_json();
     json["contour"] = report.contour ? contour_json(*report.contour) : ordered_json();
     json["mesh"] = mesh_json(report.mesh);
+    json["mesh"]["split_vertices"] = defect_json(report.split_vertices);
+    json["mesh"]["vertex_copies"] = report.vertex_copies;
     json["field"] = field_json(report.field);
     json["side"] = name_in_table(report.side);
     json["lines"] = lines_json(report.lines);
@@ -278,6 +292,7 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["coverage"] = coverage_json(report.coverage);
     json["certificate"] =
         report.certificate ? certificate_json(*report.certificate) : ordered_json();
+    json["overlaps"] = report.overlaps ? overlaps_json(*report.overlaps) : ordered_json();
     if (with_costs)
         json["stages"] = costs_json(report.stages);
     // A file name may hold bytes that are no UTF-8.

@@ -55,6 +55,17 @@ std::string mesh_lines(const MeshCheck& mesh)
     return text;
 }
 
+std::string split_text(const ShellReport& report)
+{
+    std::string text = number(report.split_vertices.count, 12) +
+                       (report.split_vertices.count == 1 ? " vertex" : " vertices") +
+                       " of several fans, copied " + number(report.vertex_copies, 12) +
+                       (report.vertex_copies == 1 ? " time" : " times") + " (first";
+    for (const std::uint32_t vertex : report.split_vertices.first)
+        text += " " + number(vertex, 12);
+    return text + ")";
+}
+
 std::string contour_text(const ContourReport& contour)
 {
     std::string text = number(contour.triangles, 12) + " triangles, simplified to " +
@@ -196,6 +207,12 @@ void concession_lines(std::ostringstream& out, const ShellReport& report)
                  number(report.scale->pinned, 12) + " of them pinned");
 }
 
+std::string shown_share(const Overlaps& overlaps)
+{
+    return number(overlaps.certified_prisms(), 12) + " of " + number(overlaps.prisms, 12) +
+           " prisms certified by themselves";
+}
+
 /// What is wrong with the shell; what was not looked at is not called right.
 std::string verdict(const ShellReport& report)
 {
@@ -208,12 +225,17 @@ std::string verdict(const ShellReport& report)
     add(report.signs.flat.count, "flat tets");
     if (!report.conformity.conforming())
         wrong += wrong.empty() ? "tets do not conform" : ", tets do not conform";
+    if (report.overlaps)
+        add(report.overlaps->pairs.count, "pairs of tets that overlap");
     add(report.coverage.in_several, "sample points covered more than once");
     add(report.coverage.outside_covered, "sample points covered outside the solid");
     if (!wrong.empty())
-        return "NOT VALID: " + wrong;
+        return "NOT VALID: " + wrong +
+               (report.overlaps ? "; " + shown_share(*report.overlaps) : std::string());
     if (report.certificate && report.certificate->certified())
         return "no tet inverted, none overlapping: proven";
+    if (report.overlaps && report.overlaps->none())
+        return "no tet inverted, none overlapping: proven tet by tet; not certified as a whole";
     if (report.coverage.samples == 0)
         return "tets positive and conforming; overlaps not looked for, not certified";
     return "tets positive and conforming, no overlap seen among the sample points; not certified";
@@ -250,6 +272,8 @@ std::string report_text(const ShellReport& report)
     if (report.contour)
         line(out, "contour", contour_text(*report.contour));
     line(out, "mesh", mesh_lines(report.mesh));
+    if (report.vertex_copies > 0)
+        line(out, "split", split_text(report));
     line(out, "field",
          "voxel " + number(report.field.voxel_size) + ", " +
              number(report.field.active_voxels, 12) + " active voxels, " +
@@ -288,6 +312,8 @@ std::string report_text(const ShellReport& report)
     line(out, "coverage", coverage_text(report.coverage, report.side));
     if (report.certificate)
         line(out, "certified", certificate_text(*report.certificate));
+    if (report.overlaps)
+        line(out, "overlaps", report.overlaps->summary());
     if (!report.stages.empty())
         cost_lines(out, report.stages);
     line(out, "verdict", verdict(report));

@@ -59,15 +59,21 @@ const std::vector<std::string>& tet_file_extensions()
     return extensions;
 }
 
-void write_tets(const fs::path& path, const TetMesh& tets)
+void write_tets(const fs::path& path, const TetMesh& tets,
+                const std::vector<std::uint8_t>& certified)
 {
+    if (!certified.empty() && certified.size() != tets.tets.size())
+        throw InvalidOption(path.string() + ": " + std::to_string(certified.size()) +
+                            " flags of certified tets for " + std::to_string(tets.tets.size()) +
+                            " tets");
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele")
         return write_tetgen(path, tets);
-    void (*write)(std::ostream&, const TetMesh&) = nullptr;
     if (extension == ".vtu")
-        write = write_vtu;
-    else if (extension == ".mesh")
+        return write_stream_atomically(path,
+                                       [&](std::ostream& out) { write_vtu(out, tets, certified); });
+    void (*write)(std::ostream&, const TetMesh&) = nullptr;
+    if (extension == ".mesh")
         write = write_medit;
     else if (extension == ".msh")
         write = write_gmsh;

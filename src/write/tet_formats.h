@@ -4,7 +4,9 @@
 #include "vdb_shell/shell/tessellate.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iosfwd>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -16,7 +18,8 @@ inline bool has_layers(const TetMesh& tets)
                        [](std::uint8_t layer) { return layer > 0; });
 }
 
-void write_vtu(std::ostream& out, const TetMesh& tets);
+/// `certified` by tet, or empty.
+void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified);
 void write_tetgen_node(std::ostream& out, const TetMesh& tets);
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets);
 void write_medit(std::ostream& out, const TetMesh& tets);

@@ -2,6 +2,7 @@
 #include "vdb_shell/write/verify_file.h"
 
 #include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -103,15 +104,21 @@ Verification verify_signs(const ShellFile& file, const json& report)
                 "; flat: " + compare(double(found.flat.count), flat)};
 }
 
-/// What a file without a certificate is held to is nothing, but the findings are told all the same.
-Verification verify_certificate(const ShellFile& file, const json& report, Interrupter* interrupter)
+json certificate_claim(const json& report)
 {
-    const json claim =
-        report.is_object() ? report.value("certificate", json::object()) : json::object();
+    return report.is_object() ? report.value("certificate", json::object()) : json::object();
+}
+
+PrismTest claimed_test(const json& claim)
+{
     const bool twelve = claim.is_object() && claim.contains("test") &&
                         claim.at("test") == name_in_table(PrismTest::twelve_tets);
-    const PrismTest test = twelve ? PrismTest::twelve_tets : PrismTest::chosen_tets;
-    const StackCertificate found = certify_stack(file.stack, test, interrupter);
+    return twelve ? PrismTest::twelve_tets : PrismTest::chosen_tets;
+}
+
+/// What a file without a certificate is held to is nothing, but the findings are told all the same.
+Verification verify_certificate(const StackCertificate& found, PrismTest test, const json& claim)
+{
     auto agrees = [&](const char* what, bool value) {
         return !claim.is_object() || !claim.contains(what) || claim.at(what) == value;
     };
@@ -124,6 +131,26 @@ Verification verify_certificate(const ShellFile& file, const json& report, Inter
     return {"certificate is as stated",
             agrees("certified", found.certified()) &&
                 agrees("locally_valid", found.locally_valid()),
+            detail};
+}
+
+/// A file that says nothing of overlaps claims nothing; the findings are told all the same.
+Verification verify_overlaps(const ShellFile& file, const json& report, Interrupter* interrupter)
+{
+    const Overlaps found = find_overlaps(file.tets, interrupter);
+    const json::json_pointer place("/overlaps");
+    const bool told = report.contains(place) && report.at(place).is_object();
+    const double pairs = stated(report, "/overlaps/pairs/count");
+    const double prisms = stated(report, "/overlaps/certified_prisms");
+    const double tets = stated(report, "/overlaps/certified_tets");
+    std::string detail = found.summary() + "; the file says ";
+    detail += told ? digits(pairs) + " pairs, " + digits(prisms) + " prisms and " + digits(tets) +
+                         " tets certified"
+                   : std::string("nothing");
+    return {"overlaps are as stated",
+            !told ||
+                (double(found.pairs.count) == pairs && double(found.certified_prisms()) == prisms &&
+                 double(found.certified_tets()) == tets),
             detail};
 }
 
@@ -168,12 +195,17 @@ Verification verify_depth(const ShellFile& file, Interrupter* interrupter)
 std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter)
 {
     const json report = json::parse(file.report_json, nullptr, false);
+    const json claim = certificate_claim(report);
+    const PrismTest test = claimed_test(claim);
+    const StackCertificate certificate = certify_stack(file.stack, test, interrupter);
     std::vector<Verification> found{verify_surface(file, report),
                                     verify_tets(file),
                                     verify_conformity(file),
                                     verify_signs(file, report),
-                                    verify_certificate(file, report, interrupter),
+                                    verify_certificate(certificate, test, claim),
                                     verify_volume(file, report)};
+    if (!certificate.certified() || report.contains(json::json_pointer("/overlaps/pairs")))
+        found.push_back(verify_overlaps(file, report, interrupter));
     if (file.surface && file.depth) {
         found.push_back(verify_level_set(file, report));
         found.push_back(verify_depth(file, interrupter));

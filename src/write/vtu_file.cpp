@@ -72,7 +72,7 @@ void write_cells(TextOut& text, const TetMesh& tets)
 
 } // namespace
 
-void write_vtu(std::ostream& out, const TetMesh& tets)
+void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified)
 {
     static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
     TextOut text(out);
@@ -87,6 +87,8 @@ void write_vtu(std::ostream& out, const TetMesh& tets)
     write_array(text, "UInt32", "prism", 1, tets.prism);
     if (has_layers(tets))
         write_array(text, "UInt8", "layer", 1, tets.prism_layer);
+    if (!certified.empty())
+        write_array(text, "UInt8", "certified", 1, certified);
     text << "</CellData>\n<Points>\n";
     write_array(text, "Float32", "Points", 3, tets.points);
     text << "</Points>\n";

@@ -368,6 +368,41 @@ TEST_F(Command, TurnsAnInsideOutMeshOnlyWhenAsked)
     EXPECT_GT(report.at("volume").at("solid").get<double>(), 0.0);
 }
 
+TEST_F(Command, ASurfaceThatCrossesItselfIsRefusedOrCertifiedPrismByPrism)
+{
+    const std::string boxes =
+        mesh_file("boxes.obj", joined(gridded_box({0, 0, 0}, {1, 1, 1}, 3),
+                                      gridded_box({0.53, 0.57, 0.61}, {1.53, 1.57, 1.61}, 3)));
+    expect_refusal("build " + boxes + kCoarse + " -o " + file("x.vtu"), ExitCode::geometry_error,
+                   {"cross", "--allow-self-intersections"});
+    const std::string allowed = "build " + boxes + kCoarse + " --allow-self-intersections";
+    const Outcome grown = run(allowed + " -o " + file("g.vdb") + " -o " + file("g.vtu") +
+                              " --report " + file("g.json"));
+    ASSERT_EQ(grown.status, ExitCode::success) << grown.err;
+    EXPECT_NE(grown.out.find("proven tet by tet; not certified"), std::string::npos) << grown.out;
+    EXPECT_NE(read_bytes(folder / "g.vtu").find("Name=\"certified\""), std::string::npos);
+    const auto report = nlohmann::json::parse(read_bytes(folder / "g.json"));
+    EXPECT_FALSE(report.at("certificate").at("certified").get<bool>());
+    EXPECT_EQ(report.at("overlaps").at("pairs").at("count"), 0);
+    ASSERT_EQ(run("convert " + file("g.vdb") + " -o " + file("h.vtu")).status, ExitCode::success);
+    EXPECT_EQ(read_bytes(folder / "h.vtu"), read_bytes(folder / "g.vtu"));
+    const Outcome check = run("check " + file("g.vdb"));
+    EXPECT_EQ(check.status, ExitCode::success) << check.out;
+    EXPECT_NE(check.out.find("ok      overlaps are as stated"), std::string::npos) << check.out;
+
+    const Outcome raw =
+        run(allowed + " --method raw --stop-test none --thickness 0.4 -o " + file("r.vdb"));
+    ASSERT_EQ(raw.status, ExitCode::success) << raw.err;
+    EXPECT_NE(raw.out.find("pairs of tets that overlap"), std::string::npos) << raw.out;
+    EXPECT_EQ(run("check " + file("r.vdb")).status, ExitCode::success);
+
+    // An edge of four triangles stays refused.
+    TriangleMesh edge = joined(box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1}));
+    expect_refusal("build " + mesh_file("edge.obj", edge) + kCoarse +
+                       " --allow-self-intersections -o " + file("x.vtu"),
+                   ExitCode::geometry_error, {"edge of three or more"});
+}
+
 TEST_F(Command, ThicknessIsNeverExceeded)
 {
     const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 2));

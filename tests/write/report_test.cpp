@@ -180,6 +180,11 @@ TEST(Report, VerdictNamesEveryFault)
     faulty([](ShellReport& r) { r.signs.flat.count = 1; }, "1 flat tets");
     faulty([](ShellReport& r) { r.conformity.stray_faces.count = 1; }, "do not conform");
     faulty([](ShellReport& r) { r.coverage.in_several = 5; }, "5 sample points covered more");
+    faulty([](ShellReport& r) { r.overlaps.emplace().pairs.count = 3; },
+           "3 pairs of tets that overlap");
+    ShellReport piecewise = good_report();
+    piecewise.overlaps.emplace();
+    EXPECT_NE(verdict(piecewise).find("proven tet by tet; not certified"), std::string::npos);
     ShellReport unseen = good_report();
     unseen.coverage.samples = 0;
     EXPECT_NE(verdict(unseen).find("overlaps not looked for"), std::string::npos);

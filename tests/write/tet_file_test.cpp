@@ -217,6 +217,19 @@ TEST(TetFile, VtuHoldsTheVeryBytes)
     EXPECT_EQ(types, std::vector<std::uint8_t>(tets.tets.size(), 10));
 }
 
+TEST(TetFile, VtuHoldsTheFlagsOfCertifiedTets)
+{
+    const TemporaryFolder folder;
+    const TetMesh tets = test::hand_made_shell(test::icosphere(0.1, 1), 0.5).tets;
+    std::vector<std::uint8_t> certified(tets.tets.size(), 1);
+    certified[5] = certified[17] = 0;
+    write_tets(folder / "a.vtu", tets, certified);
+    const std::string text = test::read_bytes(folder / "a.vtu");
+    EXPECT_EQ(values_of<std::uint8_t>(vtu_array(text, "certified")), certified);
+    certified.pop_back();
+    EXPECT_THROW(write_tets(folder / "a.vtu", tets, certified), InvalidOption);
+}
+
 /// Numbers as in German: a decimal comma and grouped thousands.
 struct German : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }

@@ -29,15 +29,16 @@ ShellFile file_of(const SplitShell& made)
     return file;
 }
 
-/// What check says about the certificate after the shell has been to a file and back.
-Verification verdict(const ShellFile& file)
+/// What check says about one thing, the certificate unless told otherwise, after the shell has been
+/// to a file and back.
+Verification verdict(const ShellFile& file, const char* what = "certificate is as stated")
 {
     const test::TemporaryFolder folder;
     write_shell_vdb(folder / "shell.vdb", file);
     for (const Verification& entry : verify_shell(read_shell_vdb(folder / "shell.vdb")))
-        if (entry.what == "certificate is as stated")
+        if (entry.what == what)
             return entry;
-    ADD_FAILURE() << "the certificate was not looked at";
+    ADD_FAILURE() << "not looked at whether " << what;
     return {};
 }
 
@@ -92,6 +93,31 @@ TEST(VerifyFile, NamesWhatBreaksAShellAndFailsAFalseClaim)
         const Verification forged = verdict(file);
         EXPECT_FALSE(forged.holds) << kind;
         EXPECT_EQ(forged.detail.substr(0, 13), "not certified") << forged.detail;
+    }
+}
+
+TEST(VerifyFile, OverlapsAreFoundAgainAndAFalseCountFails)
+{
+    const SplitShell made = test::plate_shell(0.625f, 0.625f);
+    ShellFile file = file_of(made);
+    const char* const what = "overlaps are as stated";
+    EXPECT_TRUE(verdict(file, what).holds); // a file that says nothing of them
+    ShellReport report;
+    report.certificate = certify_stack(one_layer(made.shell, made.split), PrismTest::twelve_tets);
+    report.overlaps = find_overlaps(file.tets);
+    ASSERT_GT(report.overlaps->pairs.count, 0U);
+    file.report_json = report_json(report);
+    EXPECT_TRUE(verdict(file, what).holds) << verdict(file, what).detail;
+    EXPECT_NE(
+        verdict(file, what)
+            .detail.find(std::to_string(report.overlaps->pairs.count) + " pairs of tets overlap"),
+        std::string::npos);
+    for (const char* lie :
+         {"/overlaps/pairs/count", "/overlaps/certified_prisms", "/overlaps/certified_tets"}) {
+        auto claims = nlohmann::ordered_json::parse(report_json(report));
+        claims.at(nlohmann::ordered_json::json_pointer(lie)) = 0;
+        file.report_json = claims.dump(2);
+        EXPECT_FALSE(verdict(file, what).holds) << lie;
     }
 }
 

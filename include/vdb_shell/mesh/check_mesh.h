@@ -58,8 +58,8 @@ struct MeshCheck {
 };
 
 struct CheckOptions {
-    /// Accept surfaces that cross themselves: they have a level set and can be stepped, but no
-    /// shell of theirs can be free of overlaps.
+    /// Accept surfaces that cross themselves: they have a level set and can be stepped, but their
+    /// shells are certified tet by tet at most (certify/overlaps.h).
     bool allow_self_intersections = false;
     /// Turn components that are oriented against their nesting depth, instead of refusing them.
     bool turn_inside_out = false;

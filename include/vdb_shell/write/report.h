@@ -3,6 +3,7 @@
 
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
+#include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/certify/quality.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
@@ -77,6 +78,9 @@ struct ShellReport {
     std::optional<WrapReport> wrap;
     std::optional<ContourReport> contour; ///< of a level set that was given
     MeshCheck mesh;                       ///< of the surface that was worked with
+    /// Vertices of several fans that got copies (mesh/split_fans.h), by the input's index.
+    Defect<std::uint32_t> split_vertices;
+    std::size_t vertex_copies = 0;
     FieldReport field;
     Side side = Side::inward;
     LineReport lines;
@@ -96,6 +100,8 @@ struct ShellReport {
     /// The solid is the surface's own, or with layers outside what the outermost surface encloses.
     Coverage coverage;
     std::optional<StackCertificate> certificate; ///< nothing when it was not asked for
+    /// What holds tet by tet; absent when the shell is certified as a whole.
+    std::optional<Overlaps> overlaps;
     std::vector<StageCost> stages;
 };
 

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/shell/tessellate.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@ const std::vector<std::string>& tet_file_extensions();
 /// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name
 /// writes both), Medit (.mesh), Gmsh 4.1 (.msh). Coordinates are the float32 values exactly,
 /// whether a program reads them into floats or doubles. Data beside them, where the format has a
-/// place (docs/file_format.md): per point source vertex and layer, per tet its prism. Files appear
-/// whole or not at all; same bytes for the same tets, in any locale. Throws InvalidOption for an
-/// unknown extension, WriteError.
-void write_tets(const std::filesystem::path& path, const TetMesh& tets);
+/// place (docs/file_format.md): per point source vertex and layer, per tet its prism and, where
+/// `certified` is given, its flag (Overlaps::certified; .vtu only). Files appear whole or not at
+/// all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension
+/// and for flags that are not one a tet, WriteError.
+void write_tets(const std::filesystem::path& path, const TetMesh& tets,
+                const std::vector<std::uint8_t>& certified = {});
 
 } // namespace vdb_shell
