@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <type_traits>
 
 namespace vdb_shell::houdini
 {
@@ -96,7 +97,8 @@ private:
         } else if constexpr (std::is_same_v<T, double>) {
             std::memcpy(&bits, &value, sizeof bits);
         } else {
-            bits = static_cast<std::uint64_t>(value);
+            using Byte = std::conditional_t<sizeof(T) == 1, std::uint8_t, T>;
+            bits = static_cast<std::uint64_t>(static_cast<Byte>(value));
         }
         for (std::size_t i = 0; i < sizeof(T); ++i)
             buffer_ += static_cast<char>((bits >> (8 * i)) & 0xffu);
