@@ -34,6 +34,7 @@ Row laplacian_at(const Patch& patch, const Rim& rim, std::size_t point,
         return weight;
     };
     std::vector<double> weights;
+    weights.reserve(neighbours.size());
     for (const std::uint32_t v : neighbours)
         weights.push_back(weigh(patch.points[v]));
     if (point < fixed)

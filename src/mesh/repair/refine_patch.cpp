@@ -3,7 +3,9 @@
 
 // A new point's OpenMesh vector is copied before it has a value; nothing reads it then, but GCC
 // says so where OpenMesh's code is inlined, which is why this is not popped.
+#ifndef __clang__
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
 #include <algorithm>
