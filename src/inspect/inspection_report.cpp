@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/inspect/inspect_mesh.h"
 
-#include <nlohmann/json.hpp>
+#include "mesh/components_json.h"
 
 #include <sstream>
 
@@ -22,20 +22,6 @@ ordered_json findings_json(const std::vector<Finding>& findings)
                         {"first", finding.first},
                         {"blocks", finding.blocks},
                         {"mend", finding.mend}});
-    return list;
-}
-
-ordered_json components_json(const MeshCheck& check)
-{
-    ordered_json list = ordered_json::array();
-    for (const Component& part : check.components)
-        list.push_back({{"triangles", part.triangles},
-                        {"first_triangle", part.first_triangle},
-                        {"volume", part.volume},
-                        {"closed", part.closed},
-                        {"euler", part.euler},
-                        {"nesting_depth", part.nesting_depth},
-                        {"inside_out", part.inside_out}});
     return list;
 }
 
@@ -117,7 +103,7 @@ std::string inspection_json(const std::string& name, const ReadReport& read,
     json["findings"] = findings_json(findings_of(inspection));
     json["boundary_loops"] = loops_json(inspection);
     json["flipped_patches"] = patches_json(inspection);
-    json["components"] = components_json(check);
+    json["components"] = components_json(check.components);
     json["floats"] = {{"farthest", floats.farthest},
                       {"spacing", floats.spacing},
                       {"digits", floats.digits},

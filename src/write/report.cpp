@@ -3,6 +3,7 @@
 
 #include "certify/certificate_findings.h"
 #include "core/option_names.h"
+#include "mesh/components_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -77,15 +78,6 @@ ordered_json wrap_json(const WrapReport& wrap)
 
 ordered_json mesh_json(const MeshCheck& mesh)
 {
-    ordered_json components = ordered_json::array();
-    for (const Component& part : mesh.components)
-        components.push_back({{"triangles", part.triangles},
-                              {"first_triangle", part.first_triangle},
-                              {"volume", part.volume},
-                              {"closed", part.closed},
-                              {"euler", part.euler},
-                              {"nesting_depth", part.nesting_depth},
-                              {"inside_out", part.inside_out}});
     return {{"points", mesh.points},
             {"triangles", mesh.triangles},
             {"volume", mesh.volume},
@@ -99,7 +91,7 @@ ordered_json mesh_json(const MeshCheck& mesh)
             {"duplicate_triangles", mesh.duplicate_triangles.count},
             {"self_intersections", mesh.self_intersections.count},
             {"first_self_intersections", mesh.self_intersections.first},
-            {"components", components}};
+            {"components", components_json(mesh.components)}};
 }
 
 ordered_json field_json(const FieldReport& field)
