@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/barrier.h"
 
-#include <openvdb/math/Mat3.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,23 +10,26 @@ namespace vdb_shell::growth
 namespace
 {
 
-using openvdb::math::Mat3d;
-
-constexpr int kNewtonSteps = 6;
+constexpr int kNewtonSteps = 3;
 // Newton decrements: above the first the damped step is needed, below the second it has converged.
 constexpr double kDamped = 0.25;
 constexpr double kConverged = 0.05;
 
+/// Symmetric, by columns of the lower triangle.
+struct Curvature {
+    double xx, xy, xz, yy, yz, zz;
+};
+
 /// Solves h dx = -g by Cholesky; false where h is not safely positive.
-bool solve_positive(const Mat3d& h, const Vec3d& g, Vec3d& dx)
+bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
 {
-    const double l00 = std::sqrt(h[0][0]);
-    const double l10 = h[1][0] / l00, l20 = h[2][0] / l00;
-    const double d1 = h[1][1] - l10 * l10;
+    const double l00 = std::sqrt(h.xx);
+    const double l10 = h.xy / l00, l20 = h.xz / l00;
+    const double d1 = h.yy - l10 * l10;
     if (!(l00 > 0) || !(d1 > 0))
         return false;
-    const double l11 = std::sqrt(d1), l21 = (h[2][1] - l20 * l10) / l11;
-    const double d2 = h[2][2] - l20 * l20 - l21 * l21;
+    const double l11 = std::sqrt(d1), l21 = (h.yz - l20 * l10) / l11;
+    const double d2 = h.zz - l20 * l20 - l21 * l21;
     if (!(d2 > 0))
         return false;
     const double l22 = std::sqrt(d2);
@@ -38,44 +39,6 @@ bool solve_positive(const Mat3d& h, const Vec3d& g, Vec3d& dx)
     dx[1] = (y1 - l21 * dx[2]) / l11;
     dx[0] = (y0 - l10 * dx[1] - l20 * dx[2]) / l00;
     return true;
-}
-
-struct Slope {
-    Vec3d gradient;
-    Mat3d curvature;
-};
-
-void add_ball(const Ball& ball, double softness, const Vec3d& x, Slope& s)
-{
-    const Vec3d arm = x - ball.centre;
-    const double room = ball.radius * ball.radius - arm.lengthSqr();
-    if (!std::isfinite(room) || room <= 0)
-        return;
-    const Vec3d n = arm * (2 / room);
-    s.gradient += softness * n;
-    for (int i = 0; i < 3; ++i) {
-        s.curvature[i][i] += softness * 2 / room;
-        for (int j = 0; j < 3; ++j)
-            s.curvature[i][j] += softness * n[i] * n[j];
-    }
-}
-
-Slope slope_at(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& gradient,
-               double softness, const Vec3d& x)
-{
-    Slope s{gradient, Mat3d(0, 0, 0, 0, 0, 0, 0, 0, 0)};
-    for (const HalfSpace& bound : bounds) {
-        const double value = bound.value(x);
-        if (value <= 0)
-            continue;
-        const Vec3d n = bound.n / value;
-        s.gradient -= softness * n;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                s.curvature[i][j] += softness * n[i] * n[j];
-    }
-    add_ball(ball, softness, x, s);
-    return s;
 }
 
 /// Where x + t dx leaves the ball. Precondition: x lies in it.
@@ -90,43 +53,160 @@ double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
     return b > 0 ? c / (root + b) : (root - b) / a;
 }
 
-/// How far along dx the first bound is met.
-double room_along(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& x,
-                  const Vec3d& dx)
+void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
 {
-    double room = room_in_ball(ball, x, dx);
-    for (const HalfSpace& bound : bounds) {
-        const double down = -bound.n.dot(dx), value = bound.value(x);
-        if (down > 0 && value > 0)
-            room = std::min(room, value / down);
-    }
-    return room;
+    const Vec3d arm = x - ball.centre;
+    const double room = ball.radius * ball.radius - arm.lengthSqr();
+    if (!std::isfinite(room) || room <= 0)
+        return;
+    const Vec3d n = arm * (2 / room);
+    gradient += n;
+    h.xx += 2 / room + n[0] * n[0], h.yy += 2 / room + n[1] * n[1], h.zz += 2 / room + n[2] * n[2];
+    h.xy += n[0] * n[1], h.xz += n[0] * n[2], h.yz += n[1] * n[2];
 }
 
 } // namespace
 
-Vec3d barrier_minimum(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& gradient,
-                      double softness, const Vec3d& start)
+void Bounds::clear(const Vec3d& here, double scale)
 {
-    Vec3d x = start;
-    for (int step = 0; step < kNewtonSteps; ++step) {
-        Slope s = slope_at(bounds, ball, gradient, softness, x);
-        const double trace = s.curvature[0][0] + s.curvature[1][1] + s.curvature[2][2];
-        if (!(trace > 0))
-            break;
-        for (int i = 0; i < 3; ++i)
-            s.curvature[i][i] += 1e-9 * trace; // bounds may leave a direction free
-        Vec3d dx;
-        if (!solve_positive(s.curvature, s.gradient, dx))
-            break;
-        const double decrement = std::sqrt(std::max(0.0, -s.gradient.dot(dx) / softness));
-        const double damped = decrement > kDamped ? 1 / (1 + decrement) : 1;
-        // Far from the centre a longer step pays off, as long as it stays well inside every bound.
-        x += std::max(damped, std::min(1.0, 0.7 * room_along(bounds, ball, x, dx))) * dx;
-        if (decrement < kConverged)
-            break;
+    block_.clear();
+    size_ = 0;
+    here_ = here;
+    scale_ = 1 / scale;
+}
+
+void Bounds::add(const Vec3d& n, const Vec3d& p)
+{
+    const double length = n.length();
+    if (length > 0)
+        add_unit(Vec3s(n / length), n.dot(here_ - p) / length);
+}
+
+void Bounds::add_unit(const Vec3s& n, double value)
+{
+    const float scaled = static_cast<float>(value * scale_);
+    if (!(scaled > 0))
+        return;
+    const std::size_t lane = size_++ % kLanes;
+    if (lane == 0) {
+        Block empty{};
+        empty.value.fill(1.0f);
+        block_.push_back(empty);
     }
-    return x;
+    Block& b = block_.back();
+    b.x[lane] = n[0], b.y[lane] = n[1], b.z[lane] = n[2];
+    b.value[lane] = scaled;
+    b.weight[lane] = 1.0f;
+}
+
+void Bounds::weigh(std::size_t first, float weight)
+{
+    for (std::size_t i = first; i < size_; ++i)
+        block_[i / kLanes].weight[i % kLanes] = weight;
+}
+
+/// Newton's method in the bounds' own scale; the position is held as values of the bounds.
+class Newton
+{
+public:
+    Newton(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness)
+        : bounds_(bounds), gradient_(gradient / (softness * bounds.scale_)),
+          ball_{(ball.centre - bounds.here_) * bounds.scale_, ball.radius * bounds.scale_}
+    {
+    }
+
+    Vec3d minimum()
+    {
+        for (int step = 0; step < kNewtonSteps; ++step) {
+            Vec3d g, dx;
+            Curvature h{};
+            slope(g, h);
+            const double trace = h.xx + h.yy + h.zz;
+            if (!(trace > 0))
+                break;
+            // Bounds may leave a direction free.
+            h.xx += 1e-9 * trace, h.yy += 1e-9 * trace, h.zz += 1e-9 * trace;
+            if (!solve_positive(h, g, dx))
+                break;
+            const double decrement = std::sqrt(std::max(0.0, -g.dot(dx)));
+            const double damped = decrement > kDamped ? 1 / (1 + decrement) : 1;
+            // Far from the centre a longer step pays off, as long as it stays well inside every
+            // bound.
+            const double share = std::max(damped, std::min(1.0, 0.7 * room_along(dx)));
+            x_ += share * dx;
+            if (decrement < kConverged)
+                break;
+            move_by(share * dx);
+        }
+        return bounds_.here_ + x_ / bounds_.scale_;
+    }
+
+private:
+    using Lane = std::array<float, Bounds::kLanes>;
+
+    static double sum(const Lane& lane)
+    {
+        double total = 0;
+        for (const float value : lane)
+            total += static_cast<double>(value);
+        return total;
+    }
+
+    void slope(Vec3d& gradient, Curvature& h) const
+    {
+        Lane gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+        for (const Bounds::Block& b : bounds_.block_)
+            for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
+                const float inverse = 1.0f / b.value[i];
+                const float x = b.x[i] * inverse, y = b.y[i] * inverse, z = b.z[i] * inverse;
+                const float wx = b.weight[i] * x, wy = b.weight[i] * y, wz = b.weight[i] * z;
+                gx[i] += wx, gy[i] += wy, gz[i] += wz;
+                xx[i] += wx * x, xy[i] += wx * y, xz[i] += wx * z;
+                yy[i] += wy * y, yz[i] += wy * z, zz[i] += wz * z;
+            }
+        gradient = gradient_ - Vec3d(sum(gx), sum(gy), sum(gz));
+        h = {sum(xx), sum(xy), sum(xz), sum(yy), sum(yz), sum(zz)};
+        add_ball(ball_, x_, gradient, h);
+    }
+
+    /// How far along dx the first bound is met.
+    double room_along(const Vec3d& dx) const
+    {
+        const Vec3s d(dx);
+        Lane least;
+        least.fill(std::numeric_limits<float>::max());
+        for (const Bounds::Block& b : bounds_.block_)
+            for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
+                const float down = -(b.x[i] * d[0] + b.y[i] * d[1] + b.z[i] * d[2]);
+                // Of the values over the slopes only the positive ones are ahead.
+                const float room = b.value[i] / std::max(down, 1e-30f);
+                least[i] = std::min(least[i], room);
+            }
+        const double room = static_cast<double>(*std::min_element(least.begin(), least.end()));
+        return std::min(room, room_in_ball(ball_, x_, dx));
+    }
+
+    void move_by(const Vec3d& dx)
+    {
+        const Vec3s d(dx);
+        for (Bounds::Block& b : bounds_.block_)
+            for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
+                const float value =
+                    b.value[i] + (b.x[i] * d[0] + b.y[i] * d[1] + b.z[i] * d[2]);
+                // A bound overstepped by a damped step no longer counts.
+                b.weight[i] = value > 0 ? b.weight[i] : 0.0f;
+                b.value[i] = value > 0 ? value : 1.0f;
+            }
+    }
+
+    Bounds& bounds_;
+    Vec3d gradient_, x_{0.0};
+    Ball ball_;
+};
+
+Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness)
+{
+    return Newton(bounds, ball, gradient, softness).minimum();
 }
 
 } // namespace vdb_shell::growth

@@ -3,8 +3,37 @@
 
 #include "shell/grow/grow_state.h"
 
+#include <array>
+
 namespace vdb_shell::growth
 {
+
+/// Linear bounds on one vertex, value(x) = n.(x - here) + value > 0, scaled to unit n: only where
+/// they vanish matters. In float32, lane by lane: the barrier proposes, the exact tests decide.
+class Bounds
+{
+public:
+    /// Starts anew around the position of the vertex; `scale` is the length that is to be 1.
+    void clear(const Vec3d& here, double scale);
+    /// A bound of normal n, any length, through p. Left out where it does not hold here.
+    void add(const Vec3d& n, const Vec3d& p);
+    /// A bound of unit normal n and value here.
+    void add_unit(const Vec3s& n, double value);
+    /// Gives the bounds from `first` on the weight `weight` each; all have 1 else.
+    void weigh(std::size_t first, float weight);
+    std::size_t size() const { return size_; }
+
+private:
+    friend class Newton;
+    static constexpr std::size_t kLanes = 8;
+    struct Block {
+        std::array<float, kLanes> x, y, z, value, weight;
+    };
+    std::vector<Block> block_;
+    std::size_t size_ = 0;
+    Vec3d here_{0.0};
+    double scale_ = 1;
+};
 
 /// A ball that x has to stay in; infinite: no such bound.
 struct Ball {
@@ -12,11 +41,10 @@ struct Ball {
     double radius;
 };
 
-/// Minimum over x of gradient . x - softness * (sum of log(bound(x)) + log(r^2 - |x - c|^2)), the
-/// last term only for a ball of finite radius: convex, three unknowns. Damped
-/// Newton from `start`, which lies inside every bound that counts; bounds already violated there
-/// are left out. A few steps only: the vertex is asked again in the next sweep.
-Vec3d barrier_minimum(const std::vector<HalfSpace>& bounds, const Ball& ball, const Vec3d& gradient,
-                      double softness, const Vec3d& start);
+/// Minimum over x of gradient . x - softness * (sum of weight * log(bound(x)) + log(r^2 - |x -
+/// c|^2)), the last term only for a ball of finite radius: convex, three unknowns. Damped Newton
+/// from where the bounds were cleared. A few steps only: the vertex is asked again in the next
+/// sweep.
+Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness);
 
 } // namespace vdb_shell::growth

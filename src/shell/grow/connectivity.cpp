@@ -67,16 +67,20 @@ void label_components(Connectivity& c)
     }
 }
 
-/// Greedy in index order: two vertices of one class never share a prism, so the tet tests of one
-/// class are independent of each other.
+/// Greedy in index order: vertices of one class are three edges apart or more, so that the tests of
+/// one read nothing that another moves.
 void colour_vertices(Connectivity& c)
 {
     std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1), used;
     for (int v = 0; v < c.vertices; ++v) {
         used.clear();
-        for (const int u : neighbours(c, v))
+        for (const int u : neighbours(c, v)) {
             if (colour[u] >= 0)
                 used.push_back(colour[u]);
+            for (const int w : neighbours(c, u))
+                if (colour[w] >= 0)
+                    used.push_back(colour[w]);
+        }
         sort_unique(used);
         int smallest_free = 0;
         for (const int u : used)

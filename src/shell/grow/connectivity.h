@@ -25,7 +25,7 @@ struct Connectivity {
     std::vector<int> neighbour_first, neighbour; ///< vertex -> adjacent vertices, ascending
     std::vector<int> component;                  ///< by vertex
     int components = 0;
-    std::vector<std::vector<int>> colour; ///< classes of pairwise non-adjacent vertices
+    std::vector<std::vector<int>> colour; ///< classes of vertices with no common neighbour
 
     int face_count() const { return static_cast<int>(faces.size()); }
     int corner(int face, int local) const { return static_cast<int>(faces[face][local]); }

@@ -2,10 +2,8 @@
 #include "shell/grow/free_moves.h"
 
 #include "shell/grow/barrier.h"
-#include "shell/grow/candidates.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/pins.h"
-#include "shell/grow/soft_contacts.h"
 #include "shell/grow/sweep.h"
 
 #include <tbb/enumerable_thread_specific.h>
@@ -21,8 +19,11 @@ constexpr double kEnoughFill = 0.998; ///< a solid this full is not worth anothe
 constexpr double kLeastSoftness = 1e-3;
 constexpr double kCool = 0.72, kCoolFast = 0.3; ///< factors per round
 constexpr double kLeastGain = 1e-4; ///< share of the solid that a round must win to go on
-constexpr int kSweepsPerRound = 2;  ///< on one set of candidate lists
+constexpr int kSweepsPerRound = 2;  ///< between the same walls
 constexpr int kHalvings = 5;
+/// How far from a vertex walls steer it, as a share of its reach; the others only stop it.
+constexpr double kSoftRange = 0.4;
+constexpr float kWallWeight = 4; ///< of all near walls, where a tet has 1
 // The barrier knows the cap as a ball a little wider, so that a vertex on the cap has room on every
 // side; without it a vertex that only the cap holds would be sent far away, sideways as well.
 constexpr double kBeyondCap = 1.02;
@@ -32,10 +33,6 @@ constexpr double kLeastMove = 1e-6;
 constexpr double kQuietMove = 3e-5;
 constexpr double kLeastReach = 1e-4, kMostReach = 0.05;
 
-struct Scratch {
-    std::vector<HalfSpace> bounds;
-    ContactScratch contacts;
-};
 
 struct MoveRules {
     bool contacts;
@@ -74,21 +71,38 @@ Vec3d capped(const GrowState& s, int v, const Vec3d& x)
     return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
 }
 
-bool propose_move(const GrowState& s, int v, const MoveRules& rules, Scratch& scratch, Vec3d& out)
+/// Adds the near walls, which together weigh no more than a few tets: there may be dozens, and most
+/// say the same.
+void wall_bounds(const GrowState& s, const Walls& w, int v, Bounds& bounds)
 {
-    scratch.bounds.clear();
-    tet_bounds(s, v, scratch.bounds);
+    const double range = kSoftRange * s.reach[v];
+    const std::size_t first = bounds.size();
+    for (const Wall& wall : walls_of(w, v)) {
+        const double value = wall.value(s.b[v]);
+        if (value < range)
+            bounds.add_unit(wall.n, value);
+    }
+    const auto count = static_cast<float>(bounds.size() - first);
+    if (count > kWallWeight)
+        bounds.weigh(first, kWallWeight / count);
+}
+
+bool propose_move(const GrowState& s, const Walls& w, int v, const MoveRules& rules, Bounds& bounds,
+                  Vec3d& out)
+{
+    bounds.clear(s.b[v], s.reach[v]);
+    tet_bounds(s, v, bounds);
     if (rules.contacts)
-        contact_bounds(s, v, scratch.contacts, scratch.bounds);
+        wall_bounds(s, w, v, bounds);
     const Vec3d target =
         within_reach(s, v,
-                     barrier_minimum(scratch.bounds, {s.a[v], kBeyondCap * s.cap[v]},
-                                     inner_volume6_gradient(s, v), rules.softness, s.b[v]));
+                     barrier_minimum(bounds, {s.a[v], kBeyondCap * s.cap[v]},
+                                     inner_volume6_gradient(s, v), rules.softness));
     const Vec3d full = capped(s, v, target) - s.b[v];
     double share = 1;
     for (int i = 0; i < kHalvings && share * full.length() > rules.least; ++i, share *= 0.5) {
         out = capped(s, v, s.b[v] + share * full);
-        if (move_allowed(s, v, out))
+        if (move_allowed_between(s, w, v, out))
             return true;
     }
     return false;
@@ -108,10 +122,12 @@ double first_reach(const GrowState& s, int v)
 
 /// Where a vertex used up its reach it gets more, where it hardly moved less. The floor keeps the
 /// rounding of a move within the hundredth that within_reach leaves.
-void adapt_reach(GrowState& s)
+void adapt_reach(GrowState& s, const std::vector<std::uint8_t>& still)
 {
     const double least = std::max(kLeastReach * s.diagonal, 200 * s.rounding);
     for (int v = 0; v < s.mesh->vertices; ++v) {
+        if (still[v])
+            continue;
         const double moved = (s.b[v] - s.home[v]).length();
         if (moved > 0.6 * s.reach[v])
             s.reach[v] = std::min(kMostReach * s.diagonal, 1.5 * s.reach[v]);
@@ -127,10 +143,13 @@ void update_quiet(const GrowState& s, std::vector<int>& quiet)
         quiet[v] = (s.b[v] - s.home[v]).length() < kQuietMove * s.diagonal ? quiet[v] + 1 : 0;
 }
 
-/// A vertex that has stopped moving is asked only every fourth round.
-bool asleep(const GrowState& s, const std::vector<int>& quiet, int v)
+/// Pinned vertices, and those that have stopped moving but for every fourth round.
+std::vector<std::uint8_t> find_still(const GrowState& s, const std::vector<int>& quiet)
 {
-    return s.pinned[v] || (quiet[v] > 1 && (quiet[v] + v) % 4 != 0);
+    std::vector<std::uint8_t> still(quiet.size());
+    for (std::size_t v = 0; v < still.size(); ++v)
+        still[v] = s.pinned[v] || (quiet[v] > 1 && (quiet[v] + int(v)) % 4 != 0);
+    return still;
 }
 
 /// Faster where little is left to give; a loss early on is the barrier undoing jams.
@@ -164,22 +183,23 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
     // A barrier worth more than what is left to win would only undo what is reached.
     double softness = s.bounded ? std::min(stage.softness, std::max(kLeastSoftness, 7 * (1 - fill)))
                                 : stage.softness;
-    SweepScratch sweep_scratch;
+    Walls walls;
     std::vector<int> quiet(s.b.size(), 0);
-    tbb::enumerable_thread_specific<Scratch> scratch;
+    tbb::enumerable_thread_specific<Bounds> scratch;
     for (int round = 0; round < stage.rounds && !(s.bounded && fill >= kEnoughFill); ++round) {
         progress.stop_if_interrupted(100 * round / stage.rounds);
         const MoveRules rules{options.soft_contacts, per_tet * softness, kLeastMove * s.diagonal};
         // Seldom: a pin that cannot go now will hardly be able to in the next round.
         if ((round & (round - 1)) == 0)
             report.released += static_cast<std::size_t>(release_pins(s, visibility));
-        rebuild_candidates(s);
+        const std::vector<std::uint8_t> still = find_still(s, quiet);
+        raise_walls(s, still, walls);
         for (int i = 0; i < kSweepsPerRound; ++i)
-            sweep(s, sweep_scratch, [&](int v, Vec3d& x) {
-                return !asleep(s, quiet, v) && propose_move(s, v, rules, scratch.local(), x);
+            sweep(s, walls, still, [&](int v, Vec3d& x) {
+                return propose_move(s, walls, v, rules, scratch.local(), x);
             });
         update_quiet(s, quiet);
-        adapt_reach(s);
+        adapt_reach(s, still);
         if (options.flips && !s.twelve)
             report.flips += flip_for_room(s);
         ++report.rounds;

@@ -14,12 +14,6 @@
 namespace vdb_shell::growth
 {
 
-/// A linear bound on one vertex: value(x) = n.(x-p) must stay positive.
-struct HalfSpace {
-    Vec3d n, p;
-    double value(const Vec3d& x) const { return n.dot(x - p); }
-};
-
 struct GrowState {
     const Connectivity* mesh = nullptr;
     std::vector<Vec3d> a, b;          ///< outer and inner points: float32 values held as doubles

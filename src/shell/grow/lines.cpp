@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/lines.h"
 
-#include "shell/grow/candidates.h"
 #include "shell/grow/sweep.h"
 
 #include <algorithm>
@@ -16,6 +15,7 @@ constexpr double kFirstStep = 2e-3;
 constexpr double kMostStep = 1e-2;
 constexpr double kLeastStep = 2e-4; ///< below it a vertex sleeps
 constexpr int kMostRounds = 400;
+constexpr double kShareOfRoom = 0.9; ///< to keep off the walls
 
 struct Lines {
     std::vector<double> length, step;
@@ -26,22 +26,42 @@ bool awake(const GrowState& s, const Lines& lines, int v)
     return !s.pinned[v] && lines.step[v] >= kLeastStep * s.diagonal && lines.length[v] < s.cap[v];
 }
 
-double next_length(const GrowState& s, const Lines& lines, int v)
+/// The share of the way to x at which the first wall is met; may be over 1.
+double room_to_walls(const Walls& w, int v, const Vec3d& b, const Vec3d& x)
 {
-    return std::min(lines.length[v] + lines.step[v], s.cap[v]);
+    double room = 2;
+    for (const Wall& wall : walls_of(w, v)) {
+        const double here = wall.value(b), there = wall.value(x);
+        if (there < here)
+            room = std::min(room, here / (here - there));
+    }
+    return room;
 }
 
-/// Notes what the sweep did; returns the number of vertices still awake.
-int update_steps(const GrowState& s, const std::vector<std::uint8_t>& moved, Lines& lines)
+/// A step along the line, or as much of it as walls leave room for.
+bool propose_longer(const GrowState& s, const Walls& w, const Lines& lines, const Directions& d,
+                    int v, Vec3d& x)
+{
+    const double length = lines.length[v], step = std::min(lines.step[v], s.cap[v] - length);
+    x = end_within_cap(s, v, d.inward[v], length + step);
+    const double room = kShareOfRoom * room_to_walls(w, v, s.b[v], x);
+    if (room < 1)
+        x = end_within_cap(s, v, d.inward[v], length + room * step);
+    return move_allowed_between(s, w, v, x);
+}
+
+/// Notes how far each vertex came; returns the number of vertices still awake.
+int update_steps(const GrowState& s, Lines& lines)
 {
     int awake_count = 0;
     for (int v = 0; v < s.mesh->vertices; ++v) {
         if (!awake(s, lines, v))
             continue;
-        if (moved[v])
-            lines.length[v] = next_length(s, lines, v);
-        lines.step[v] =
-            moved[v] ? std::min(2 * lines.step[v], kMostStep * s.diagonal) : 0.5 * lines.step[v];
+        const double length = (s.b[v] - s.a[v]).length(), gain = length - lines.length[v];
+        lines.length[v] = length;
+        lines.step[v] = gain > 0.5 * lines.step[v]
+                            ? std::min(2 * lines.step[v], kMostStep * s.diagonal)
+                            : 0.5 * lines.step[v];
         awake_count += awake(s, lines, v);
     }
     return awake_count;
@@ -55,20 +75,20 @@ void lengthen_lines(GrowState& s, const Directions& directions, const StageProgr
                 std::vector<double>(s.b.size(), kFirstStep * s.diagonal)};
     for (int v = 0; v < s.mesh->vertices; ++v)
         lines.length[v] = (s.b[v] - s.a[v]).length();
-    SweepScratch scratch;
+    Walls walls;
+    std::vector<std::uint8_t> still(s.b.size());
     int awake_count = s.mesh->vertices;
     for (int round = 0; awake_count > 0 && round < kMostRounds; ++round) {
         progress.stop_if_interrupted(0);
-        for (int v = 0; v < s.mesh->vertices; ++v)
-            s.reach[v] = awake(s, lines, v) ? 1.01 * lines.step[v] + s.rounding : 0;
-        rebuild_candidates(s);
-        sweep(s, scratch, [&](int v, Vec3d& x) {
-            if (!awake(s, lines, v))
-                return false;
-            x = end_within_cap(s, v, directions.inward[v], next_length(s, lines, v));
-            return move_allowed(s, v, x);
+        for (int v = 0; v < s.mesh->vertices; ++v) {
+            still[v] = !awake(s, lines, v);
+            s.reach[v] = still[v] ? 0 : 1.01 * lines.step[v] + s.rounding;
+        }
+        raise_walls(s, still, walls);
+        sweep(s, walls, still, [&](int v, Vec3d& x) {
+            return propose_longer(s, walls, lines, directions, v, x);
         });
-        awake_count = update_steps(s, scratch.moved, lines);
+        awake_count = update_steps(s, lines);
     }
 }
 

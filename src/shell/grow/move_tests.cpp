@@ -42,6 +42,30 @@ struct MovedTriangle {
     Box box;
 };
 
+MovedTriangle moved_triangle(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+{
+    MovedTriangle moved{at.face, inner_corners(s, at.face), inner_ids(s, at.face), {}};
+    moved.corners[at.local] = x;
+    return moved;
+}
+
+/// The moved triangle against those around its corner u that hold neither v nor `done`, whose
+/// triangles have been looked at; where u is pinned also against the outer ones.
+bool kin_clear_around(const GrowState& s, int v, const MovedTriangle& moved, int u, int done)
+{
+    const Connectivity& m = *s.mesh;
+    for (const FaceCorner& at : star(m, u)) {
+        const int g = at.face;
+        if (!m.incident_to(g, v) && (done < 0 || !m.incident_to(g, done)) &&
+            improper_contact(moved.corners, moved.ids, inner_corners(s, g), inner_ids(s, g)))
+            return false;
+        if (s.pinned[u] &&
+            improper_contact(moved.corners, moved.ids, outer_corners(s, g), outer_ids(s, g)))
+            return false;
+    }
+    return true;
+}
+
 bool touches_inner(const GrowState& s, int v, const MovedTriangle& moved, const Vec3d& x, int g)
 {
     const bool both = s.mesh->incident_to(g, v);
@@ -76,8 +100,7 @@ bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker)
         return false;
     };
     for (const FaceCorner& at : star(*s.mesh, v)) {
-        MovedTriangle moved{at.face, inner_corners(s, at.face), inner_ids(s, at.face), {}};
-        moved.corners[at.local] = x;
+        MovedTriangle moved = moved_triangle(s, at, x);
         moved.box = box_of(moved.corners);
         for (const int g : s.near_inner[at.face])
             if (touches_inner(s, v, moved, x, g))
@@ -185,7 +208,7 @@ bool inner_triangle_clear(const GrowState& s, int f, std::vector<int>& touched)
     return clear;
 }
 
-void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out)
+void tet_bounds(const GrowState& s, int v, Bounds& out)
 {
     for (const FaceCorner& at : star(*s.mesh, v))
         for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local)) {
@@ -194,8 +217,28 @@ void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out)
             const Vec3d& p = corner_of(s, at.face, tet.base[0]);
             const Vec3d u = corner_of(s, at.face, tet.base[1]) - p;
             const Vec3d w = corner_of(s, at.face, tet.base[2]) - p;
-            out.push_back({u.cross(w), p});
+            out.add(u.cross(w), p);
         }
+}
+
+bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
+{
+    const Connectivity& m = *s.mesh;
+    const Slice<FaceCorner> fan = star(m, v);
+    for (const FaceCorner& at : fan) {
+        const MovedTriangle moved = moved_triangle(s, at, x);
+        for (const FaceCorner& other : fan)
+            if (other.face > at.face) {
+                const MovedTriangle too = moved_triangle(s, other, x);
+                if (improper_contact(moved.corners, moved.ids, too.corners, too.ids))
+                    return false;
+            }
+        const int next = m.corner(at.face, (at.local + 1) % 3);
+        for (const int u : {next, m.corner(at.face, (at.local + 2) % 3)})
+            if (!kin_clear_around(s, v, moved, u, u == next ? -1 : next))
+                return false;
+    }
+    return true;
 }
 
 } // namespace vdb_shell::growth

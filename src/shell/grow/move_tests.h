@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "shell/grow/barrier.h"
 #include "shell/grow/grow_state.h"
 
 namespace vdb_shell::growth
@@ -45,6 +46,10 @@ bool split_positive(const GrowState& s, int f, int order);
 bool inner_triangle_clear(const GrowState& s, int f, std::vector<int>& touched);
 
 /// Appends the linear bounds that the tets around v put on b_v.
-void tet_bounds(const GrowState& s, int v, std::vector<HalfSpace>& out);
+void tet_bounds(const GrowState& s, int v, Bounds& out);
+
+/// Would no inner triangle around v meet one that shares a corner with it, with b_v = x? Exact.
+/// Reads nothing of vertices further than two edges from v.
+bool kin_clear_at(const GrowState& s, int v, const Vec3d& x);
 
 } // namespace vdb_shell::growth

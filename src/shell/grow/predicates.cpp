@@ -67,6 +67,13 @@ bool separate_triangles_touch(const Corners& s, const Corners& t)
     return false;
 }
 
+/// Whether the corners of s other than `shared` lie on the same side of t's plane, none in it.
+bool rest_on_one_side(const Corners& s, int shared, const Corners& t)
+{
+    const int one = orient(t[0], t[1], t[2], s[(shared + 1) % 3]);
+    return one != 0 && orient(t[0], t[1], t[2], s[(shared + 2) % 3]) == one;
+}
+
 } // namespace
 
 bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
@@ -82,6 +89,10 @@ bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
             }
     if (shared == 0)
         return separate_triangles_touch(s, t);
+    // With one triangle but for the shared corner on one side of the other's plane, only that
+    // corner lies in both.
+    if (shared == 1 && (rest_on_one_side(s, si, t) || rest_on_one_side(t, ti, s)))
+        return false;
     if (shared == 1)
         return segment_touches_triangle(s[(si + 1) % 3], s[(si + 2) % 3], t) ||
                segment_touches_triangle(t[(ti + 1) % 3], t[(ti + 2) % 3], s);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/quality.h"
 
-#include "shell/grow/candidates.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/sweep.h"
 #include "vdb_shell/certify/quality.h"
@@ -66,7 +65,7 @@ Shortfall shortfall_at(const GrowState& s, int v, const Vec3d& x, double bound)
 
 /// A step down the shortfall's gradient, at first as long as would take it to nothing if it were
 /// the square that it resembles, then shorter.
-bool propose_better(const GrowState& s, int v, double bound, Vec3d& out)
+bool propose_better(const GrowState& s, const Walls& w, int v, double bound, Vec3d& out)
 {
     const Shortfall now = shortfall_at(s, v, s.b[v], bound);
     const double slope = now.gradient.lengthSqr();
@@ -83,7 +82,7 @@ bool propose_better(const GrowState& s, int v, double bound, Vec3d& out)
         const Shortfall then = shortfall_at(s, v, out, bound);
         const bool better = then.sum < (1 - kLeastGain) * now.sum &&
                             (then.worst >= now.worst || then.worst >= bound);
-        if (better && move_allowed(s, v, out))
+        if (better && move_allowed_between(s, w, v, out))
             return true;
     }
     return false;
@@ -127,16 +126,16 @@ double whole_shortfall(const GrowState& s, double bound, QualityResult& result)
 QualityResult raise_quality(GrowState& s, double bound, bool flips, const StageProgress& progress)
 {
     QualityResult result;
-    SweepScratch scratch;
+    Walls walls;
     for (int v = 0; v < s.mesh->vertices; ++v)
         s.reach[v] = std::max(kReachShare * mean_edge(s, v), 200 * s.rounding);
     double shortfall = whole_shortfall(s, bound, result);
     while (result.rounds < kMostRounds && shortfall > 0) {
         progress.stop_if_interrupted(int(100 * result.rounds / kMostRounds));
-        rebuild_candidates(s);
+        raise_walls(s, s.pinned, walls);
         for (int i = 0; i < kSweepsPerRound; ++i)
-            sweep(s, scratch,
-                  [&](int v, Vec3d& x) { return !s.pinned[v] && propose_better(s, v, bound, x); });
+            sweep(s, walls, s.pinned,
+                  [&](int v, Vec3d& x) { return propose_better(s, walls, v, bound, x); });
         if (flips)
             result.flips += flip_for_quality(s);
         ++result.rounds;

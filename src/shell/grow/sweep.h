@@ -3,56 +3,37 @@
 
 #include "core/parallel.h"
 #include "shell/grow/move_tests.h"
+#include "shell/grow/walls.h"
 
 namespace vdb_shell::growth
 {
 
-struct SweepScratch {
-    std::vector<Vec3d> proposal;
-    std::vector<std::uint8_t> wants, moved; ///< by vertex
-    std::vector<int> stamp;                 ///< by face: the batch that last moved it
-    int batch = 0;
-};
-
-/// Did an earlier commit of this batch move anything that v's star may touch?
-inline bool disturbed(const GrowState& s, const SweepScratch& w, int v)
+/// Everything that a move between walls must satisfy, cheapest test first. No component can be
+/// swallowed: on its straight way no triangle passes through a wall.
+inline bool move_allowed_between(const GrowState& s, const Walls& w, int v, const Vec3d& x)
 {
-    for (const FaceCorner& at : star(*s.mesh, v))
-        for (const int g : s.near_inner[at.face])
-            if (w.stamp[g] == w.batch)
-                return true;
-    return false;
+    return between_walls(w, v, x) && within_cap(s, v, x) && tets_positive_at(s, v, x) &&
+           kin_clear_at(s, v, x);
 }
 
-/// One Gauss-Seidel sweep: the proposals of a colour class are made in parallel against the frozen
-/// state, then committed one by one in index order, so the result does not depend on the threads.
-/// `propose(v, x)` returns true and a position that is already tested against the present state.
-/// Which vertices moved stands in `w.moved`.
-template <class Propose> void sweep(GrowState& s, SweepScratch& w, const Propose& propose)
+/// One Gauss-Seidel sweep over the vertices that are not `still`: propose(v, x) returns true and a
+/// position that move_allowed_between allows, which is then taken. The vertices of a colour go in
+/// parallel: what one of them reads, walls aside, no other of them moves.
+template <class Propose>
+void sweep(GrowState& s, const Walls& w, const std::vector<std::uint8_t>& still,
+           const Propose& propose)
 {
-    constexpr std::size_t kGrain = 8; // a proposal costs microseconds to milliseconds
-    w.proposal.resize(s.b.size());
-    w.wants.assign(s.b.size(), 0);
-    w.moved.assign(s.b.size(), 0);
-    w.stamp.resize(s.mesh->faces.size(), 0);
-    for (const std::vector<int>& colour : s.mesh->colour) {
+    constexpr std::size_t kGrain = 16; // a proposal costs microseconds
+    for (const std::vector<int>& colour : s.mesh->colour)
         for_each_index(
             colour.size(),
-            [&](std::size_t i) { w.wants[colour[i]] = propose(colour[i], w.proposal[colour[i]]); },
+            [&](std::size_t i) {
+                const int v = colour[i];
+                Vec3d x;
+                if (!still[v] && !w.locked[v] && propose(v, x))
+                    s.b[v] = x;
+            },
             kGrain);
-        ++w.batch;
-        for (const int v : colour) {
-            if (!w.wants[v])
-                continue;
-            const Vec3d& x = w.proposal[v];
-            if ((disturbed(s, w, v) && !star_clear_at(s, v, x)) || swallows_component(s, v, x))
-                continue;
-            commit_move(s, v, x);
-            for (const FaceCorner& at : star(*s.mesh, v))
-                w.stamp[at.face] = w.batch;
-            w.moved[v] = 1;
-        }
-    }
 }
 
 } // namespace vdb_shell::growth

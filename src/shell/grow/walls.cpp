@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shell/grow/walls.h"
+
+#include "core/parallel.h"
+#include "shell/grow/separation.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+constexpr std::size_t kChunk = 128; ///< faces whose walls are listed together
+
+/// A wall before it is handed to the vertices: corners 0..2 of face f lie where value > 0, those of
+/// inner face g where it is < 0.
+struct Barrier {
+    Wall wall;
+    int f, g;                ///< g: -1 for an outer triangle
+    std::uint8_t reached = 0; ///< bit k: corner k of f, bit 3 + k: corner k of g
+};
+
+struct Chunk {
+    std::vector<Barrier> barriers;
+    std::vector<int> locked; ///< faces
+};
+
+struct Stock {
+    std::vector<Body> inner;
+    std::vector<Box> box;
+    std::vector<std::uint8_t> still; ///< by face: none of its corners will move
+};
+
+bool share_a_corner(const GrowState& s, int f, int g)
+{
+    for (int k = 0; k < 3; ++k)
+        if (s.mesh->incident_to(g, s.mesh->corner(f, k)))
+            return true;
+    return false;
+}
+
+bool share_a_pin(const GrowState& s, int f, int g)
+{
+    for (int k = 0; k < 3; ++k) {
+        const int v = s.mesh->corner(f, k);
+        if (s.pinned[v] && s.mesh->incident_to(g, v))
+            return true;
+    }
+    return false;
+}
+
+Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
+{
+    const std::size_t count = s.mesh->faces.size();
+    s.home = s.b;
+    Stock stock{std::vector<Body>(count), std::vector<Box>(count),
+                std::vector<std::uint8_t>(count)};
+    for_each_index(
+        count,
+        [&](std::size_t i) {
+            const int f = static_cast<int>(i);
+            double reach = 0;
+            stock.still[f] = 1;
+            for (int k = 0; k < 3; ++k) {
+                const int v = s.mesh->corner(f, k);
+                if (still[v])
+                    continue;
+                reach = std::max(reach, s.reach[v]);
+                stock.still[f] = 0;
+            }
+            stock.inner[f] = body_of(inner_corners(s, f), reach);
+            stock.box[f] = box_of(stock.inner[f].corner);
+            s.inner_box[f] = stock.box[f];
+            stock.box[f].inflate(reach);
+        },
+        256);
+    return stock;
+}
+
+double rounding_of_walls(const GrowState& s)
+{
+    double largest = 0;
+    for (const Vec3d& p : s.a)
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, std::abs(p[k]));
+    // Four roundings of terms of at most |x|, and the offset's own.
+    constexpr double kRoundings = 16;
+    return kRoundings * std::numeric_limits<double>::epsilon() *
+           (largest + (s.bounded ? 0.0 : s.diagonal));
+}
+
+class Builder
+{
+public:
+    Builder(const GrowState& s, const Stock& stock, const std::vector<std::uint8_t>& still,
+            double slack)
+        : s_(s), stock_(stock), still_(still), slack_(slack)
+    {
+    }
+
+    void list(int f, Chunk& out) const
+    {
+        if (stock_.still[f])
+            return;
+        s_.inner_tree.for_each_overlap(stock_.box[f], [&](int g) {
+            // Each pair once: from its smaller face, or from the one that moves.
+            if (g == f || (g < f && !stock_.still[g]) || share_a_corner(s_, f, g))
+                return;
+            add(f, g, stock_.inner[g], stock_.still[g] ? 0.0 : 0.5, out);
+        });
+        s_.outer_tree.for_each_overlap(stock_.box[f], [&](int g) {
+            if (!share_a_pin(s_, f, g))
+                add(f, -1, body_of(outer_corners(s_, g), 0.0), 0.0, out);
+        });
+    }
+
+private:
+    /// `share` of the gap goes to the other triangle.
+    void add(int f, int g, const Body& other, double share, Chunk& out) const
+    {
+        const Body& body = stock_.inner[f];
+        const double need = body.reach + other.reach;
+        const Slab slab = slab_between(body, other, need);
+        if (slab.gap > need)
+            return;
+        if (!(slab.gap > 8 * slack_)) {
+            out.locked.push_back(f);
+            if (g >= 0)
+                out.locked.push_back(g);
+            return;
+        }
+        const double at = slab.hi + std::max(share * slab.gap, 2 * slack_);
+        Barrier barrier{{slab.n, Vec3d(slab.n).dot(body.corner[0]) + at}, f, g};
+        for (int k = 0; k < 3; ++k) {
+            barrier.reached |= std::uint8_t(reaches(barrier.wall, f, k, 1.0) << k);
+            if (share > 0)
+                barrier.reached |= std::uint8_t(reaches(barrier.wall, g, k, -1.0) << (3 + k));
+        }
+        if (barrier.reached)
+            out.barriers.push_back(barrier);
+    }
+
+    bool reaches(const Wall& wall, int f, int k, double side) const
+    {
+        const int v = s_.mesh->corner(f, k);
+        return !still_[v] && side * wall.value(s_.home[v]) < s_.reach[v] + 2 * slack_;
+    }
+
+    const GrowState& s_;
+    const Stock& stock_;
+    const std::vector<std::uint8_t>& still_;
+    double slack_;
+};
+
+template <class Visit> void for_each_reached(const GrowState& s, const Barrier& b, Visit&& visit)
+{
+    for (int k = 0; k < 3; ++k) {
+        if (b.reached >> k & 1)
+            visit(s.mesh->corner(b.f, k), 0u);
+        if (b.reached >> (3 + k) & 1)
+            visit(s.mesh->corner(b.g, k), 1u);
+    }
+}
+
+/// Lists by vertex, in the order of the chunks whatever thread wrote first.
+void hand_out(const GrowState& s, const std::vector<Chunk>& chunks, Walls& w)
+{
+    const std::size_t vertices = s.b.size();
+    std::vector<std::atomic<std::uint32_t>> count(vertices);
+    std::vector<std::size_t> base(chunks.size() + 1, 0);
+    for (std::size_t c = 0; c < chunks.size(); ++c)
+        base[c + 1] = base[c] + chunks[c].barriers.size();
+    for_each_index(
+        chunks.size(),
+        [&](std::size_t c) {
+            for (const Barrier& b : chunks[c].barriers)
+                for_each_reached(s, b, [&](int v, unsigned) {
+                    count[v].fetch_add(1, std::memory_order_relaxed);
+                });
+        },
+        4);
+    w.first.resize(vertices + 1);
+    w.first[0] = 0;
+    for (std::size_t v = 0; v < vertices; ++v)
+        w.first[v + 1] = w.first[v] + count[v].exchange(0, std::memory_order_relaxed);
+    struct Entry {
+        std::size_t key; ///< number of the barrier and side
+        Wall wall;
+        bool operator<(const Entry& o) const { return key < o.key; }
+    };
+    std::vector<Entry> entry(w.first[vertices]);
+    for_each_index(
+        chunks.size(),
+        [&](std::size_t c) {
+            for (std::size_t i = 0; i < chunks[c].barriers.size(); ++i) {
+                const Barrier& b = chunks[c].barriers[i];
+                for_each_reached(s, b, [&](int v, unsigned side) {
+                    const std::size_t slot =
+                        w.first[v] + count[v].fetch_add(1, std::memory_order_relaxed);
+                    entry[slot] = {2 * (base[c] + i) + side, side == 0
+                                                                ? b.wall
+                                                                : Wall{-b.wall.n, -b.wall.d}};
+                });
+            }
+        },
+        4);
+    w.wall.resize(entry.size());
+    for_each_index(vertices, [&](std::size_t v) {
+        std::sort(entry.begin() + std::ptrdiff_t(w.first[v]),
+                  entry.begin() + std::ptrdiff_t(w.first[v + 1]));
+        for (std::size_t i = w.first[v]; i < w.first[v + 1]; ++i)
+            w.wall[i] = entry[i].wall;
+    });
+}
+
+} // namespace
+
+void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w)
+{
+    const Stock stock = take_stock(s, still);
+    s.inner_tree.build(stock.box);
+    w.slack = rounding_of_walls(s);
+    std::vector<Chunk> chunks((stock.inner.size() + kChunk - 1) / kChunk);
+    const Builder builder(s, stock, still, w.slack);
+    for_each_index(
+        chunks.size(),
+        [&](std::size_t c) {
+            const std::size_t end = std::min(stock.inner.size(), (c + 1) * kChunk);
+            for (std::size_t f = c * kChunk; f < end; ++f)
+                builder.list(static_cast<int>(f), chunks[c]);
+        },
+        1);
+    w.locked.assign(s.b.size(), 0);
+    for (const Chunk& chunk : chunks)
+        for (const int f : chunk.locked)
+            for (int k = 0; k < 3; ++k)
+                w.locked[s.mesh->corner(f, k)] = 1;
+    hand_out(s, chunks, w);
+}
+
+} // namespace vdb_shell::growth
