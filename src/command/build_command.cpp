@@ -161,7 +161,8 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
           "Smooth the directions across faces, not across creases [on]");
     lever("--top-down,!--no-top-down", grow.top_down,
           "Start from long lines and shrink them, instead of a thin shell [on]");
-    lever("--grow-lines,!--no-grow-lines", grow.grow_lines, "Lengthen along the lines [on]");
+    lever("--grow-lines,!--no-grow-lines", grow.grow_lines,
+          "Lengthen along the lines before the free moves");
     lever("--free-moves,!--no-free-moves", grow.free_moves,
           "Let inner vertices leave their lines [on]");
     lever("--soft-contacts,!--no-soft-contacts", grow.soft_contacts,

@@ -24,6 +24,10 @@ using growth::GrowState;
 
 // Rounds under the twelve-tet test before the three-tet ones: enough to spread the vertices.
 constexpr int kTwelveRoundsFirst = 25;
+// Of the barrier's weight per round, and what the last rounds must win: half the rounds, and a
+// fifth of a point of fill less, than what the thickest shell is given.
+constexpr double kCool = 0.65, kCoolSlowly = 0.72;
+constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -76,14 +80,18 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOp
     const bool thickest = options.method == Method::thickest;
     const int twelve_rounds =
         thickest ? std::min(kTwelveRoundsFirst, options.free_rounds) : options.free_rounds;
-    growth::move_freely(s, directions.visibility, options, {twelve_rounds, growth::kTwelveSoftness},
-                        progress, report);
+    const double cool = thickest ? kCoolSlowly : kCool;
+    const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
+    growth::move_freely(s, directions.visibility, options,
+                        {twelve_rounds, growth::kTwelveSoftness, cool, least_gain}, progress,
+                        report);
     if (!thickest)
         return;
     s.twelve = false;
     growth::order_by_length(s);
     growth::move_freely(s, directions.visibility, options,
-                        {options.free_rounds, growth::kThreeSoftness}, progress, report);
+                        {options.free_rounds, growth::kThreeSoftness, cool, least_gain}, progress,
+                        report);
 }
 
 PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s)

@@ -110,8 +110,10 @@ class Newton
 {
 public:
     Newton(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness)
-        : bounds_(bounds), gradient_(gradient / (softness * bounds.scale_)),
-          ball_{(ball.centre - bounds.here_) * bounds.scale_, ball.radius * bounds.scale_}
+        : bounds_(bounds),
+          gradient_(gradient / (softness * bounds.scale_)), ball_{(ball.centre - bounds.here_) *
+                                                                      bounds.scale_,
+                                                                  ball.radius * bounds.scale_}
     {
     }
 
@@ -191,8 +193,7 @@ private:
         const Vec3s d(dx);
         for (Bounds::Block& b : bounds_.block_)
             for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
-                const float value =
-                    b.value[i] + (b.x[i] * d[0] + b.y[i] * d[1] + b.z[i] * d[2]);
+                const float value = b.value[i] + (b.x[i] * d[0] + b.y[i] * d[1] + b.z[i] * d[2]);
                 // A bound overstepped by a damped step no longer counts.
                 b.weight[i] = value > 0 ? b.weight[i] : 0.0f;
                 b.value[i] = value > 0 ? value : 1.0f;

@@ -16,13 +16,12 @@ struct Reachable {
     Corners corner;
     Vec3d reach{0.0};
     Vec3d normal{0.0}; ///< any length
-    double soft = 0;   ///< soft contacts look this far beyond it
 };
 
 Reachable reachable(const Corners& corner, const Vec3d& reach)
 {
     const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    return {corner, reach, normal, kSoftRange * std::max({reach[0], reach[1], reach[2]})};
+    return {corner, reach, normal};
 }
 
 Box reach_box(const Reachable& t)
@@ -37,9 +36,8 @@ Box reach_box(const Reachable& t)
     return box;
 }
 
-/// Whether a plane across `axis` keeps the two further apart than soft contacts look. The slack
-/// covers the rounding of this very test: leaving a pair out has to be right, keeping one costs
-/// time only.
+/// Whether a plane across `axis` keeps the two apart. The slack covers the rounding of this very
+/// test: leaving a pair out has to be right, keeping one costs time only.
 bool apart_along(const Vec3d& axis, const Reachable& s, const Reachable& t)
 {
     const double length = axis.length();
@@ -54,7 +52,7 @@ bool apart_along(const Vec3d& axis, const Reachable& s, const Reachable& t)
         size = std::max({size, p.lengthSqr(), q.lengthSqr()});
     }
     constexpr double kSlack = 1e-12;
-    const double need = length * (std::max(s.soft, t.soft) + kSlack * std::sqrt(size));
+    const double need = length * kSlack * std::sqrt(size);
     return t_lo - s_hi > need || s_lo - t_hi > need;
 }
 

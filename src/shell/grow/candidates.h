@@ -8,12 +8,8 @@
 namespace vdb_shell::growth
 {
 
-/// How far from a vertex soft contacts look, as a share of its reach. Wider ranges make a vertex
-/// give way to what it would never meet, and cost more.
-constexpr double kSoftRange = 0.4;
-
 /// Makes boxes and candidate lists for the present positions, which become the homes. Left out are
-/// pairs that cannot come within each other's soft range while every vertex keeps to its reach.
+/// pairs that cannot touch while every vertex keeps to its reach.
 void rebuild_candidates(GrowState& s);
 /// The same for the marked faces only, on the tree of the last rebuild_candidates.
 void update_candidates(GrowState& s, const std::vector<std::uint8_t>& faces);

@@ -17,10 +17,12 @@ namespace
 
 constexpr double kEnoughFill = 0.998; ///< a solid this full is not worth another round
 constexpr double kLeastSoftness = 1e-3;
-constexpr double kCool = 0.72, kCoolFast = 0.3; ///< factors per round
-constexpr double kLeastGain = 1e-4; ///< share of the solid that a round must win to go on
-constexpr int kSweepsPerRound = 2;  ///< between the same walls
+constexpr double kCoolFast = 0.3;  ///< factor per round where little is won
+constexpr double kStale = 5e-4;    ///< share of the solid: a round that wins less is such a round
+constexpr int kSweepsPerRound = 2; ///< between the same walls
 constexpr int kHalvings = 5;
+constexpr double kReachAhead = 1.5; ///< next reach over the last move
+constexpr double kReachKept = 0.3;  ///< least share of a reach that is left for the next round
 /// How far from a vertex walls steer it, as a share of its reach; the others only stop it.
 constexpr double kSoftRange = 0.4;
 constexpr float kWallWeight = 4; ///< of all near walls, where a tet has 1
@@ -31,8 +33,8 @@ constexpr double kBeyondCap = 1.02;
 // Lengths as shares of the diagonal.
 constexpr double kLeastMove = 1e-6;
 constexpr double kQuietMove = 3e-5;
+constexpr double kQuietShare = 3e-3; ///< of the pillar: a move that wins next to nothing
 constexpr double kLeastReach = 1e-4, kMostReach = 0.05;
-
 
 struct MoveRules {
     bool contacts;
@@ -53,7 +55,7 @@ Vec3d inner_volume6_gradient(const GrowState& s, int v)
     return sum;
 }
 
-/// Nearer than the reach, which the candidate lists rely on.
+/// Nearer than the reach, which the walls rely on.
 Vec3d within_reach(const GrowState& s, int v, const Vec3d& x)
 {
     const Vec3d off = x - s.home[v];
@@ -108,7 +110,7 @@ bool propose_move(const GrowState& s, const Walls& w, int v, const MoveRules& ru
     return false;
 }
 
-/// Short where the inner surface has already collapsed: candidate lists stay short there.
+/// Short where the inner surface has already collapsed: the walls stay few there.
 double first_reach(const GrowState& s, int v)
 {
     double outer = 0, inner = 0;
@@ -120,7 +122,7 @@ double first_reach(const GrowState& s, int v)
     return std::max(std::min(0.3 * outer / count, inner), 200 * s.rounding);
 }
 
-/// Where a vertex used up its reach it gets more, where it hardly moved less. The floor keeps the
+/// Half as far again as the vertex went, for short reaches keep the walls few. The floor keeps the
 /// rounding of a move within the hundredth that within_reach leaves.
 void adapt_reach(GrowState& s, const std::vector<std::uint8_t>& still)
 {
@@ -128,19 +130,20 @@ void adapt_reach(GrowState& s, const std::vector<std::uint8_t>& still)
     for (int v = 0; v < s.mesh->vertices; ++v) {
         if (still[v])
             continue;
-        const double moved = (s.b[v] - s.home[v]).length();
-        if (moved > 0.6 * s.reach[v])
-            s.reach[v] = std::min(kMostReach * s.diagonal, 1.5 * s.reach[v]);
-        else if (moved < 0.25 * s.reach[v])
-            s.reach[v] = std::max(least, 0.7 * s.reach[v]);
+        const double ahead = kReachAhead * (s.b[v] - s.home[v]).length();
+        s.reach[v] =
+            std::max({least, kReachKept * s.reach[v], std::min(ahead, kMostReach * s.diagonal)});
     }
 }
 
 /// Rounds for which each vertex has not moved.
 void update_quiet(const GrowState& s, std::vector<int>& quiet)
 {
-    for (int v = 0; v < s.mesh->vertices; ++v)
-        quiet[v] = (s.b[v] - s.home[v]).length() < kQuietMove * s.diagonal ? quiet[v] + 1 : 0;
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        const double enough =
+            std::max(kQuietMove * s.diagonal, kQuietShare * (s.b[v] - s.a[v]).length());
+        quiet[v] = (s.b[v] - s.home[v]).length() < enough ? quiet[v] + 1 : 0;
+    }
 }
 
 /// Pinned vertices, and those that have stopped moving but for every fourth round.
@@ -153,10 +156,10 @@ std::vector<std::uint8_t> find_still(const GrowState& s, const std::vector<int>&
 }
 
 /// Faster where little is left to give; a loss early on is the barrier undoing jams.
-double cooled(double softness, double gain)
+double cooled(double softness, double gain, double factor)
 {
-    const bool stale = softness < 0.05 && std::abs(gain) < 5 * kLeastGain;
-    return std::max(kLeastSoftness, softness * (stale ? kCoolFast : kCool));
+    const bool stale = softness < 0.05 && std::abs(gain) < kStale;
+    return std::max(kLeastSoftness, softness * (stale ? kCoolFast : factor));
 }
 
 /// What the barrier's weight is measured by: the solid, or where there is no end to what can be
@@ -205,9 +208,9 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         ++report.rounds;
         const double gain = fill_of(s) - fill;
         fill += gain;
-        if (softness <= kLeastSoftness && gain < kLeastGain)
+        if (softness <= kLeastSoftness && gain < stage.least_gain)
             break;
-        softness = cooled(softness, gain);
+        softness = cooled(softness, gain, stage.cool);
     }
     if (fill < first_fill) {
         s.b = first_b;

@@ -15,12 +15,15 @@ inline constexpr double kTwelveSoftness = 1.0;
 inline constexpr double kThreeSoftness = 0.02;
 
 struct FreeStage {
-    int rounds;      ///< upper bound
-    double softness; ///< at the first round; it sinks from round to round
+    int rounds;        ///< upper bound
+    double softness;   ///< at the first round
+    double cool;       ///< factor on it per round: the slower, the thicker and the longer
+    double least_gain; ///< share of the solid that a round must win to go on, at the end
 };
 
 /// Inner vertices leave their lines: each minimises the inner volume with an interior barrier on
-/// the tets around it and on near triangles, and every move is tested exactly before it is made.
+/// the tets around it and on the walls in front of near triangles, and every move is tested exactly
+/// before it is made.
 /// Never ends with less fill than it began with. Adds to the report's rounds and flips.
 /// Pinned vertices of positive `visibility` are tried again on the way.
 void move_freely(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,

@@ -85,9 +85,8 @@ void lengthen_lines(GrowState& s, const Directions& directions, const StageProgr
             s.reach[v] = still[v] ? 0 : 1.01 * lines.step[v] + s.rounding;
         }
         raise_walls(s, still, walls);
-        sweep(s, walls, still, [&](int v, Vec3d& x) {
-            return propose_longer(s, walls, lines, directions, v, x);
-        });
+        sweep(s, walls, still,
+              [&](int v, Vec3d& x) { return propose_longer(s, walls, lines, directions, v, x); });
         awake_count = update_steps(s, lines);
     }
 }

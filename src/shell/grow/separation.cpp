@@ -68,8 +68,9 @@ struct EdgePair {
 /// branches, so that the compiler can do several pairs at a time.
 template <class Real> EdgePair closest_edges(const Pair& pair, double size)
 {
-    constexpr int kPairs = 9;
-    Real p[3][kPairs], d[3][kPairs], q[3][kPairs], e[3][kPairs], distance2[kPairs];
+    constexpr int kPairs = 9, kLanes = 12; // whole vectors
+    Real p[3][kLanes] = {}, d[3][kLanes] = {}, q[3][kLanes] = {}, e[3][kLanes] = {};
+    Real distance2[kLanes];
     const double scale = 1 / size;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
@@ -80,7 +81,7 @@ template <class Real> EdgePair closest_edges(const Pair& pair, double size)
                 q[k][at] = static_cast<Real>(scale * pair.t[j][k]);
                 e[k][at] = static_cast<Real>(scale * (pair.t[j1][k] - pair.t[j][k]));
             }
-    for (int at = 0; at < kPairs; ++at) {
+    for (int at = 0; at < kLanes; ++at) {
         constexpr Real kTiny = Real(1e-20), kParallel = 16 * std::numeric_limits<Real>::epsilon();
         const Real rx = p[0][at] - q[0][at], ry = p[1][at] - q[1][at], rz = p[2][at] - q[2][at];
         const Real dx = d[0][at], dy = d[1][at], dz = d[2][at];
@@ -89,8 +90,10 @@ template <class Real> EdgePair closest_edges(const Pair& pair, double size)
         const Real ee = ex * ex + ey * ey + ez * ez + kTiny;
         const Real de = dx * ex + dy * ey + dz * ez;
         const Real dr = dx * rx + dy * ry + dz * rz, er = ex * rx + ey * ry + ez * rz;
-        const Real denominator = std::max(dd * ee - de * de, kParallel * dd * ee);
-        const auto share = [](Real x) { return std::min(std::max(x, Real(0)), Real(1)); };
+        const auto least_of = [](Real x, Real y) { return x < y ? x : y; };
+        const auto most_of = [](Real x, Real y) { return x > y ? x : y; };
+        const Real denominator = most_of(dd * ee - de * de, kParallel * dd * ee);
+        const auto share = [&](Real x) { return least_of(most_of(x, Real(0)), Real(1)); };
         const auto from = [&](Real start) {
             const Real t = share((de * start + er) / ee), s = share((de * t - dr) / dd);
             const Real x = rx + s * dx - t * ex, y = ry + s * dy - t * ey;
@@ -98,8 +101,8 @@ template <class Real> EdgePair closest_edges(const Pair& pair, double size)
             return x * x + y * y + z * z;
         };
         // Of edges that are nearly parallel one end is among the closest points.
-        distance2[at] = std::min(from(share((de * er - dr * ee) / denominator)),
-                                 std::min(from(Real(0)), from(Real(1))));
+        distance2[at] = least_of(from(share((de * er - dr * ee) / denominator)),
+                                 least_of(from(Real(0)), from(Real(1))));
     }
     const Real* const least = std::min_element(distance2, distance2 + kPairs);
     return {static_cast<int>(least - distance2), static_cast<double>(*least)};
@@ -108,7 +111,7 @@ template <class Real> EdgePair closest_edges(const Pair& pair, double size)
 void try_closest_edges(const Pair& p, Slab& best)
 {
     // Below this distance, in units of the pair's size, float32 cannot choose.
-    constexpr double kNear = 0.02;
+    constexpr double kNear = 0.004;
     double size = 0;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
@@ -119,8 +122,7 @@ void try_closest_edges(const Pair& p, Slab& best)
     if (closest.distance2 < kNear * kNear)
         closest = closest_edges<double>(p, size);
     const int i = closest.at / 3, j = closest.at % 3;
-    try_axis(between_segments(p.s[i], p.s[(i + 1) % 3] - p.s[i], p.t[j],
-                              p.t[(j + 1) % 3] - p.t[j]),
+    try_axis(between_segments(p.s[i], p.s[(i + 1) % 3] - p.s[i], p.t[j], p.t[(j + 1) % 3] - p.t[j]),
              p, best);
 }
 

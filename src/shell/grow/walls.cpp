@@ -19,7 +19,7 @@ constexpr std::size_t kChunk = 128; ///< faces whose walls are listed together
 /// inner face g where it is < 0.
 struct Barrier {
     Wall wall;
-    int f, g;                ///< g: -1 for an outer triangle
+    int f, g;                 ///< g: -1 for an outer triangle
     std::uint8_t reached = 0; ///< bit k: corner k of f, bit 3 + k: corner k of g
 };
 
@@ -200,9 +200,8 @@ void hand_out(const GrowState& s, const std::vector<Chunk>& chunks, Walls& w)
                 for_each_reached(s, b, [&](int v, unsigned side) {
                     const std::size_t slot =
                         w.first[v] + count[v].fetch_add(1, std::memory_order_relaxed);
-                    entry[slot] = {2 * (base[c] + i) + side, side == 0
-                                                                ? b.wall
-                                                                : Wall{-b.wall.n, -b.wall.d}};
+                    entry[slot] = {2 * (base[c] + i) + side,
+                                   side == 0 ? b.wall : Wall{-b.wall.n, -b.wall.d}};
                 });
             }
         },

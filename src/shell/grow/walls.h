@@ -17,10 +17,11 @@ struct Wall {
 };
 
 struct Walls {
-    std::vector<std::size_t> first;   ///< vertex -> its first wall; one past the end
-    std::vector<Wall> wall;           ///< of all vertices
-    std::vector<std::uint8_t> locked; ///< by vertex: must not move, something is too near for a wall
-    double slack = 0;                 ///< bound on the rounding error of Wall::value
+    std::vector<std::size_t> first; ///< vertex -> its first wall; one past the end
+    std::vector<Wall> wall;         ///< of all vertices
+    std::vector<std::uint8_t>
+        locked;       ///< by vertex: must not move, something is too near for a wall
+    double slack = 0; ///< bound on the rounding error of Wall::value
 };
 
 inline Slice<Wall> walls_of(const Walls& w, int v)
