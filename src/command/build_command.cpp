@@ -162,7 +162,7 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
     lever("--top-down,!--no-top-down", grow.top_down,
           "Start from long lines and shrink them, instead of a thin shell [on]");
     lever("--grow-lines,!--no-grow-lines", grow.grow_lines,
-          "Lengthen along the lines before the free moves");
+          "Lengthen along the lines where the start is nearly full [on]");
     lever("--free-moves,!--no-free-moves", grow.free_moves,
           "Let inner vertices leave their lines [on]");
     lever("--soft-contacts,!--no-soft-contacts", grow.soft_contacts,

@@ -24,6 +24,9 @@ using growth::GrowState;
 
 // Rounds under the twelve-tet test before the three-tet ones: enough to spread the vertices.
 constexpr int kTwelveRoundsFirst = 25;
+// From here on lines finish what the start began, sooner than free moves; elsewhere free moves do
+// as well without them.
+constexpr double kNearlyFull = 0.9;
 // Of the barrier's weight per round, and what the last rounds must win: half the rounds, and a
 // fifth of a point of fill less, than what the thickest shell is given.
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
@@ -168,7 +171,7 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
 
     settle(s, lines, start, options, progress);
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
-    if (options.grow_lines)
+    if (options.grow_lines && (!s.bounded || growth::fill_of(s) > kNearlyFull))
         growth::lengthen_lines(s, lines, progress);
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)

@@ -28,8 +28,8 @@ struct GrowOptions {
     bool smooth_directions = true; ///< bilateral smoothing of the directions, visibility kept
     bool top_down = true;          ///< start from long lines, shrunk until valid, instead of a thin
                                    ///< shell
-    bool grow_lines = false;       ///< lengthen along the lines before any free move: thicker on
-                                   ///< some coarse meshes, for up to twice the time
+    bool grow_lines = true;        ///< lengthen along the lines: outward, and inward where the start
+                                   ///< is nearly full already (round and convex solids)
     bool free_moves = true;        ///< let inner vertices leave their lines
     bool soft_contacts = true;     ///< free moves keep clear of near triangles before they touch
     bool flips = true;             ///< choose diagonals again while moving (thickest) and for

@@ -15,6 +15,8 @@ constexpr double kFirstStep = 2e-3;
 constexpr double kMostStep = 1e-2;
 constexpr double kLeastStep = 2e-4; ///< below it a vertex sleeps
 constexpr int kMostRounds = 400;
+constexpr int kFirstRounds = 3;      ///< while the steps find their length
+constexpr double kLeastGain = 3e-3;  ///< share of the solid that a round must win to go on
 constexpr double kShareOfRoom = 0.9; ///< to keep off the walls
 
 struct Lines {
@@ -78,6 +80,7 @@ void lengthen_lines(GrowState& s, const Directions& directions, const StageProgr
     Walls walls;
     std::vector<std::uint8_t> still(s.b.size());
     int awake_count = s.mesh->vertices;
+    double fill = fill_of(s);
     for (int round = 0; awake_count > 0 && round < kMostRounds; ++round) {
         progress.stop_if_interrupted(0);
         for (int v = 0; v < s.mesh->vertices; ++v) {
@@ -88,6 +91,10 @@ void lengthen_lines(GrowState& s, const Directions& directions, const StageProgr
         sweep(s, walls, still,
               [&](int v, Vec3d& x) { return propose_longer(s, walls, lines, directions, v, x); });
         awake_count = update_steps(s, lines);
+        const double gain = fill_of(s) - fill;
+        fill += gain;
+        if (s.bounded && round >= kFirstRounds && gain < kLeastGain)
+            break;
     }
 }
 

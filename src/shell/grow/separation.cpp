@@ -82,7 +82,8 @@ template <class Real> EdgePair closest_edges(const Pair& pair, double size)
                 e[k][at] = static_cast<Real>(scale * (pair.t[j1][k] - pair.t[j][k]));
             }
     for (int at = 0; at < kLanes; ++at) {
-        constexpr Real kTiny = Real(1e-20), kParallel = 16 * std::numeric_limits<Real>::epsilon();
+        // Squares of it are far from underflow, which would cost more than all the rest.
+        constexpr Real kTiny = Real(1e-12), kParallel = 16 * std::numeric_limits<Real>::epsilon();
         const Real rx = p[0][at] - q[0][at], ry = p[1][at] - q[1][at], rz = p[2][at] - q[2][at];
         const Real dx = d[0][at], dy = d[1][at], dz = d[2][at];
         const Real ex = e[0][at], ey = e[1][at], ez = e[2][at];
