@@ -7,6 +7,7 @@
 #include "core/option_names.h"
 #include "core/stage_clock.h"
 #include "pipeline_figures.h"
+#include "pipeline_refine.h"
 #include "pipeline_sides.h"
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,7 @@ void require_sensible(const ShellOptions& options, const openvdb::FloatGrid* thi
 {
     require_sensible(options.scale);
     require_sensible(options.layers);
+    require_sensible(options.refine);
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&
@@ -59,6 +61,13 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
+void subdivide_surface(ShellResult& r, const ShellOptions& options)
+{
+    r.surface = subdivide(r.surface, options.subdivide);
+    r.report.mesh = check_mesh(r.surface);
+    require_usable(r.report.mesh, options.check, r.report.source + " after --subdivide");
+}
+
 /// The surface to work with, repaired when asked: in r.surface, looked at and found usable.
 void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
                      StageClock& clock, Interrupter* interrupter)
@@ -80,6 +89,8 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
                        r.report.repair ? name + " after --repair" : name);
         r.surface = turn_outward(std::move(r.surface), r.report.mesh);
     });
+    if (options.subdivide.levels != 0)
+        clock.run("subdivide", [&] { subdivide_surface(r, options); });
 }
 
 /// The level set that the lines step through: the given one where it is fit for that.
@@ -116,7 +127,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
     });
-    build_sides(r, options, thickness_grid, clock, interrupter);
+    build_and_refine(r, options, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
     clock.run("tets", [&] { r.tets = make_tets(r.stack); });
     clock.run("certificate", [&] {

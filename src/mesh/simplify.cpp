@@ -2,9 +2,9 @@
 #include "mesh/simplify.h"
 
 #include "core/box_pairs.h"
-#include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "mesh/spoiled_triangles.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -111,21 +111,7 @@ TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original
 std::vector<Box> spoiled_places(const TriangleMesh& mesh)
 {
     const std::vector<Box> boxes = triangle_boxes(mesh.points, mesh.triangles);
-    std::vector<char> bad(mesh.triangles.size());
-    for_each_index(bad.size(), [&](std::size_t t) {
-        const openvdb::Vec3I& c = mesh.triangles[t];
-        bad[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
-    });
-    const auto pairs = overlapping_pairs(boxes);
-    std::vector<char> touching(pairs.size());
-    for_each_index(pairs.size(), [&](std::size_t i) {
-        const auto [a, b] = pairs[i];
-        touching[i] = !bad[a] && !bad[b] &&
-                      exact::triangles_touch(mesh.points, mesh.triangles[a], mesh.triangles[b]);
-    });
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (touching[i])
-            bad[pairs[i][0]] = bad[pairs[i][1]] = 1;
+    const std::vector<char> bad = spoiled_triangles(mesh);
     std::vector<Box> places;
     for (std::size_t t = 0; t < bad.size(); ++t)
         if (bad[t])

@@ -190,6 +190,21 @@ ordered_json scale_json(const ScaleReport& scale)
     return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
 }
 
+ordered_json refine_json(const RefineReport& refine)
+{
+    ordered_json rounds = ordered_json::array();
+    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
+        const RefineRound& round = refine.rounds[k];
+        rounds.push_back({{"triangles", round.triangles},
+                          {"tets", round.tets},
+                          {"fill", round.fill},
+                          {"gain_per_tet", refine.gain_per_tet(k)},
+                          {"triangles_cut", round.cut},
+                          {"barred_edges", round.barred_edges}});
+    }
+    return {{"rounds", rounds}, {"kept", refine.kept}, {"end", name_of(refine.end)}};
+}
+
 ordered_json outside_json(const OutsideReport& outside)
 {
     return {{"lines", lines_json(outside.lines)},
@@ -268,6 +283,7 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["lines"] = lines_json(report.lines);
     json["growth"] = report.grow ? growth_json(*report.grow) : ordered_json();
     json["scale"] = report.scale ? scale_json(*report.scale) : ordered_json();
+    json["refine"] = report.refine ? refine_json(*report.refine) : ordered_json();
     json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
     json["layers"] = layers_json(report);

@@ -15,6 +15,7 @@
 #include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
+#include "vdb_shell/shell/refine.h"
 #include "vdb_shell/shell/scale_thickness.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/step/line_step.h"
@@ -86,6 +87,7 @@ struct ShellReport {
     LineReport lines;
     std::optional<GrowReport> grow;   ///< absent for Method::raw
     std::optional<ScaleReport> scale; ///< absent unless the shell was scaled after growth
+    std::optional<RefineReport> refine; ///< absent unless rounds of refinement were asked for
     std::optional<OutsideReport> outside;
     std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
     std::vector<LayerFigures> layers; ///< empty for a single layer
