@@ -7,7 +7,7 @@
 #include "core/option_names.h"
 #include "core/stage_clock.h"
 #include "pipeline_figures.h"
-#include "pipeline_refine.h"
+#include "pipeline_resample.h"
 #include "pipeline_sides.h"
 
 #include <nlohmann/json.hpp>
@@ -24,6 +24,10 @@ void require_sensible(const ShellOptions& options, const openvdb::FloatGrid* thi
     require_sensible(options.scale);
     require_sensible(options.layers);
     require_sensible(options.refine);
+    require_sensible(options.decimate);
+    if (options.refine.rounds > 0 && options.side == Side::outward)
+        throw InvalidOption("refine: rounds is " + std::to_string(options.refine.rounds) +
+                            ", but an outward shell has no solid to fill");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&
@@ -61,13 +65,6 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
-void subdivide_surface(ShellResult& r, const ShellOptions& options)
-{
-    r.surface = subdivide(r.surface, options.subdivide);
-    r.report.mesh = check_mesh(r.surface);
-    require_usable(r.report.mesh, options.check, r.report.source + " after --subdivide");
-}
-
 /// The surface to work with, repaired when asked: in r.surface, looked at and found usable.
 void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
                      StageClock& clock, Interrupter* interrupter)
@@ -89,8 +86,7 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
                        r.report.repair ? name + " after --repair" : name);
         r.surface = turn_outward(std::move(r.surface), r.report.mesh);
     });
-    if (options.subdivide.levels != 0)
-        clock.run("subdivide", [&] { subdivide_surface(r, options); });
+    resample_surface(r, options, clock, interrupter);
 }
 
 /// The level set that the lines step through: the given one where it is fit for that.

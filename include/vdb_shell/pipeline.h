@@ -8,6 +8,7 @@
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/mesh/decimate.h"
 #include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/mesh/subdivide.h"
 #include "vdb_shell/shell/cut_layers.h"
@@ -39,6 +40,7 @@ struct ShellOptions {
     WrapOptions wrap;
     ContourOptions contour; ///< for build_shell_from_level_set alone
     CheckOptions check;
+    DecimateOptions decimate;
     SubdivideOptions subdivide;
     LevelSetOptions level_set;
     SmoothOptions smooth;

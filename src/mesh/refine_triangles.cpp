@@ -56,7 +56,8 @@ std::uint32_t longest_edge(const Plan& plan, std::uint32_t triangle)
 /// The edges to halve.
 struct Choice {
     std::vector<char> marked;
-    std::size_t taken = 0; ///< wanted triangles that they cut
+    std::size_t cut = 0; ///< wanted triangles that lose an edge
+    bool out_of_room = false;
 };
 
 /// Marks an edge and, until the rule of the longest edge holds, those that have to go before it;
@@ -91,23 +92,21 @@ Choice choose(const Plan& plan, const std::vector<std::uint32_t>& wanted,
     Choice choice{std::vector<char>(plan.edges.ends.size()), 0};
     std::size_t triangles = plan.mesh.triangles.size();
     for (const std::uint32_t t : wanted) {
-        for (std::uint32_t edge : plan.edges.triangles[t]) {
-            if (!getenv("RED"))
-                edge = longest_edge(plan, t);
-            if (choice.marked[edge]) {
-                ++choice.taken;
-                continue;
-            }
-            const std::vector<std::uint32_t> newly = mark(plan, barred, edge, choice.marked);
-            // Each halved edge cuts a piece on either side of it in two.
-            triangles += 2 * newly.size();
-            if (triangles > most_triangles) {
-                for (const std::uint32_t e : newly)
-                    choice.marked[e] = 0;
-                return choice;
-            }
-            choice.taken += !newly.empty();
+        std::vector<std::uint32_t> newly;
+        for (const std::uint32_t edge : plan.edges.triangles[t])
+            if (!choice.marked[edge])
+                for (const std::uint32_t e : mark(plan, barred, edge, choice.marked))
+                    newly.push_back(e);
+        // Each halved edge cuts a piece on either side of it in two.
+        triangles += 2 * newly.size();
+        if (triangles > most_triangles) {
+            for (const std::uint32_t e : newly)
+                choice.marked[e] = 0;
+            choice.out_of_room = true;
+            break;
         }
+        const auto& sides = plan.edges.triangles[t];
+        choice.cut += choice.marked[sides[0]] || choice.marked[sides[1]] || choice.marked[sides[2]];
     }
     return choice;
 }
@@ -124,7 +123,7 @@ bool bar_spoiled(const Plan& plan, const EdgeSplit& split, const std::vector<cha
             continue;
         for (const std::uint32_t edge : plan.edges.triangles[source])
             if (marked[edge] && !barred[edge])
-                any = barred[edge] = 1;
+                any = true, barred[edge] = 1;
     }
     return any;
 }
@@ -144,11 +143,13 @@ RefinedMesh refine_triangles(const TriangleMesh& mesh, const std::vector<std::ui
     for (bool again = true; again;) {
         progress.stop_if_interrupted(50);
         const Choice choice = choose(plan, wanted, most_triangles, barred);
-        out.taken = choice.taken;
+        out.cut = choice.cut;
+        out.out_of_room = choice.out_of_room;
         split = split_edges(mesh, plan.edges, choice.marked, plan.longest);
         again = bar_spoiled(plan, split, spoiled_before, choice.marked, barred);
     }
-    out.split_edges = split.edge.size();
+    for (const std::uint32_t edge : split.edge)
+        out.halved.push_back(plan.edges.ends[edge]);
     out.barred_edges = static_cast<std::size_t>(std::count(barred.begin(), barred.end(), 1));
     out.mesh = std::move(split.mesh);
     out.source = std::move(split.source);

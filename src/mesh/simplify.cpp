@@ -60,7 +60,8 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const std::vector<char>& hel
     return out;
 }
 
-void collapse_edges(HalfedgeMesh& mesh, double tolerance, double longest_edge)
+/// In units of the tolerance.
+void collapse_edges(HalfedgeMesh& mesh, double longest_edge, std::size_t fewest_triangles)
 {
     Decimater decimater(mesh);
     OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
@@ -75,14 +76,14 @@ void collapse_edges(HalfedgeMesh& mesh, double tolerance, double longest_edge)
     decimater.add(length);
     decimater.module(length).set_edge_length(longest_edge);
     decimater.module(length).set_binary(true);
-    decimater.module(quadric).set_max_err(tolerance * tolerance, false);
+    decimater.module(quadric).set_max_err(1.0, false);
     decimater.module(quadric).set_binary(false);
-    decimater.module(distance).set_tolerance(tolerance);
+    decimater.module(distance).set_tolerance(1.0);
     decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
     decimater.module(aspect).set_aspect_ratio(kWorstAspect);
     decimater.module(aspect).set_binary(true);
     decimater.initialize();
-    decimater.decimate();
+    decimater.decimate_to_faces(0, fewest_triangles);
 }
 
 /// The faces and points that are left, with the points' own float32 coordinates.
@@ -146,18 +147,19 @@ bool is_sound(const TriangleMesh& mesh)
 
 } // namespace
 
-Simplified simplify(const TriangleMesh& mesh, double tolerance, double longest_edge,
+Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
                     Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "simplify");
     std::vector<char> held(mesh.points.size());
+    const double tolerance = limits.tolerance;
     if (!(tolerance > 0.0))
         return {mesh, 0};
     for (int repeat = 0; repeat <= kMaxRepeats; ++repeat) {
         progress.stop_if_interrupted(100 * repeat / (kMaxRepeats + 1));
         // In units of the tolerance the decimater's own small constants are small.
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
-        collapse_edges(halfedges, 1.0, longest_edge / tolerance);
+        collapse_edges(halfedges, limits.longest_edge / tolerance, limits.fewest_triangles);
         TriangleMesh left = what_is_left(halfedges, mesh);
         const std::vector<Box> places = spoiled_places(left);
         if (places.empty())

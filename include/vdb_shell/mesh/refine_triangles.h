@@ -4,6 +4,7 @@
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,8 +15,9 @@ namespace vdb_shell
 struct RefinedMesh {
     TriangleMesh mesh;                 ///< points of before keep their indices
     std::vector<std::uint32_t> source; ///< per triangle: the one of before that it is a piece of
-    std::size_t taken = 0;             ///< how many of the wanted triangles were cut
-    std::size_t split_edges = 0;       ///< which is the number of new points
+    std::vector<std::array<std::uint32_t, 2>> halved; ///< per new point: the ends of its edge
+    std::size_t cut = 0;                              ///< how many of the wanted triangles were cut
+    bool out_of_room = false;                         ///< most_triangles left some of them whole
     std::size_t barred_edges = 0; ///< left whole, for halved they made triangles touch or flatten
 };
 
