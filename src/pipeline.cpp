@@ -208,6 +208,9 @@ std::string options_json(const ShellOptions& options)
                        {"outer_only", options.contour.outer_only}};
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
                      {"turn_inside_out", options.check.turn_inside_out}};
+    json["decimate"] = {{"triangles", or_null(options.decimate.triangles)},
+                        {"tolerance", or_null(options.decimate.tolerance)}};
+    json["subdivide"] = {{"levels", options.subdivide.levels}};
     json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},
                          {"resolution", options.level_set.resolution},
                          {"exterior_voxels", options.level_set.exterior_voxels},
@@ -236,6 +239,12 @@ std::string options_json(const ShellOptions& options)
                     {"flips", options.grow.flips},
                     {"free_rounds", options.grow.free_rounds},
                     {"min_quality", options.grow.min_quality}};
+    json["refine"] = {{"rounds", options.refine.rounds},
+                      {"by", name_in_table(options.refine.by)},
+                      {"share", options.refine.share},
+                      {"max_tets", or_null(options.refine.max_tets)},
+                      {"target_fill", or_null(options.refine.target_fill)},
+                      {"min_gain", options.refine.min_gain}};
     json["scale"] = {{"factor", options.scale.factor}};
     json["layers"] = {{"layers", options.layers.layers}, {"grading", options.layers.grading}};
     json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};

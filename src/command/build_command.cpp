@@ -70,14 +70,20 @@ void add_wrap_options(CLI::App& app, ShellOptions& shell)
 
 void add_resampling_options(CLI::App& app, ShellOptions& shell)
 {
+    CLI::Option* decimate = app.add_option("--decimate-to", shell.decimate.triangles,
+                                           "Collapse edges down to this many triangles first")
+                                ->group("Resampling");
+    app.add_option("--decimate-tolerance", shell.decimate.tolerance,
+                   "Farthest that decimation may part the surfaces, world units")
+        ->needs(decimate)
+        ->group("Resampling");
     app.add_option("--subdivide", shell.subdivide.levels,
                    "Cut every triangle into four, this many times over")
         ->capture_default_str()
         ->group("Resampling");
     CLI::Option* rounds =
         app.add_option("--refine-rounds", shell.refine.rounds,
-                       "Rounds of cutting triangles where the shell leaves voids, and building "
-                       "again")
+                       "Rounds of cutting triangles where the shell is held back, and growing on")
             ->capture_default_str()
             ->group("Resampling");
     const auto refine = [&](const char* flag, auto& field, const char* help) {
@@ -87,7 +93,7 @@ void add_resampling_options(CLI::App& app, ShellOptions& shell)
         ->needs(rounds)
         ->group("Resampling");
     refine("--refine-share", shell.refine.share,
-           "Share of all voids whose triangles are cut in one round")
+           "Share of that in the triangles cut in one round, those most worth it first")
         ->capture_default_str();
     refine("--max-tets", shell.refine.max_tets, "Refine to no more tets than this");
     refine("--target-fill", shell.refine.target_fill, "End refinement at this fill, 0 to 1");

@@ -74,9 +74,8 @@ inline const NameTable<Method>& names(Method)
 
 inline const NameTable<RefineBy>& names(RefineBy)
 {
-    static const NameTable<RefineBy> table{{"voids", RefineBy::voids},
-                                           {"contacts", RefineBy::contacts},
-                                           {"area", RefineBy::area}};
+    static const NameTable<RefineBy> table{
+        {"contacts", RefineBy::contacts}, {"voids", RefineBy::voids}, {"area", RefineBy::area}};
     return table;
 }
 

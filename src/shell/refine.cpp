@@ -28,15 +28,14 @@ std::vector<double> areas_of(const PrismShell& shell)
     return areas;
 }
 
-/// By how much each pillar is shorter than its neighbours' mean, where something holds it back.
+/// By how much each pillar is shorter than its neighbours' mean, where the shape holds it back.
 std::vector<double> shortfalls(const PrismShell& shell)
 {
     const VertexTriangles around = triangles_around_vertices(shell.outer.size(), shell.triangles);
     std::vector<double> missing(shell.outer.size());
     for_each_index(missing.size(), [&](std::size_t v) {
-        const StopReason stop = shell.stop[v];
-        if (stop != StopReason::inner_contact && stop != StopReason::outer_contact &&
-            stop != StopReason::prism && stop != StopReason::pinned)
+        // More vertices would not let it grow where it is the user who holds it.
+        if (shell.stop[v] == StopReason::none || shell.stop[v] == StopReason::thickness)
             return;
         double sum = 0;
         std::size_t count = 0;
@@ -82,14 +81,14 @@ const char* name_of(RefineEnd end)
 std::vector<double> refinement_worth(const PrismShell& shell, RefineBy by)
 {
     switch (by) {
-    case RefineBy::contacts:
-        return contact_worth(shell);
+    case RefineBy::voids:
+        return void_volumes(shell);
     case RefineBy::area:
         return areas_of(shell);
-    case RefineBy::voids:
+    case RefineBy::contacts:
         break;
     }
-    return void_volumes(shell);
+    return contact_worth(shell);
 }
 
 std::vector<std::uint32_t> triangles_to_cut(const std::vector<double>& worth, double share)

@@ -94,6 +94,17 @@ ordered_json mesh_json(const MeshCheck& mesh)
             {"components", components_json(mesh.components)}};
 }
 
+ordered_json decimate_json(const DecimateReport& decimate)
+{
+    return {{"triangles_before", decimate.before},
+            {"triangles_wanted", decimate.wanted},
+            {"triangles", decimate.triangles},
+            {"reached", decimate.reached()},
+            {"input_to_result", distance_json(decimate.input_to_result)},
+            {"result_to_input", distance_json(decimate.result_to_input)},
+            {"repeats", decimate.repeats}};
+}
+
 ordered_json field_json(const FieldReport& field)
 {
     return {{"origin", field.origin},
@@ -278,6 +289,9 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["mesh"] = mesh_json(report.mesh);
     json["mesh"]["split_vertices"] = defect_json(report.split_vertices);
     json["mesh"]["vertex_copies"] = report.vertex_copies;
+    json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
+    json["subdivided_from"] =
+        report.subdivided_from > 0 ? ordered_json(report.subdivided_from) : ordered_json();
     json["field"] = field_json(report.field);
     json["side"] = name_in_table(report.side);
     json["lines"] = lines_json(report.lines);

@@ -16,24 +16,25 @@ namespace vdb_shell
 
 /// What makes a triangle worth cutting.
 enum class RefineBy {
+    contacts, ///< its area times the mean over its corners of how much shorter their pillars are
+              ///< than their neighbours', where a contact, a prism or a stop test ends them
     voids,    ///< the volume that its prism leaves empty: half the way to the next inner triangle
-    contacts, ///< pillars of its corners that end well before their neighbours', times its area
-    area,     ///< its area: what uniform subdivision goes by, for comparison
+    area,     ///< its area; with a share of 1 all triangles are cut: uniform subdivision in rounds
 };
 
 struct RefineOptions {
-    /// Rounds of building, cutting triangles where the shell leaves voids, and building again. 0:
-    /// none.
+    /// Rounds of building, cutting triangles in four where it is worth it, and growing on from the
+    /// shell there is. 0: none.
     int rounds = 0;
-    RefineBy by = RefineBy::voids;
-    /// In each round as many triangles are cut, the worst first, as make up this share of the sum
-    /// over all; more than 0, up to 1.
+    RefineBy by = RefineBy::contacts;
+    /// In each round as many triangles are cut, those most worth it first, as make up this share of
+    /// the sum over all; more than 0, up to 1.
     double share = 0.5;
-    /// No round may give more tets than this, layers and pinned prisms included in full.
+    /// No round makes a surface whose prisms, in all layers, could give more tets than this.
     std::optional<std::size_t> max_tets;
-    /// The rounds end when the fill has reached this.
+    /// The rounds end when the fill (of the layers inside) has reached this.
     std::optional<double> target_fill;
-    /// The rounds end when one has gained less fill than this.
+    /// The rounds end when one has gained less fill than this; 0: never for that reason.
     double min_gain = 0;
 };
 
