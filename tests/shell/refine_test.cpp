@@ -72,8 +72,9 @@ TEST(Refine, VoidBetweenSheetsIsSharedByThem)
         const openvdb::Vec3I& c = slab.triangles[t];
         const bool top =
             slab.points[c[0]][2] == 1 && slab.points[c[1]][2] == 1 && slab.points[c[2]][2] == 1;
-        if (top) // half of the 0.6 between them, on half a unit square
+        if (top) { // half of the 0.6 between them, on half a unit square
             EXPECT_NEAR(voids[t], 0.5 * 0.3, 1e-6);
+        }
     }
 }
 
