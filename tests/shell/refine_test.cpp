@@ -21,12 +21,13 @@ namespace vdb_shell::test
 namespace
 {
 
-/// A sphere of 80 triangles, pulled to half axes 2, 1 and 0.6.
-TriangleMesh ellipsoid()
+/// A sphere of 80 triangles, flattened and bent: its medial axis is a curved sheet, which so few
+/// vertices cannot follow.
+TriangleMesh bent_disc()
 {
     TriangleMesh mesh = icosphere(1.0, 1);
     for (openvdb::Vec3s& p : mesh.points)
-        p = {2 * p[0], p[1], 0.6F * p[2]};
+        p = {2 * p[0], p[1], 0.4F * p[2] + 0.8F * p[0] * p[0]};
     return mesh;
 }
 
@@ -106,7 +107,7 @@ TEST(Refine, ContactsMarkTheShortPillarThatIsHeldBack)
 
 TEST(Refine, GrowsOnToMoreFillAndStaysCertified)
 {
-    const TriangleMesh mesh = ellipsoid();
+    const TriangleMesh mesh = bent_disc();
     for (const Method method : {Method::certified, Method::thickest}) {
         ShellOptions options = refining(3);
         options.grow.method = method;
@@ -147,7 +148,7 @@ TEST(Refine, BeatsUniformSubdivisionTetForTet)
 
 TEST(Refine, EndsWhereItIsTold)
 {
-    const TriangleMesh mesh = ellipsoid();
+    const TriangleMesh mesh = bent_disc();
     ShellOptions options = refining(5);
     options.refine.max_tets = 600;
     ShellResult result = build_shell(mesh, options);
@@ -186,17 +187,17 @@ TEST(Refine, KeepsTheThicknessAndTheLayers)
     options.line_step.thickness = 0.3;
     options.layers.layers = 2;
     options.refine.by = RefineBy::area;
-    const ShellResult result = build_shell(ellipsoid(), options);
+    const ShellResult result = build_shell(bent_disc(), options);
     expect_certified(result);
     EXPECT_LE(result.report.lines.length.max, 0.3);
     const RefineReport& refine = *result.report.refine;
     EXPECT_EQ(result.report.signs.tets, refine.rounds[refine.kept].tets);
-    EXPECT_DOUBLE_EQ(result.report.fill, refine.rounds[refine.kept].fill);
+    EXPECT_NEAR(result.report.fill, refine.rounds[refine.kept].fill, 1e-12);
 }
 
 TEST(Refine, SameBytesForAnyNumberOfThreads)
 {
-    const TriangleMesh mesh = ellipsoid();
+    const TriangleMesh mesh = bent_disc();
     const auto built = [&](int threads, RefineBy by) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                         std::size_t(threads));
@@ -218,7 +219,7 @@ TEST(Refine, RefusesOptionsByName)
         ShellOptions options = refining(1);
         change(options);
         try {
-            build_shell(ellipsoid(), options);
+            build_shell(bent_disc(), options);
         } catch (const InvalidOption& error) {
             return error.what();
         }
