@@ -59,9 +59,9 @@ DecimateResult decimate(const TriangleMesh& mesh, const DecimateOptions& options
     report.wanted = *options.triangles;
     double tried = tolerance;
     for (int attempt = 0; attempt < kMostAttempts; ++attempt, tried *= kStricter) {
-        Simplified left =
-            simplify(mesh, {tried, std::numeric_limits<double>::infinity(), *options.triangles},
-                     interrupter);
+        Simplified left = simplify(
+            mesh, {tried, std::numeric_limits<double>::infinity(), *options.triangles, false},
+            interrupter);
         measure(report, mesh, left.mesh, spacing, interrupter);
         report.repeats += left.repeats;
         if (std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance) {

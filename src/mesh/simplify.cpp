@@ -60,8 +60,8 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const std::vector<char>& hel
     return out;
 }
 
-/// In units of the tolerance.
-void collapse_edges(HalfedgeMesh& mesh, double longest_edge, std::size_t fewest_triangles)
+/// Of a mesh in units of the tolerance.
+void collapse_edges(HalfedgeMesh& mesh, const SimplifyLimits& limits)
 {
     Decimater decimater(mesh);
     OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
@@ -74,16 +74,20 @@ void collapse_edges(HalfedgeMesh& mesh, double longest_edge, std::size_t fewest_
     decimater.add(aspect);
     OpenMesh::Decimater::ModEdgeLengthT<HalfedgeMesh>::Handle length;
     decimater.add(length);
-    decimater.module(length).set_edge_length(longest_edge);
+    decimater.module(length).set_edge_length(limits.longest_edge / limits.tolerance);
     decimater.module(length).set_binary(true);
-    decimater.module(quadric).set_max_err(1.0, false);
+    // A sum over all planes that a vertex stands for: far stricter than the distance.
+    if (limits.bound_quadric)
+        decimater.module(quadric).set_max_err(1.0, false);
+    else
+        decimater.module(quadric).unset_max_err();
     decimater.module(quadric).set_binary(false);
     decimater.module(distance).set_tolerance(1.0);
     decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
     decimater.module(aspect).set_aspect_ratio(kWorstAspect);
     decimater.module(aspect).set_binary(true);
     decimater.initialize();
-    decimater.decimate_to_faces(0, fewest_triangles);
+    decimater.decimate_to_faces(0, limits.fewest_triangles);
 }
 
 /// The faces and points that are left, with the points' own float32 coordinates.
@@ -159,7 +163,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
         progress.stop_if_interrupted(100 * repeat / (kMaxRepeats + 1));
         // In units of the tolerance the decimater's own small constants are small.
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
-        collapse_edges(halfedges, limits.longest_edge / tolerance, limits.fewest_triangles);
+        collapse_edges(halfedges, limits);
         TriangleMesh left = what_is_left(halfedges, mesh);
         const std::vector<Box> places = spoiled_places(left);
         if (places.empty())

@@ -13,6 +13,7 @@ struct SimplifyLimits {
     double tolerance;                 ///< how far the surface may move, world units
     double longest_edge;              ///< no longer edge is collapsed; infinite: any is
     std::size_t fewest_triangles = 0; ///< collapses end here
+    bool bound_quadric = true;        ///< hold the quadric error under the tolerance too
 };
 
 struct Simplified {
