@@ -7,6 +7,7 @@
 #include "core/option_names.h"
 #include "core/stage_clock.h"
 #include "pipeline_figures.h"
+#include "pipeline_resample.h"
 #include "pipeline_sides.h"
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,11 @@ void require_sensible(const ShellOptions& options, const openvdb::FloatGrid* thi
 {
     require_sensible(options.scale);
     require_sensible(options.layers);
+    require_sensible(options.refine);
+    require_sensible(options.decimate);
+    if (options.refine.rounds > 0 && options.side == Side::outward)
+        throw InvalidOption("refine: rounds is " + std::to_string(options.refine.rounds) +
+                            ", but an outward shell has no solid to fill");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&
@@ -80,6 +86,7 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
                        r.report.repair ? name + " after --repair" : name);
         r.surface = turn_outward(std::move(r.surface), r.report.mesh);
     });
+    resample_surface(r, options, clock, interrupter);
 }
 
 /// The level set that the lines step through: the given one where it is fit for that.
@@ -116,7 +123,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
     });
-    build_sides(r, options, thickness_grid, clock, interrupter);
+    build_and_refine(r, options, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
     clock.run("tets", [&] { r.tets = make_tets(r.stack); });
     clock.run("certificate", [&] {
@@ -201,6 +208,9 @@ std::string options_json(const ShellOptions& options)
                        {"outer_only", options.contour.outer_only}};
     json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
                      {"turn_inside_out", options.check.turn_inside_out}};
+    json["decimate"] = {{"triangles", or_null(options.decimate.triangles)},
+                        {"tolerance", or_null(options.decimate.tolerance)}};
+    json["subdivide"] = {{"levels", options.subdivide.levels}};
     json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},
                          {"resolution", options.level_set.resolution},
                          {"exterior_voxels", options.level_set.exterior_voxels},
@@ -229,6 +239,12 @@ std::string options_json(const ShellOptions& options)
                     {"flips", options.grow.flips},
                     {"free_rounds", options.grow.free_rounds},
                     {"min_quality", options.grow.min_quality}};
+    json["refine"] = {{"rounds", options.refine.rounds},
+                      {"by", name_in_table(options.refine.by)},
+                      {"share", options.refine.share},
+                      {"max_tets", or_null(options.refine.max_tets)},
+                      {"target_fill", or_null(options.refine.target_fill)},
+                      {"min_gain", options.refine.min_gain}};
     json["scale"] = {{"factor", options.scale.factor}};
     json["layers"] = {{"layers", options.layers.layers}, {"grading", options.layers.grading}};
     json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};

@@ -37,6 +37,7 @@ struct SideJob {
     StageClock& clock;
     std::string prefix; ///< of the stages' names
     Interrupter* interrupter;
+    const GrowStart* from; ///< where growth starts; null: from the lines
 };
 
 /// What the stages of one side make.
@@ -64,7 +65,7 @@ void grow_and_scale(const SideJob& job, SideResult& side)
     GrowResult grown =
         grow_shell(job.surface, side.lines.directions, side.lines.lengths,
                    largest_lengths(job.surface, options.line_step, job.thickness_grid),
-                   options.grow, options.split, job.interrupter);
+                   options.grow, options.split, job.interrupter, job.from);
     side.grow = grown.report;
     if (options.scale.factor < 1.0)
         side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
@@ -104,8 +105,9 @@ SideResult build_outside(const ShellResult& result, ShellOptions options,
     const TriangleMesh reversed = reversed_surface(result.surface);
     // In place, for a copy would double the memory.
     negate_level_set(*result.level_set);
-    SideResult side = build_side({reversed, *result.level_set, options, thickness_grid, clock,
-                                  options.side == Side::both ? "outward " : "", interrupter});
+    SideResult side =
+        build_side({reversed, *result.level_set, options, thickness_grid, clock,
+                    options.side == Side::both ? "outward " : "", interrupter, nullptr});
     negate_level_set(*result.level_set);
     side.stack = turn_back(side.stack);
     return side;
@@ -138,13 +140,13 @@ PrismTest prism_test(const ShellOptions& options)
 
 void build_sides(ShellResult& result, const ShellOptions& options,
                  const openvdb::FloatGrid* thickness_grid, StageClock& clock,
-                 Interrupter* interrupter)
+                 Interrupter* interrupter, const GrowStart* from)
 {
     result.report.side = options.side;
     SideResult main = options.side == Side::outward
                           ? build_outside(result, options, thickness_grid, clock, interrupter)
                           : build_side({result.surface, *result.level_set, options, thickness_grid,
-                                        clock, "", interrupter});
+                                        clock, "", interrupter, from});
     result.directions = std::move(main.lines.directions);
     result.lengths = std::move(main.lines.lengths);
     result.report.grow = main.grow;

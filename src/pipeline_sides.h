@@ -18,9 +18,10 @@ LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surfac
 PrismTest prism_test(const ShellOptions& options);
 
 /// The stages from directions to scale, once for each side: fills in lines, stack and their parts
-/// of the report. Leaves the level set as it was.
+/// of the report. Leaves the level set as it was. `from`: where
+/// growth inward starts; null: from the lines.
 void build_sides(ShellResult& result, const ShellOptions& options,
                  const openvdb::FloatGrid* thickness_grid, StageClock& clock,
-                 Interrupter* interrupter);
+                 Interrupter* interrupter, const GrowStart* from = nullptr);
 
 } // namespace vdb_shell

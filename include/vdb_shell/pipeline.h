@@ -8,9 +8,12 @@
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/mesh/decimate.h"
 #include "vdb_shell/mesh/repair_mesh.h"
+#include "vdb_shell/mesh/subdivide.h"
 #include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
+#include "vdb_shell/shell/refine.h"
 #include "vdb_shell/shell/scale_thickness.h"
 #include "vdb_shell/shell/shell_stack.h"
 #include "vdb_shell/shell/sides.h"
@@ -37,12 +40,15 @@ struct ShellOptions {
     WrapOptions wrap;
     ContourOptions contour; ///< for build_shell_from_level_set alone
     CheckOptions check;
+    DecimateOptions decimate;
+    SubdivideOptions subdivide;
     LevelSetOptions level_set;
     SmoothOptions smooth;
     DirectionOptions directions;
     LineStepOptions line_step;
     LimitOptions limits;
     GrowOptions grow;
+    RefineOptions refine;
     ScaleOptions scale;
     LayerOptions layers;
     SplitOptions split;

@@ -68,6 +68,40 @@ void add_wrap_options(CLI::App& app, ShellOptions& shell)
         ->group("Wrap");
 }
 
+void add_resampling_options(CLI::App& app, ShellOptions& shell)
+{
+    CLI::Option* decimate = app.add_option("--decimate-to", shell.decimate.triangles,
+                                           "Collapse edges down to this many triangles first")
+                                ->group("Resampling");
+    app.add_option("--decimate-tolerance", shell.decimate.tolerance,
+                   "Farthest that decimation may part the surfaces, world units")
+        ->needs(decimate)
+        ->group("Resampling");
+    app.add_option("--subdivide", shell.subdivide.levels,
+                   "Cut every triangle into four, this many times over")
+        ->capture_default_str()
+        ->group("Resampling");
+    CLI::Option* rounds =
+        app.add_option("--refine-rounds", shell.refine.rounds,
+                       "Rounds of cutting triangles where the shell is held back, and growing on")
+            ->capture_default_str()
+            ->group("Resampling");
+    const auto refine = [&](const char* flag, auto& field, const char* help) {
+        return app.add_option(flag, field, help)->needs(rounds)->group("Resampling");
+    };
+    bind_enum(app, "--refine-by", shell.refine.by, "What makes a triangle worth cutting")
+        ->needs(rounds)
+        ->group("Resampling");
+    refine("--refine-share", shell.refine.share,
+           "Share of that in the triangles cut in one round, those most worth it first")
+        ->capture_default_str();
+    refine("--max-tets", shell.refine.max_tets, "Refine to no more tets than this");
+    refine("--target-fill", shell.refine.target_fill, "End refinement at this fill, 0 to 1");
+    refine("--refine-min-gain", shell.refine.min_gain,
+           "End refinement when a round gains less fill than this")
+        ->capture_default_str();
+}
+
 void add_field_options(CLI::App& app, ShellOptions& shell)
 {
     CLI::Option* voxel = app.add_option("--voxel-size", shell.level_set.voxel_size,
@@ -309,6 +343,7 @@ void add_build_command(CLI::App& app, BuildArguments& arguments)
         ->group("Output");
     add_surface_options(app, arguments);
     add_wrap_options(app, arguments.shell);
+    add_resampling_options(app, arguments.shell);
     add_field_options(app, arguments.shell);
     add_line_options(app, arguments);
     add_growth_options(app, arguments.shell.grow);

@@ -6,6 +6,7 @@
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/shell/grow.h"
+#include "vdb_shell/shell/refine.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
@@ -68,6 +69,13 @@ inline const NameTable<Method>& names(Method)
 {
     static const NameTable<Method> table{
         {"raw", Method::raw}, {"certified", Method::certified}, {"thickest", Method::thickest}};
+    return table;
+}
+
+inline const NameTable<RefineBy>& names(RefineBy)
+{
+    static const NameTable<RefineBy> table{
+        {"contacts", RefineBy::contacts}, {"voids", RefineBy::voids}, {"area", RefineBy::area}};
     return table;
 }
 

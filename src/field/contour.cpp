@@ -157,7 +157,7 @@ TriangleMesh contour_mapped(const openvdb::FloatGrid& field, const PointMap& to_
     report.components = check.components.size() - report.dropped_components;
     report.triangles = mesh.triangles.size();
     Simplified simple =
-        simplify(mesh, options.adaptivity * voxel, kLongestEdgeVoxels * voxel, interrupter);
+        simplify(mesh, {options.adaptivity * voxel, kLongestEdgeVoxels * voxel}, interrupter);
     report.simplification_repeats = simple.repeats;
     report.simplified_triangles = simple.mesh.triangles.size();
     return std::move(simple.mesh);

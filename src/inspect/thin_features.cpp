@@ -2,9 +2,8 @@
 #include "inspect/marks.h"
 
 #include "core/parallel.h"
+#include "mesh/ray_through.h"
 #include "shell/grow/box_tree.h"
-
-#include <cmath>
 
 namespace vdb_shell
 {
@@ -14,33 +13,12 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-struct Ray {
-    Vec3d from, along; ///< along: unit length, or zero for a triangle without area
-};
-
 Ray inward_from(const TriangleMesh& mesh, const Vec3I& t)
 {
     const Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
     const Vec3d cross = (c - a).cross(b - a);
     const double length = cross.length();
     return {(a + b + c) / 3.0, length > 0 ? cross / length : Vec3d(0.0)};
-}
-
-/// Where the ray leaves the solid through the triangle; infinite where it does not.
-double leaves_through(const TriangleMesh& mesh, const Vec3I& t, const Ray& ray)
-{
-    const Vec3d a(mesh.points[t[0]]);
-    const Vec3d ab = Vec3d(mesh.points[t[1]]) - a, ac = Vec3d(mesh.points[t[2]]) - a;
-    const Vec3d across = ray.along.cross(ac);
-    const double det = ab.dot(across);
-    if (!(det < 0)) // parallel to it, or entering
-        return HUGE_VAL;
-    const Vec3d from_a = ray.from - a;
-    const double u = from_a.dot(across) / det;
-    const Vec3d q = from_a.cross(ab);
-    const double v = ray.along.dot(q) / det;
-    const double distance = ac.dot(q) / det;
-    return u >= 0 && v >= 0 && u + v <= 1 && distance >= 0 ? distance : HUGE_VAL;
 }
 
 bool share_a_corner(const Vec3I& a, const Vec3I& b)

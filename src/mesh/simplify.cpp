@@ -2,9 +2,9 @@
 #include "mesh/simplify.h"
 
 #include "core/box_pairs.h"
-#include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "mesh/spoiled_triangles.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -60,7 +60,8 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const std::vector<char>& hel
     return out;
 }
 
-void collapse_edges(HalfedgeMesh& mesh, double tolerance, double longest_edge)
+/// Of a mesh in units of the tolerance.
+void collapse_edges(HalfedgeMesh& mesh, const SimplifyLimits& limits)
 {
     Decimater decimater(mesh);
     OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
@@ -73,16 +74,20 @@ void collapse_edges(HalfedgeMesh& mesh, double tolerance, double longest_edge)
     decimater.add(aspect);
     OpenMesh::Decimater::ModEdgeLengthT<HalfedgeMesh>::Handle length;
     decimater.add(length);
-    decimater.module(length).set_edge_length(longest_edge);
+    decimater.module(length).set_edge_length(limits.longest_edge / limits.tolerance);
     decimater.module(length).set_binary(true);
-    decimater.module(quadric).set_max_err(tolerance * tolerance, false);
+    // A sum over all planes that a vertex stands for: far stricter than the distance.
+    if (limits.bound_quadric)
+        decimater.module(quadric).set_max_err(1.0, false);
+    else
+        decimater.module(quadric).unset_max_err();
     decimater.module(quadric).set_binary(false);
-    decimater.module(distance).set_tolerance(tolerance);
+    decimater.module(distance).set_tolerance(1.0);
     decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
     decimater.module(aspect).set_aspect_ratio(kWorstAspect);
     decimater.module(aspect).set_binary(true);
     decimater.initialize();
-    decimater.decimate();
+    decimater.decimate_to_faces(0, limits.fewest_triangles);
 }
 
 /// The faces and points that are left, with the points' own float32 coordinates.
@@ -111,21 +116,7 @@ TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original
 std::vector<Box> spoiled_places(const TriangleMesh& mesh)
 {
     const std::vector<Box> boxes = triangle_boxes(mesh.points, mesh.triangles);
-    std::vector<char> bad(mesh.triangles.size());
-    for_each_index(bad.size(), [&](std::size_t t) {
-        const openvdb::Vec3I& c = mesh.triangles[t];
-        bad[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
-    });
-    const auto pairs = overlapping_pairs(boxes);
-    std::vector<char> touching(pairs.size());
-    for_each_index(pairs.size(), [&](std::size_t i) {
-        const auto [a, b] = pairs[i];
-        touching[i] = !bad[a] && !bad[b] &&
-                      exact::triangles_touch(mesh.points, mesh.triangles[a], mesh.triangles[b]);
-    });
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (touching[i])
-            bad[pairs[i][0]] = bad[pairs[i][1]] = 1;
+    const std::vector<char> bad = spoiled_triangles(mesh);
     std::vector<Box> places;
     for (std::size_t t = 0; t < bad.size(); ++t)
         if (bad[t])
@@ -160,18 +151,19 @@ bool is_sound(const TriangleMesh& mesh)
 
 } // namespace
 
-Simplified simplify(const TriangleMesh& mesh, double tolerance, double longest_edge,
+Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
                     Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "simplify");
     std::vector<char> held(mesh.points.size());
+    const double tolerance = limits.tolerance;
     if (!(tolerance > 0.0))
         return {mesh, 0};
     for (int repeat = 0; repeat <= kMaxRepeats; ++repeat) {
         progress.stop_if_interrupted(100 * repeat / (kMaxRepeats + 1));
         // In units of the tolerance the decimater's own small constants are small.
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
-        collapse_edges(halfedges, 1.0, longest_edge / tolerance);
+        collapse_edges(halfedges, limits);
         TriangleMesh left = what_is_left(halfedges, mesh);
         const std::vector<Box> places = spoiled_places(left);
         if (places.empty())

@@ -77,6 +77,26 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
     s.pinned = thin_pinned;
 }
 
+/// The pillars up to `inner` as lines. Vertices that have none keep their direction, for growth may
+/// release them.
+struct Pillars {
+    Directions lines;
+    std::vector<double> length;
+};
+
+Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& inner,
+                   Directions lines)
+{
+    Pillars pillars{std::move(lines), std::vector<double>(inner.size())};
+    for (std::size_t v = 0; v < inner.size(); ++v) {
+        const openvdb::Vec3d arm = openvdb::Vec3d(inner[v]) - openvdb::Vec3d(mesh.points[v]);
+        pillars.length[v] = arm.length();
+        if (pillars.length[v] > 0)
+            pillars.lines.inward[v] = arm / pillars.length[v];
+    }
+    return pillars;
+}
+
 void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOptions& options,
                         const StageProgress& progress, GrowReport& report)
 {
@@ -152,7 +172,7 @@ PrismSplit split_of(const GrowState& s, std::size_t ripples)
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& start, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,
-                      Interrupter* interrupter)
+                      Interrupter* interrupter, const GrowStart* from)
 {
     const StageProgress progress(interrupter, "grow");
     if (options.free_rounds < 0)
@@ -165,11 +185,17 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     assert(directions.inward.size() == mesh.points.size());
     assert(start.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
     const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
-    const Directions lines = prepare(mesh, directions, options);
+    Directions lines = prepare(mesh, directions, options);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
 
-    settle(s, lines, start, options, progress);
+    if (from) {
+        Pillars pillars = pillars_to(mesh, from->inner, std::move(lines));
+        lines = std::move(pillars.lines);
+        growth::settle_start(s, lines, pillars.length, progress, from->settled);
+    } else {
+        settle(s, lines, start, options, progress);
+    }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     if (options.grow_lines && (!s.bounded || growth::fill_of(s) > kNearlyFull))
         growth::lengthen_lines(s, lines, progress);

@@ -94,6 +94,17 @@ ordered_json mesh_json(const MeshCheck& mesh)
             {"components", components_json(mesh.components)}};
 }
 
+ordered_json decimate_json(const DecimateReport& decimate)
+{
+    return {{"triangles_before", decimate.before},
+            {"triangles_wanted", decimate.wanted},
+            {"triangles", decimate.triangles},
+            {"reached", decimate.reached()},
+            {"input_to_result", distance_json(decimate.input_to_result)},
+            {"result_to_input", distance_json(decimate.result_to_input)},
+            {"repeats", decimate.repeats}};
+}
+
 ordered_json field_json(const FieldReport& field)
 {
     return {{"origin", field.origin},
@@ -190,6 +201,21 @@ ordered_json scale_json(const ScaleReport& scale)
     return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
 }
 
+ordered_json refine_json(const RefineReport& refine)
+{
+    ordered_json rounds = ordered_json::array();
+    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
+        const RefineRound& round = refine.rounds[k];
+        rounds.push_back({{"triangles", round.triangles},
+                          {"tets", round.tets},
+                          {"fill", round.fill},
+                          {"gain_per_tet", refine.gain_per_tet(k)},
+                          {"triangles_cut", round.cut},
+                          {"barred_edges", round.barred_edges}});
+    }
+    return {{"rounds", rounds}, {"kept", refine.kept}, {"end", name_of(refine.end)}};
+}
+
 ordered_json outside_json(const OutsideReport& outside)
 {
     return {{"lines", lines_json(outside.lines)},
@@ -263,11 +289,15 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["mesh"] = mesh_json(report.mesh);
     json["mesh"]["split_vertices"] = defect_json(report.split_vertices);
     json["mesh"]["vertex_copies"] = report.vertex_copies;
+    json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
+    json["subdivided_from"] =
+        report.subdivided_from > 0 ? ordered_json(report.subdivided_from) : ordered_json();
     json["field"] = field_json(report.field);
     json["side"] = name_in_table(report.side);
     json["lines"] = lines_json(report.lines);
     json["growth"] = report.grow ? growth_json(*report.grow) : ordered_json();
     json["scale"] = report.scale ? scale_json(*report.scale) : ordered_json();
+    json["refine"] = report.refine ? refine_json(*report.refine) : ordered_json();
     json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
     json["layers"] = layers_json(report);

@@ -94,6 +94,32 @@ void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
              distance(wrap.wrap_to_input));
 }
 
+void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
+{
+    std::string text =
+        number(decimate.before, 12) + " triangles to " + number(decimate.triangles, 12);
+    if (!decimate.reached())
+        text += " (wanted " + number(decimate.wanted, 12) + ": no more can be had)";
+    line(out, "decimate",
+         text + "; farthest input to result " + number(decimate.input_to_result.max) +
+             ", result to input " + number(decimate.result_to_input.max));
+}
+
+void refine_lines(std::ostringstream& out, const RefineReport& refine)
+{
+    line(out, "refine",
+         number(refine.rounds.size() - 1, 12) + " rounds, kept " + number(refine.kept, 12) +
+             ", ended by " + name_of(refine.end));
+    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
+        const RefineRound& round = refine.rounds[k];
+        std::string text = number(round.triangles, 12) + " triangles, " + number(round.tets, 12) +
+                           " tets, fill " + percent(round.fill);
+        if (k > 0)
+            text += ", gained per added tet " + number(refine.gain_per_tet(k), 3);
+        line(out, ("  round " + number(k, 12)).c_str(), text);
+    }
+}
+
 void read_lines(std::ostringstream& out, const ReadReport& read)
 {
     line(out, "read",
@@ -271,6 +297,10 @@ std::string report_text(const ShellReport& report)
         wrap_lines(out, *report.wrap);
     if (report.contour)
         line(out, "contour", contour_text(*report.contour));
+    if (report.decimate)
+        decimate_line(out, *report.decimate);
+    if (report.subdivided_from > 0)
+        line(out, "subdivide", "from " + number(report.subdivided_from, 12) + " triangles");
     line(out, "mesh", mesh_lines(report.mesh));
     if (report.vertex_copies > 0)
         line(out, "split", split_text(report));
@@ -292,6 +322,8 @@ std::string report_text(const ShellReport& report)
     }
     if (report.grow)
         growth_line(out, *report.grow);
+    if (report.refine)
+        refine_lines(out, *report.refine);
     concession_lines(out, report);
     layer_lines(out, report);
     line(out, "prisms",

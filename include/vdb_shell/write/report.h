@@ -11,10 +11,12 @@
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/mesh/decimate.h"
 #include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/mesh/repair_mesh.h"
 #include "vdb_shell/shell/cut_layers.h"
 #include "vdb_shell/shell/grow.h"
+#include "vdb_shell/shell/refine.h"
 #include "vdb_shell/shell/scale_thickness.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/step/line_step.h"
@@ -81,11 +83,14 @@ struct ShellReport {
     /// Vertices of several fans that got copies (mesh/split_fans.h), by the input's index.
     Defect<std::uint32_t> split_vertices;
     std::size_t vertex_copies = 0;
+    std::optional<DecimateReport> decimate;
+    std::size_t subdivided_from = 0; ///< triangles before subdivision; 0 when there was none
     FieldReport field;
     Side side = Side::inward;
     LineReport lines;
-    std::optional<GrowReport> grow;   ///< absent for Method::raw
-    std::optional<ScaleReport> scale; ///< absent unless the shell was scaled after growth
+    std::optional<GrowReport> grow;     ///< absent for Method::raw
+    std::optional<ScaleReport> scale;   ///< absent unless the shell was scaled after growth
+    std::optional<RefineReport> refine; ///< absent unless rounds of refinement were asked for
     std::optional<OutsideReport> outside;
     std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
     std::vector<LayerFigures> layers; ///< empty for a single layer

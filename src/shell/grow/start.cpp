@@ -16,6 +16,8 @@ namespace
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kThinShare = 0.02;
 constexpr double kShrink = 0.65;
+// After that many times a vertex that yields first is no better than the others.
+constexpr int kYields = 4;
 
 double smallest_altitude(const Corners& c)
 {
@@ -67,16 +69,32 @@ double ray_hit(const Vec3d& p, const Vec3d& d, const Corners& c)
     return u < 0 || v < 0 || u + v > 1 || t <= 0 ? kInfinity : t;
 }
 
+/// The corners of violating prisms: those that yield first where there are any.
+std::vector<std::uint8_t> corners_to_shrink(const GrowState& s,
+                                            const std::vector<std::uint8_t>& bad,
+                                            const std::vector<std::uint8_t>& yields)
+{
+    std::vector<std::uint8_t> touched(s.b.size(), 0);
+    for (int f = 0; f < s.mesh->face_count(); ++f) {
+        const auto may_yield = [&](int k) {
+            const int v = s.mesh->corner(f, k);
+            return yields[v] > 0 && !s.pinned[v];
+        };
+        const bool any = may_yield(0) || may_yield(1) || may_yield(2);
+        for (int k = 0; bad[f] && k < 3; ++k)
+            if (!any || may_yield(k))
+                touched[s.mesh->corner(f, k)] = 1;
+    }
+    return touched;
+}
+
 /// Shrinks the pillars of violating prisms; marks the faces that this changes. False when there is
 /// nothing left to shrink.
 bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& h,
-                   std::vector<std::uint8_t>& changed)
+                   std::vector<std::uint8_t>& yields, std::vector<std::uint8_t>& changed)
 {
     const double floor = 2 * s.rounding; // shorter pillars are lost in the rounding
-    std::vector<std::uint8_t> touched(s.b.size(), 0);
-    for (int f = 0; f < s.mesh->face_count(); ++f)
-        for (int k = 0; bad[f] && k < 3; ++k)
-            touched[s.mesh->corner(f, k)] = 1;
+    std::vector<std::uint8_t> touched = corners_to_shrink(s, bad, yields);
     bool any = false;
     for (int v = 0; v < s.mesh->vertices; ++v) {
         touched[v] = touched[v] && !s.pinned[v];
@@ -84,6 +102,7 @@ bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vect
             continue;
         any = true;
         h[v] *= kShrink;
+        yields[v] -= yields[v] > 0;
         if (h[v] < floor)
             s.pinned[v] = 1;
     }
@@ -125,7 +144,7 @@ std::vector<double> thin_heights(const GrowState& s)
 }
 
 void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress)
+                  const StageProgress& progress, std::size_t first_yielding)
 {
     for (int v = 0; v < s.mesh->vertices; ++v) {
         const bool stranded = star(*s.mesh, v).size() == 0;
@@ -133,12 +152,14 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
         s.reach[v] = 0;
         h[v] = std::min(h[v], s.cap[v]);
     }
-    std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1);
+    std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1), yields(h.size(), 0);
+    if (first_yielding > 0)
+        std::fill(yields.begin() + std::ptrdiff_t(first_yielding), yields.end(), kYields);
     place(s, directions, h);
     rebuild_candidates(s);
     // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
     // crosses itself: with all its vertices pinned.
-    while (shrink_around(s, violating_faces(s, changed), h, changed)) {
+    while (shrink_around(s, violating_faces(s, changed), h, yields, changed)) {
         progress.stop_if_interrupted(0);
         place(s, directions, h);
         update_candidates(s, changed);

@@ -11,9 +11,11 @@
 namespace vdb_shell::growth
 {
 
-/// Sets b = a + h d with h as given, lessened until every test passes; may pin.
+/// Sets b = a + h d with h as given, lessened until every test passes; may pin. Of the corners of a
+/// prism that violates, those from the vertex `first_yielding` on are shrunk first, a few times:
+/// where the others' pillars are known to be valid without them, little is lost that way.
 void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress);
+                  const StageProgress& progress, std::size_t first_yielding = 0);
 
 /// A small share of the smallest altitude around each vertex.
 std::vector<double> thin_heights(const GrowState& s);
