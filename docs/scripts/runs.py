@@ -28,21 +28,27 @@ def arguments(description, tables=None):
     return parser.parse_args()
 
 
-def build(command, mesh, flags):
-    """One run on one thread: exit status, message, CPU seconds of the child and the figures of its report."""
+def run(command, flags, output, hidden):
+    """One run on one thread: exit status, message (without the path `hidden`) and CPU seconds of the child.
+    What it prints goes to the file `output`."""
+    with tempfile.TemporaryFile("w+") as errors, open(output, "w") as printed:
+        child = subprocess.Popen([command, "--threads", "1", *flags], stdout=printed, stderr=errors)
+        # wait4 and not wait: only it tells the resources of this child alone.
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        errors.seek(0)
+        return {"exit": child.returncode, "message": errors.read().strip().replace(str(hidden), "MESH"),
+                "seconds": usage.ru_utime + usage.ru_stime}
+
+
+def build(command, mesh, flags, read=None):
+    """One build: the run, with the figures of its report; `read` picks them."""
     with tempfile.TemporaryDirectory() as folder:
-        report, errors = pathlib.Path(folder) / "report.json", pathlib.Path(folder) / "errors.txt"
-        with errors.open("w") as stream:
-            child = subprocess.Popen([command, "--threads", "1", "build", "-q", *flags, "--report", str(report),
-                                      str(mesh)], stdout=subprocess.DEVNULL, stderr=stream)
-            # wait4 and not wait: only it tells the resources of this child alone.
-            _, status, usage = os.wait4(child.pid, 0)
-            child.returncode = os.waitstatus_to_exitcode(status)
-        run = {"exit": child.returncode, "message": errors.read_text().strip().replace(str(mesh), "MESH"),
-               "seconds": usage.ru_utime + usage.ru_stime}
-        if child.returncode == 0:
-            run.update(figures(json.loads(report.read_text())))
-        return run
+        report = pathlib.Path(folder) / "report.json"
+        done = run(command, ["build", "-q", *flags, "--report", str(report), str(mesh)], os.devnull, mesh)
+        if done["exit"] == 0:
+            done.update((read or figures)(json.loads(report.read_text())))
+        return done
 
 
 def figures(report):

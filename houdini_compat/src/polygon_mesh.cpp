@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/houdini/polygon_mesh.h"
 
+#include "mesh/coordinates.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/scan_text.h"
 
@@ -14,13 +15,14 @@ namespace
 
 template <typename T>
 std::vector<openvdb::Vec3s> points_from(const std::vector<T>& values, std::size_t size,
-                                        const std::string& name)
+                                        const std::string& name, Coordinates& coordinates)
 {
     std::vector<openvdb::Vec3s> points(values.size() / size);
     for (std::size_t i = 0; i < points.size(); ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            points[i][static_cast<int>(axis)] = checked_coordinate(
-                name, {"point", i}, static_cast<double>(values[i * size + axis]));
+            points[i][static_cast<int>(axis)] = coordinates.from_number(
+                name, {"point", i}, static_cast<double>(values[i * size + axis]),
+                static_cast<int>(axis));
         if (size == 4 && values[i * size + 3] != T(1))
             refuse(name, "point " + std::to_string(i) + ": P has the weight " +
                              std::to_string(values[i * size + 3]) + ", only 1 can be read");
@@ -29,7 +31,8 @@ std::vector<openvdb::Vec3s> points_from(const std::vector<T>& values, std::size_
 }
 
 /// P as float32; up to Houdini 14 it has a fourth component, a weight.
-std::vector<openvdb::Vec3s> positions_of(const HoudiniGeometry& geometry, const std::string& name)
+std::vector<openvdb::Vec3s> positions_of(const HoudiniGeometry& geometry, const std::string& name,
+                                         Coordinates& coordinates)
 {
     const Attribute* p = find(geometry.point_attributes, "P");
     if (!p)
@@ -37,9 +40,9 @@ std::vector<openvdb::Vec3s> positions_of(const HoudiniGeometry& geometry, const 
     const auto size = static_cast<std::size_t>(p->size);
     const bool sized = size == 3 || size == 4;
     if (const auto* singles = std::get_if<std::vector<float>>(&p->values); singles && sized)
-        return points_from(*singles, size, name);
+        return points_from(*singles, size, name, coordinates);
     if (const auto* doubles = std::get_if<std::vector<double>>(&p->values); doubles && sized)
-        return points_from(*doubles, size, name);
+        return points_from(*doubles, size, name, coordinates);
     refuse(name, "P has " + std::to_string(p->size) +
                      " components, or is not of floats; 3 or 4 floats are needed");
 }
@@ -54,7 +57,13 @@ ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
     scan.format = name_of(read.format);
     scan.file_vertices = geometry.points;
     PolygonSoup soup;
-    soup.points = positions_of(geometry, name);
+    Coordinates coordinates;
+    if (options.recentre || options.rescale) {
+        Coordinates looked = Coordinates::first_look();
+        positions_of(geometry, name, looked);
+        coordinates = Coordinates(placement_for(looked.box(), options.recentre, options.rescale));
+    }
+    soup.points = positions_of(geometry, name, coordinates);
     std::size_t vertex = 0;
     for (std::size_t i = 0; i < geometry.primitives.size(); ++i) {
         const Primitive& primitive = geometry.primitives[i];
@@ -71,7 +80,10 @@ ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
     }
     if (scan.file_faces == 0)
         refuse(name, "it has no faces (and " + std::to_string(scan.file_vertices) + " vertices)");
-    return mesh_of_soup(name, scan, std::move(soup), options);
+    ReadResult result = mesh_of_soup(name, scan, std::move(soup), options);
+    result.report.placement = coordinates.placement();
+    result.report.largest_rounding = coordinates.largest_rounding();
+    return result;
 }
 
 ReadResult read_polygon_mesh(const std::filesystem::path& path, const ReadOptions& options)

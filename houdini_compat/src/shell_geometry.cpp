@@ -312,6 +312,13 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
         add_count(geometry, kSkin, file.stack.skin);
     }
     add_count(geometry, kRipples, ripples);
+    if (file.placement.moves()) {
+        const Vec3d& o = file.placement.origin;
+        geometry.detail_attributes.push_back(
+            {kOrigin, 3, "", std::vector<double>{o[0], o[1], o[2]}});
+        geometry.detail_attributes.push_back(
+            {kUnit, 1, "", std::vector<double>{file.placement.unit}});
+    }
     add_text(geometry, kCreator, "vdb_shell " VDB_SHELL_VERSION);
     add_text(geometry, kOrientation, kOrientationText);
     add_text(geometry, kChecksum, checksum_of(file.stack, file.tets));

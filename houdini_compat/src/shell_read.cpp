@@ -5,6 +5,7 @@
 #include "shell_columns.h"
 #include "write/point_grids.h"
 
+#include <cmath>
 #include <limits>
 
 namespace vdb_shell::houdini
@@ -198,6 +199,20 @@ void read_tets(const HoudiniGeometry& geometry, const Columns& points, const Cou
     }
 }
 
+void read_placement(const HoudiniGeometry& geometry, const Columns& detail, Placement& placement)
+{
+    if (!find(geometry.detail_attributes, kOrigin) && !find(geometry.detail_attributes, kUnit))
+        return;
+    const auto& origin = detail.get<std::vector<double>>(kOrigin, 3);
+    placement.origin = openvdb::Vec3d(origin[0], origin[1], origin[2]);
+    placement.unit = detail.get<std::vector<double>>(kUnit, 1)[0];
+    int exponent = 0;
+    if (!placement.origin.isFinite())
+        detail.fail(kOrigin, "is not finite");
+    if (!std::isfinite(placement.unit) || std::frexp(placement.unit, &exponent) != 0.5)
+        detail.fail(kUnit, "is " + std::to_string(placement.unit) + ", not a power of two");
+}
+
 } // namespace
 
 bool is_shell(const HoudiniGeometry& geometry)
@@ -222,6 +237,7 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     read_tets(geometry, points, counts, prisms, file.tets);
     file.stack.splits.front().ripples =
         detail.count(kRipples, std::numeric_limits<std::int32_t>::max());
+    read_placement(geometry, detail, file.placement);
     file.parameters_json = detail.text(kParameters);
     file.report_json = detail.text(kReport);
     try {

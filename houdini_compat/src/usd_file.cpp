@@ -62,7 +62,8 @@ std::string extent_of_volume(const ShellFile& shell)
         low = openvdb::math::minComponent(low, world.min());
         high = openvdb::math::maxComponent(high, world.max());
     }
-    return low[0] > high[0] ? extent_of({}) : extent_of(low, high);
+    const Vec3d shift = shell.placement.shift();
+    return low[0] > high[0] ? extent_of({}) : extent_of(low + shift, high + shift);
 }
 
 /// The stage under construction: prims in braces, each attribute on a line of its own.
@@ -170,6 +171,29 @@ void write_stops(Stage& stage, const Samples& samples)
         });
 }
 
+std::string usd_triple(const Vec3d& v)
+{
+    return "(" + usd_value(v[0]) + ", " + usd_value(v[1]) + ", " + usd_value(v[2]) + ")";
+}
+
+/// Where the file of the surface has it. Grids of a .vdb have the origin in their own transforms
+/// and need the unit alone.
+void write_placement(Stage& stage, const Samples& samples, bool with_origin)
+{
+    const bool moves = std::any_of(samples.begin(), samples.end(), [](const UsdSample& sample) {
+        return sample.shell->placement.moves();
+    });
+    if (!moves)
+        return;
+    stage.attribute("double3 xformOp:scale",
+                    [](const UsdSample& s) { return usd_triple(Vec3d(s.shell->placement.unit)); });
+    if (with_origin)
+        stage.attribute("double3 xformOp:translate",
+                        [](const UsdSample& s) { return usd_triple(s.shell->placement.origin); });
+    stage.line(std::string("uniform token[] xformOpOrder = [") +
+               (with_origin ? "\"xformOp:translate\", " : "") + "\"xformOp:scale\"]");
+}
+
 void write_surface(Stage& stage, const Samples& samples)
 {
     stage.open("def Mesh \"surface\"");
@@ -193,6 +217,7 @@ void write_surface(Stage& stage, const Samples& samples)
         return usd_array(lengths);
     });
     stage.line("uniform token subdivisionScheme = \"none\"");
+    write_placement(stage, samples, true);
     stage.close();
 }
 
@@ -258,6 +283,7 @@ void write_tets(Stage& stage, const Samples& samples)
     stage.attribute("int4[] tetVertexIndices",
                     [](const UsdSample& s) { return usd_array(s.shell->tets.tets); });
     write_tet_properties(stage, samples);
+    write_placement(stage, samples, true);
     stage.close();
 }
 
@@ -274,13 +300,14 @@ std::string relative_asset(const fs::path& path, const fs::path& volume)
     return usd_asset((upwards ? "" : "./") + relative.generic_string());
 }
 
-void write_grids(Stage& stage, const fs::path& path)
+void write_grids(Stage& stage, const Samples& samples, const fs::path& path)
 {
     stage.open("def Volume \"grids\"");
     stage.attribute("float3[] extent",
                     [](const UsdSample& s) { return extent_of_volume(*s.shell); });
     for (const char* name : {"depth", "surface"})
         stage.line(std::string("rel field:") + name + " = </shell/grids/" + name + ">");
+    write_placement(stage, samples, false);
     const std::pair<const char*, const char*> grids[] = {{"depth", "fogVolume"},
                                                          {"surface", "levelSet"}};
     for (const auto& [name, field_class] : grids) {
@@ -389,7 +416,7 @@ void write_usd(const fs::path& path, const Samples& samples, const UsdOptions& o
         write_tets(stage, samples);
         if (!samples.front().volume.empty()) {
             stage.line("");
-            write_grids(stage, path);
+            write_grids(stage, samples, path);
         }
         stage.close();
     });

@@ -6,6 +6,7 @@
 
 #include "command/bind.h"
 #include "command/exit_code.h"
+#include "command/placement_options.h"
 #include "command/repair_command.h"
 #include "command/signals.h"
 #include "core/atomic_file.h"
@@ -23,6 +24,7 @@ void add_surface_options(CLI::App& app, BuildArguments& arguments)
     app.add_flag("--weld,!--no-weld", arguments.read.weld,
                  "Merge vertices of equal position (the default) or keep them apart")
         ->group("Surface");
+    add_placement_options(app, arguments.read, "Surface");
     app.add_flag("--repair", arguments.repair,
                  "Weld, orient, part and close the surface first; what is sound stays bit for bit")
         ->group("Surface");
@@ -272,8 +274,8 @@ openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
     return read_float_grid(parts.file, parts.grid);
 }
 
-/// Reads the triangles or the level set, and builds.
-ShellResult read_and_build(const BuildArguments& arguments, const ShellOptions& options,
+/// Reads the triangles or the level set, and builds; `options` are left in the unit worked in.
+ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& options,
                            Interrupter* interrupter)
 {
     std::vector<StageCost> read_cost;
@@ -282,6 +284,9 @@ ShellResult read_and_build(const BuildArguments& arguments, const ShellOptions& 
     const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
     ShellResult result;
     if (std::filesystem::path(source.file).extension() == ".vdb") {
+        if (arguments.read.recentre || arguments.read.rescale)
+            throw InvalidOption(name + ": --recentre and --rescale are for triangles; a level set "
+                                       "has a transform of its own");
         openvdb::FloatGrid::Ptr field;
         StageClock(read_cost).run("read",
                                   [&] { field = read_level_set(source.file, source.grid); });
@@ -289,7 +294,11 @@ ShellResult read_and_build(const BuildArguments& arguments, const ShellOptions& 
     } else {
         ReadResult read;
         StageClock(read_cost).run("read", [&] { read = read_surface(arguments); });
-        result = build_shell(read.mesh, options, name, thickness.get(), interrupter);
+        warn_of_lost_digits(arguments.mesh, read);
+        const Placement& placement = read.report.placement;
+        options = in_unit(options, placement.unit);
+        result = build_shell(read.mesh, options, name, in_place(thickness, placement).get(),
+                             interrupter);
         result.report.read = read.report;
     }
     std::vector<StageCost>& stages = result.report.stages;
@@ -303,6 +312,8 @@ ShellFile to_file(const ShellResult& result, const ShellOptions& options, const 
     ShellFile file;
     file.stack = result.stack;
     file.tets = result.tets;
+    if (result.report.read)
+        file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);
     file.report_json = report_json(result.report, false);
     if (wants_vdb(outputs)) {

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
+#include "command/placement_options.h"
 #include "core/atomic_file.h"
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,7 @@ void add_inspect_command(CLI::App& app, InspectArguments& arguments)
                    "Write the mesh coloured by its defects: .ply");
     app.add_flag("--weld,!--no-weld", arguments.read.weld,
                  "Merge vertices of equal position (the default) or keep them apart");
+    add_placement_options(app, arguments.read, "Options");
     LevelSetOptions& level_set = arguments.inspect.level_set;
     CLI::Option* voxel = app.add_option("--voxel-size", level_set.voxel_size,
                                         "Voxel that features are measured against, world units");
@@ -40,9 +42,12 @@ int run_inspect(const InspectArguments& arguments)
         require_writable(arguments.picture);
     }
     const ReadResult read = read_mesh(arguments.mesh, arguments.read);
-    const MeshInspection inspection = inspect_mesh(read.mesh, arguments.inspect);
+    InspectOptions options = arguments.inspect;
+    options.level_set = in_unit(options.level_set, read.report.placement.unit);
+    options.largest_rounding = read.report.largest_rounding;
+    const MeshInspection inspection = inspect_mesh(read.mesh, options);
     if (!arguments.picture.empty())
-        write_defect_picture(arguments.picture, read.mesh, arguments.inspect);
+        write_defect_picture(arguments.picture, read.mesh, options);
     const std::string name = arguments.mesh.filename().string();
     if (arguments.json)
         std::cout << inspection_json(name, read.report, inspection) << '\n';

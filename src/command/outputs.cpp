@@ -152,10 +152,10 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             houdini::write_shell_geometry(path, file);
             break;
         case Kind::tets:
-            write_tets(path, file.tets, certified);
+            write_tets(path, file.tets, certified, file.placement);
             break;
         case Kind::surface:
-            write_mesh(path, grown_surface(file.stack));
+            write_mesh(path, grown_surface(file.stack), file.placement);
             break;
         case Kind::picture:
             write_cross_section(path, hull_of(file.stack), file.tets, outputs.picture);

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
+#include "command/placement_options.h"
 #include "command/signals.h"
 #include "core/atomic_file.h"
 
@@ -37,6 +38,7 @@ void add_repair_command(CLI::App& app, RepairArguments& arguments)
     app.add_flag("--json", arguments.json, "Print one JSON object");
     app.add_flag("--keep-crossing-fills", arguments.repair.keep_crossing_fills,
                  "Close holes also where every fill tried crosses the surface");
+    add_placement_options(app, arguments.read, "Options");
     add_repair_options(app, arguments.repair, "Options");
 }
 
@@ -47,9 +49,12 @@ int run_repair(const RepairArguments& arguments)
         throw InvalidOption(arguments.output.string() + ": is the input; it is not overwritten");
     require_writable(arguments.output);
     SignalInterrupter interrupter(false);
-    const ReadResult read = read_mesh(arguments.mesh);
-    const RepairResult result = repair_mesh(read.mesh, arguments.repair, &interrupter);
-    write_mesh(arguments.output, result.mesh);
+    const ReadResult read = read_mesh(arguments.mesh, arguments.read);
+    warn_of_lost_digits(arguments.mesh, read);
+    const Placement& placement = read.report.placement;
+    const RepairResult result =
+        repair_mesh(read.mesh, in_unit(arguments.repair, placement.unit), &interrupter);
+    write_mesh(arguments.output, result.mesh, placement);
     const std::string name = arguments.mesh.filename().string();
     std::cout << (arguments.json ? repair_json(result.report) + '\n'
                                  : name + ":\n" + repair_text(result.report));

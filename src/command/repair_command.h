@@ -20,6 +20,7 @@ void add_repair_options(CLI::App& app, RepairOptions& options, const std::string
 
 struct RepairArguments {
     std::filesystem::path mesh, output;
+    ReadOptions read;
     RepairOptions repair;
     bool json = false;
 };

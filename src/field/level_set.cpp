@@ -93,15 +93,17 @@ void check_voxel_size(const TriangleMesh& mesh, double voxel)
         fail<GeometryError>("voxel larger than the object: voxel size ", voxel, ", longest side ",
                             size);
     if (voxel < kSmallestVoxelSize)
-        fail<GeometryError>("voxel size ", voxel, " is below ", kSmallestVoxelSize,
-                            ", the smallest that OpenVDB's transforms can hold; scale the mesh up");
+        fail<GeometryError>(
+            "voxel size ", voxel, " is below ", kSmallestVoxelSize,
+            ", the smallest that OpenVDB's transforms can hold; --rescale reads the mesh in "
+            "a unit of its own size");
     for (int axis = 0; axis < 3; ++axis) {
         const double far = std::max(std::abs(bounds.low[axis]), std::abs(bounds.high[axis]));
         if (far / voxel > kLargestVoxelIndex)
-            fail<GeometryError>("voxel size ", voxel, " is too small for coordinates up to ", far,
-                                ": voxel index ", far / voxel, " is over the limit ",
-                                kLargestVoxelIndex,
-                                "; enlarge the voxels or move the mesh to the origin");
+            fail<GeometryError>(
+                "voxel size ", voxel, " is too small for coordinates up to ", far, ": voxel index ",
+                far / voxel, " is over the limit ", kLargestVoxelIndex,
+                "; --recentre reads the mesh about its middle, or enlarge the voxels");
     }
 }
 

@@ -143,24 +143,34 @@ void add_float_limits(Findings& findings, const MeshInspection& inspection)
     const auto add = [&](const char* kind, const std::string& text, bool blocks, const char* mend) {
         findings.list.push_back({kind, text, 1, {}, blocks, mend});
     };
+    // Rounding of about one part in 2^25 is what any file suffers.
+    const bool reading_lost = floats.largest_rounding > floats.longest_side / (1 << kFewDigits);
+    const char* const centre =
+        reading_lost ? "--recentre keeps the digits that the file has"
+                     : "move the object to the origin in the program that it comes from: the file "
+                       "has no more digits";
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << "coordinates up to " << floats.farthest << " are " << floats.spacing
-         << " apart in float32: ";
+         << " apart in float32, " << floats.spacing / floats.longest_side << " of the longest side";
+    if (floats.shortest_edge > 0)
+        text << " and " << floats.spacing / floats.shortest_edge << " of the shortest edge";
+    if (reading_lost)
+        text << "; reading moved them by up to " << floats.largest_rounding;
+    text << ": ";
     const std::string apart = text.str();
     if (floats.digits < kFewDigits)
         add("coarse_coordinates",
             apart + std::to_string(floats.digits) + " binary digits within the object, of 24",
-            false,
-            "move the object to the origin in the program that it comes from, with its own digits");
+            false, centre);
     if (inspection.voxel_size <= 0)
         return;
     if (floats.farthest / inspection.voxel_size > kLargestVoxelIndex)
         add("far_coordinates", apart + "too far from the origin for voxels of this size", true,
-            "move the object to the origin, or a larger --voxel-size");
+            "--recentre, or a larger --voxel-size");
     if (inspection.voxel_size < kSmallestVoxelSize)
         add("tiny_voxels", "voxels are smaller than OpenVDB's transforms can hold", true,
-            "scale the object up (metres to millimetres), or a larger --voxel-size");
+            "--rescale, or a larger --voxel-size");
 }
 
 } // namespace

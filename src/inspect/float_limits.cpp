@@ -25,6 +25,7 @@ FloatLimits float_limits(const TriangleMesh& mesh)
     const Bounds bounds = bounds_of(mesh.points);
     const Vec3d size = bounds.high - bounds.low;
     const double longest = std::max({size[0], size[1], size[2]});
+    limits.longest_side = longest;
     if (longest > 0)
         limits.digits = static_cast<int>(std::lround(std::log2(longest / limits.spacing)));
     double shortest = std::numeric_limits<double>::infinity();

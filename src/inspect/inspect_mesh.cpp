@@ -139,6 +139,7 @@ MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& opti
     inspection.blind_vertices = summary_of(marks.blind);
     inspection.thin_triangles = summary_of(marks.thin);
     inspection.floats = float_limits(mesh);
+    inspection.floats.largest_rounding = options.largest_rounding;
     return inspection;
 }
 

@@ -2,6 +2,7 @@
 #include "vdb_shell/inspect/inspect_mesh.h"
 
 #include "mesh/components_json.h"
+#include "mesh/placement_json.h"
 
 #include <sstream>
 
@@ -74,8 +75,10 @@ std::string inspection_text(const std::string& name, const ReadReport& read,
     out << name << ": " << read.format << ", " << check.points << " points ("
         << read.welded_vertices << " welded, " << read.unused_vertices << " unused), "
         << check.triangles << " triangles (" << read.skipped_faces.size()
-        << " faces skipped), components: " << check.components.size() << "\n  volume "
-        << check.volume << ", voxel " << inspection.voxel_size << ", shortest edge "
+        << " faces skipped), components: " << check.components.size() << '\n';
+    if (read.placement.moves())
+        out << "  " << placement_text(read.placement) << '\n';
+    out << "  volume " << check.volume << ", voxel " << inspection.voxel_size << ", shortest edge "
         << inspection.floats.shortest_edge << ", coordinates up to " << inspection.floats.farthest
         << " in steps of " << inspection.floats.spacing << '\n';
     for (const Finding& finding : findings)
@@ -98,6 +101,7 @@ std::string inspection_json(const std::string& name, const ReadReport& read,
     json["welded_vertices"] = read.welded_vertices;
     json["unused_vertices"] = read.unused_vertices;
     json["skipped_faces"] = read.skipped_faces;
+    json["placement"] = placement_json(read.placement);
     json["volume"] = check.volume;
     json["voxel_size"] = inspection.voxel_size;
     json["findings"] = findings_json(findings_of(inspection));
@@ -107,7 +111,9 @@ std::string inspection_json(const std::string& name, const ReadReport& read,
     json["floats"] = {{"farthest", floats.farthest},
                       {"spacing", floats.spacing},
                       {"digits", floats.digits},
-                      {"shortest_edge", floats.shortest_edge}};
+                      {"shortest_edge", floats.shortest_edge},
+                      {"longest_side", floats.longest_side},
+                      {"largest_rounding", floats.largest_rounding}};
     // A file name may hold bytes that are no UTF-8.
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }

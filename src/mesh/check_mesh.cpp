@@ -7,6 +7,7 @@
 #include "vdb_shell/core/error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vdb_shell
@@ -44,6 +45,12 @@ void require_well_formed(const TriangleMesh& mesh, const std::string& caller)
         if (!mesh.points[v].isFinite())
             throw InvalidOption(caller + ": point " + std::to_string(v) + " is " +
                                 mesh.points[v].str() + ", which is not finite");
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(double(mesh.points[v][axis])) > kLargestCoordinate)
+                throw InvalidOption(caller + ": point " + std::to_string(v) +
+                                    " has the coordinate " + std::to_string(mesh.points[v][axis]) +
+                                    ", over the limit of 1e18");
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (int corner = 0; corner < 3; ++corner)
             if (mesh.triangles[t][corner] >= mesh.points.size())

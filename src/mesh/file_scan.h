@@ -6,6 +6,7 @@
 // misread legal files (docs of each scan). So a scan checks the file, counts what it holds and
 // keeps of it what OpenMesh reads correctly.
 
+#include "mesh/coordinates.h"
 #include "mesh/scan_text.h"
 
 #include <openvdb/Types.h>
@@ -32,11 +33,12 @@ struct FileScan {
     std::size_t faces_passed_on() const { return file_faces - skipped_faces.size(); }
 };
 
-// Each throws ReadError as read_mesh documents it; `name` is the file's, for messages.
-FileScan scan_obj(const std::string& name, const std::string& bytes);
-FileScan scan_ply(const std::string& name, const std::string& bytes);
-FileScan scan_off(const std::string& name, const std::string& bytes);
-FileScan scan_stl(const std::string& name, std::string bytes);
+// `coordinates` gets every coordinate of the file. Each throws ReadError as read_mesh documents it;
+// `name` is the file's, for messages.
+FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates& coordinates);
+FileScan scan_ply(const std::string& name, const std::string& bytes, Coordinates& coordinates);
+FileScan scan_off(const std::string& name, const std::string& bytes, Coordinates& coordinates);
+FileScan scan_stl(const std::string& name, std::string bytes, Coordinates& coordinates);
 
 using Corners = std::vector<std::uint32_t>;
 

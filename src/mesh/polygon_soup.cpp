@@ -89,7 +89,8 @@ ReadResult mesh_of_soup(const std::string& name, const FileScan& scan, PolygonSo
     result.report.unused_vertices = vertices - used;
     if (result.mesh.triangles.empty())
         refuse(name, "none of its " + std::to_string(scan.file_faces) +
-                         " faces has three different corners");
+                         " faces has three different corners (in float32; --recentre where the "
+                         "object lies far from the origin)");
     return result;
 }
 

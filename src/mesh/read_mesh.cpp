@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/mesh/read_mesh.h"
 
+#include "mesh/coordinates.h"
 #include "mesh/file_scan.h"
 #include "mesh/openmesh_read.h"
 #include "mesh/polygon_soup.h"
@@ -15,7 +16,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-FileScan scan_file(const fs::path& path)
+FileScan scan_file(const fs::path& path, Coordinates& coordinates)
 {
     const std::string name = path.string();
     std::string extension = path.extension().string();
@@ -25,10 +26,10 @@ FileScan scan_file(const fs::path& path)
         refuse(name, "the extension \"" + extension +
                          "\" is none of the mesh formats .obj, .ply, .off, .stl");
     std::string bytes = read_whole_file(path);
-    FileScan scan = extension == ".obj"   ? scan_obj(name, bytes)
-                    : extension == ".ply" ? scan_ply(name, bytes)
-                    : extension == ".off" ? scan_off(name, bytes)
-                                          : scan_stl(name, std::move(bytes));
+    FileScan scan = extension == ".obj"   ? scan_obj(name, bytes, coordinates)
+                    : extension == ".ply" ? scan_ply(name, bytes, coordinates)
+                    : extension == ".off" ? scan_off(name, bytes, coordinates)
+                                          : scan_stl(name, std::move(bytes), coordinates);
     if (scan.file_faces == 0)
         refuse(name, "it has no faces (and " + std::to_string(scan.file_vertices) + " vertices)");
     return scan;
@@ -38,8 +39,18 @@ FileScan scan_file(const fs::path& path)
 
 ReadResult read_mesh(const fs::path& path, const ReadOptions& options)
 {
-    const FileScan scan = scan_file(path);
-    return mesh_of_soup(path.string(), scan, read_with_openmesh(path.string(), scan), options);
+    Coordinates coordinates;
+    if (options.recentre || options.rescale) {
+        Coordinates looked = Coordinates::first_look();
+        scan_file(path, looked);
+        coordinates = Coordinates(placement_for(looked.box(), options.recentre, options.rescale));
+    }
+    const FileScan scan = scan_file(path, coordinates);
+    ReadResult result =
+        mesh_of_soup(path.string(), scan, read_with_openmesh(path.string(), scan), options);
+    result.report.placement = coordinates.placement();
+    result.report.largest_rounding = coordinates.largest_rounding();
+    return result;
 }
 
 } // namespace vdb_shell

@@ -15,6 +15,7 @@ namespace
 
 struct ObjScan {
     const std::string& name;
+    Coordinates& coordinates;
     FileScan scan;
     std::string vertices, faces;       ///< bodies of the stream
     std::vector<std::int64_t> largest; ///< 0-based, of each face
@@ -32,8 +33,8 @@ void add_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
         if (word.empty())
             refuse(obj.name, vertex.text() + " has " + std::to_string(axis) +
                                  " coordinates where 3 are needed");
-        point[axis] = parse_coordinate(obj.name, vertex, word);
-        obj.vertices += word;
+        point[axis] = obj.coordinates.from_text(obj.name, vertex, word, axis);
+        obj.coordinates.pass_on(obj.vertices, word, point[axis]);
         obj.vertices += axis < 2 ? ' ' : '\n';
     }
     obj.scan.points.push_back(point);
@@ -89,9 +90,9 @@ bool cut_continuation(std::string_view& line)
 
 } // namespace
 
-FileScan scan_obj(const std::string& name, const std::string& bytes)
+FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates& coordinates)
 {
-    ObjScan obj{name, {}, {}, {}, {}, {}, {}};
+    ObjScan obj{name, coordinates, {}, {}, {}, {}, {}, {}};
     obj.scan.format = "OBJ";
     obj.scan.reader = "ply";
     Lines lines(bytes);

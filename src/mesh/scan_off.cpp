@@ -63,7 +63,8 @@ std::array<std::size_t, 2> read_counts(const std::string& name, Lines& lines, st
     return counts;
 }
 
-void read_vertex(const std::string& name, const Lines& lines, std::string_view line, FileScan& scan)
+void read_vertex(const std::string& name, const Lines& lines, std::string_view line,
+                 Coordinates& coordinates, FileScan& scan)
 {
     const Place vertex{"vertex", scan.points.size(), lines.number()};
     openvdb::Vec3s point;
@@ -72,8 +73,8 @@ void read_vertex(const std::string& name, const Lines& lines, std::string_view l
         if (word.empty())
             refuse(name, vertex.text() + " has " + std::to_string(axis) +
                              " coordinates where 3 are needed");
-        point[axis] = parse_coordinate(name, vertex, word);
-        scan.stream += word;
+        point[axis] = coordinates.from_text(name, vertex, word, axis);
+        coordinates.pass_on(scan.stream, word, point[axis]);
         scan.stream += axis < 2 ? ' ' : '\n';
     }
     scan.points.push_back(point);
@@ -107,7 +108,7 @@ void read_face(const std::string& name, const Lines& lines, std::string_view lin
 
 } // namespace
 
-FileScan scan_off(const std::string& name, const std::string& bytes)
+FileScan scan_off(const std::string& name, const std::string& bytes, Coordinates& coordinates)
 {
     FileScan scan;
     scan.format = "OFF";
@@ -124,7 +125,7 @@ FileScan scan_off(const std::string& name, const std::string& bytes)
     while (scan.points.size() < vertices) {
         if (!next_content(lines, line))
             refuse_end("vertices", scan.points.size(), vertices);
-        read_vertex(name, lines, line, scan);
+        read_vertex(name, lines, line, coordinates, scan);
     }
     std::string faces;
     while (scan.file_faces < declared_faces) {

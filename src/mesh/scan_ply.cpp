@@ -18,6 +18,7 @@ namespace
 struct PlyScan {
     const std::string& name;
     const PlyHeader& header;
+    Coordinates& coordinates;
     FileScan scan;
     bool single = false;         ///< all coordinates are float32
     std::string vertices, faces; ///< bodies of the stream
@@ -47,18 +48,22 @@ void read_vertex(PlyScan& ply, PlyValues& values, const PlyElement& element)
             continue;
         }
         const PlyValue value = values.next(property.type, place);
-        point[axis] = ply.header.is_text()
-                          ? parse_coordinate(ply.name, values.here(place), value.word)
-                          : checked_coordinate(ply.name, place, value.number);
+        const int k = static_cast<int>(axis);
+        point[k] = ply.header.is_text()
+                       ? ply.coordinates.from_text(ply.name, values.here(place), value.word, k)
+                       : ply.coordinates.from_number(ply.name, place, value.number, k);
         found[static_cast<std::size_t>(axis)] = value;
     }
-    for (const PlyValue& value : found) {
-        if (ply.header.is_text())
-            (ply.vertices += value.word) += ' ';
-        else if (ply.single)
-            append_bytes(ply.vertices, static_cast<float>(value.number));
-        else
+    for (int k = 0; k < 3; ++k) {
+        const PlyValue& value = found[static_cast<std::size_t>(k)];
+        if (ply.header.is_text()) {
+            ply.coordinates.pass_on(ply.vertices, value.word, point[k]);
+            ply.vertices += ' ';
+        } else if (ply.single) {
+            append_bytes(ply.vertices, point[k]);
+        } else {
             append_bytes(ply.vertices, value.number);
+        }
     }
     if (ply.header.is_text())
         ply.vertices.back() = '\n';
@@ -148,10 +153,10 @@ void read_elements(PlyScan& ply, PlyValues& values)
 
 } // namespace
 
-FileScan scan_ply(const std::string& name, const std::string& bytes)
+FileScan scan_ply(const std::string& name, const std::string& bytes, Coordinates& coordinates)
 {
     const PlyHeader header = parse_ply_header(name, bytes);
-    PlyScan ply{name, header, {}, true, {}, {}};
+    PlyScan ply{name, header, coordinates, {}, true, {}, {}};
     const bool text = header.is_text();
     ply.scan.format = text ? "PLY (ASCII)" : "PLY (binary)";
     ply.scan.reader = "ply";
@@ -163,6 +168,7 @@ FileScan scan_ply(const std::string& name, const std::string& bytes)
             if (property.name == "x" || property.name == "y" || property.name == "z")
                 ply.single = ply.single && property.type == PlyType::float32;
     }
+    ply.single = ply.single || coordinates.placement().moves();
     PlyValues values(name, header, bytes);
     read_elements(ply, values);
     ply.scan.stream = plain_ply_header(text ? "ascii" : "binary_little_endian",

@@ -24,6 +24,14 @@ std::uint32_t little_endian_32(const char* bytes)
     return value;
 }
 
+void put_little_endian(char* bytes, float value)
+{
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &value, sizeof bits);
+    for (int i = 0; i < 4; ++i)
+        bytes[i] = static_cast<char>(bits >> (8 * i) & 0xFF);
+}
+
 /// Turns three points a facet into what OpenMesh will make of them.
 void foresee_merging(FileScan& scan)
 {
@@ -40,7 +48,7 @@ void foresee_merging(FileScan& scan)
     scan.points.resize(kept);
 }
 
-FileScan scan_binary(const std::string& name, std::string bytes)
+FileScan scan_binary(const std::string& name, std::string bytes, Coordinates& coordinates)
 {
     if (bytes.size() < kHeaderBytes)
         refuse(name, "a file of " + std::to_string(bytes.size()) +
@@ -57,17 +65,17 @@ FileScan scan_binary(const std::string& name, std::string bytes)
     scan.binary = true;
     scan.points.reserve(3 * facets);
     for (std::size_t facet = 0; facet < facets; ++facet) {
-        const char* corner = bytes.data() + kHeaderBytes + kFacetBytes * facet + 12;
+        char* corner = bytes.data() + kHeaderBytes + kFacetBytes * facet + 12;
         for (int k = 0; k < 3; ++k, corner += 12) {
             openvdb::Vec3s point;
-            const char* coordinate = corner;
+            char* coordinate = corner;
             for (int axis = 0; axis < 3; ++axis, coordinate += 4) {
                 const std::uint32_t bits = little_endian_32(coordinate);
-                std::memcpy(&point[axis], &bits, sizeof bits);
+                float value = 0;
+                std::memcpy(&value, &bits, sizeof bits);
+                point[axis] = coordinates.from_number(name, {"face", facet}, value, axis);
+                put_little_endian(coordinate, point[axis]);
             }
-            if (!point.isFinite())
-                for (int axis = 0; axis < 3; ++axis)
-                    checked_coordinate(name, {"face", facet}, point[axis]);
             scan.points.push_back(point);
         }
     }
@@ -108,7 +116,7 @@ private:
     std::string_view line_;
 };
 
-void read_facet(const std::string& name, Words& words, FileScan& scan)
+void read_facet(const std::string& name, Words& words, Coordinates& coordinates, FileScan& scan)
 {
     const std::size_t facet = scan.points.size() / 3;
     words.expect("normal", facet);
@@ -128,9 +136,9 @@ void read_facet(const std::string& name, Words& words, FileScan& scan)
             const Place face{"face", facet, words.line()};
             if (word.empty())
                 refuse(name, face.text() + ": the file ends");
-            point[axis] = parse_coordinate(name, face, word);
+            point[axis] = coordinates.from_text(name, face, word, axis);
             scan.stream += ' ';
-            scan.stream += word;
+            coordinates.pass_on(scan.stream, word, point[axis]);
         }
         scan.stream += '\n';
         scan.points.push_back(point);
@@ -140,7 +148,7 @@ void read_facet(const std::string& name, Words& words, FileScan& scan)
     scan.stream += "endloop\nendfacet\n";
 }
 
-FileScan scan_text(const std::string& name, const std::string& bytes)
+FileScan scan_text(const std::string& name, const std::string& bytes, Coordinates& coordinates)
 {
     FileScan scan;
     scan.format = "STL (ASCII)";
@@ -155,7 +163,7 @@ FileScan scan_text(const std::string& name, const std::string& bytes)
             open = false;
             words.skip_line();
         } else if (open && equal_ignoring_case(word, "facet")) {
-            read_facet(name, words, scan);
+            read_facet(name, words, coordinates, scan);
         } else {
             refuse(name, "line " + std::to_string(words.line()) + ": " + quoted(word) +
                              " stands where " + (open ? "facet or endsolid" : "solid") +
@@ -181,9 +189,10 @@ bool is_text(const std::string& bytes)
 
 } // namespace
 
-FileScan scan_stl(const std::string& name, std::string bytes)
+FileScan scan_stl(const std::string& name, std::string bytes, Coordinates& coordinates)
 {
-    return is_text(bytes) ? scan_text(name, bytes) : scan_binary(name, std::move(bytes));
+    return is_text(bytes) ? scan_text(name, bytes, coordinates)
+                          : scan_binary(name, std::move(bytes), coordinates);
 }
 
 } // namespace vdb_shell

@@ -19,8 +19,8 @@ namespace
 // OpenMesh's writers want a half-edge mesh, which cannot hold every mesh, and print OBJ and OFF
 // coordinates with a fixed number of decimals.
 
-/// The shortest decimals that give the same float32 when read.
-void put(std::ostream& out, const openvdb::Vec3s& point)
+/// The shortest decimals that give the same number when read.
+template <typename Vec> void put_decimals(std::ostream& out, const Vec& point)
 {
     for (int axis = 0; axis < 3; ++axis) {
         std::array<char, 32> digits{};
@@ -30,6 +30,14 @@ void put(std::ostream& out, const openvdb::Vec3s& point)
         out.write(digits.data(), end.ptr - digits.data());
     }
     out.put('\n');
+}
+
+void put(std::ostream& out, const openvdb::Vec3s& point, const Placement& placement)
+{
+    if (placement.moves())
+        put_decimals(out, placement.in_file(point));
+    else
+        put_decimals(out, point);
 }
 
 void put_bits(std::ostream& out, std::uint32_t value)
@@ -48,35 +56,47 @@ void put_bits(std::ostream& out, const openvdb::Vec3s& point)
     }
 }
 
-void write_obj(std::ostream& out, const TriangleMesh& mesh)
+void put_bits(std::ostream& out, const openvdb::Vec3d& point)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        const double value = point[axis];
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        put_bits(out, static_cast<std::uint32_t>(bits));
+        put_bits(out, static_cast<std::uint32_t>(bits >> 32));
+    }
+}
+
+void write_obj(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
 {
     for (const openvdb::Vec3s& point : mesh.points) {
         out << "v ";
-        put(out, point);
+        put(out, point, placement);
     }
     for (const openvdb::Vec3I& t : mesh.triangles)
         out << "f " << std::to_string(t[0] + 1) << ' ' << std::to_string(t[1] + 1) << ' '
             << std::to_string(t[2] + 1) << '\n';
 }
 
-void write_off(std::ostream& out, const TriangleMesh& mesh)
+void write_off(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
 {
     out << "OFF\n"
         << std::to_string(mesh.points.size()) << ' ' << std::to_string(mesh.triangles.size())
         << " 0\n";
     for (const openvdb::Vec3s& point : mesh.points)
-        put(out, point);
+        put(out, point, placement);
     for (const openvdb::Vec3I& t : mesh.triangles)
         out << "3 " << std::to_string(t[0]) << ' ' << std::to_string(t[1]) << ' '
             << std::to_string(t[2]) << '\n';
 }
 
-void write_ply(std::ostream& out, const TriangleMesh& mesh)
+void write_ply(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
 {
-    out << plain_ply_header("binary_little_endian", "float", mesh.points.size(),
+    const bool moves = placement.moves();
+    out << plain_ply_header("binary_little_endian", moves ? "double" : "float", mesh.points.size(),
                             mesh.triangles.size());
     for (const openvdb::Vec3s& point : mesh.points)
-        put_bits(out, point);
+        moves ? put_bits(out, placement.in_file(point)) : put_bits(out, point);
     for (const openvdb::Vec3I& t : mesh.triangles) {
         put_bits(out, 3);
         for (int corner = 0; corner < 3; ++corner)
@@ -84,7 +104,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh)
     }
 }
 
-void write_stl(std::ostream& out, const TriangleMesh& mesh)
+void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 {
     std::array<char, 80> header{};
     std::strcpy(header.data(), "vdb_shell");
@@ -103,7 +123,8 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh)
 
 } // namespace
 
-void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh)
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                const Placement& placement)
 {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -116,7 +137,10 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh)
     if (!write)
         throw InvalidOption(path.string() + ": the extension \"" + extension +
                             "\" is none of the mesh formats .obj, .ply, .off, .stl");
-    write_stream_atomically(path, [&](std::ostream& out) { write(out, mesh); });
+    if (extension == ".stl" && placement.moves())
+        throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
+                                            "object stands; write .obj, .off or .ply");
+    write_stream_atomically(path, [&](std::ostream& out) { write(out, mesh, placement); });
 }
 
 } // namespace vdb_shell

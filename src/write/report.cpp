@@ -4,6 +4,7 @@
 #include "certify/certificate_findings.h"
 #include "core/option_names.h"
 #include "mesh/components_json.h"
+#include "mesh/placement_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -45,7 +46,9 @@ ordered_json read_json(const ReadReport& read)
             {"polygons_triangulated", read.polygons_triangulated},
             {"welded_vertices", read.welded_vertices},
             {"unused_vertices", read.unused_vertices},
-            {"skipped_faces", read.skipped_faces}};
+            {"skipped_faces", read.skipped_faces},
+            {"placement", placement_json(read.placement)},
+            {"largest_rounding", read.largest_rounding}};
 }
 
 ordered_json contour_json(const ContourReport& contour)

@@ -2,6 +2,7 @@
 #include "vdb_shell/write/report.h"
 
 #include "core/option_names.h"
+#include "mesh/placement_json.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -128,6 +129,8 @@ void read_lines(std::ostringstream& out, const ReadReport& read)
              " polygons triangulated, " + number(read.welded_vertices, 12) + " vertices welded, " +
              number(read.unused_vertices, 12) + " unused, " +
              number(read.skipped_faces.size(), 12) + " faces skipped");
+    if (read.placement.moves())
+        line(out, "  placed", placement_text(read.placement));
 }
 
 std::string stop_text(const LineReport& lines)

@@ -25,7 +25,7 @@ std::string lower_extension(const fs::path& path)
     return extension;
 }
 
-void write_tetgen(const fs::path& path, const TetMesh& tets)
+void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& placement)
 {
     fs::path node = path, ele = path;
     node.replace_extension(".node");
@@ -38,7 +38,8 @@ void write_tetgen(const fs::path& path, const TetMesh& tets)
             throw WriteError(ele.string() + ": cannot be written: the disk is full or the file "
                                             "system refused the data");
         // Inside the other, so that neither name changes before both files are written.
-        write_stream_atomically(node, [&](std::ostream& nodes) { write_tetgen_node(nodes, tets); });
+        write_stream_atomically(
+            node, [&](std::ostream& nodes) { write_tetgen_node(nodes, tets, placement); });
     });
 }
 
@@ -60,7 +61,7 @@ const std::vector<std::string>& tet_file_extensions()
 }
 
 void write_tets(const fs::path& path, const TetMesh& tets,
-                const std::vector<std::uint8_t>& certified)
+                const std::vector<std::uint8_t>& certified, const Placement& placement)
 {
     if (!certified.empty() && certified.size() != tets.tets.size())
         throw InvalidOption(path.string() + ": " + std::to_string(certified.size()) +
@@ -68,18 +69,18 @@ void write_tets(const fs::path& path, const TetMesh& tets,
                             " tets");
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele")
-        return write_tetgen(path, tets);
+        return write_tetgen(path, tets, placement);
     if (extension == ".vtu")
-        return write_stream_atomically(path,
-                                       [&](std::ostream& out) { write_vtu(out, tets, certified); });
-    void (*write)(std::ostream&, const TetMesh&) = nullptr;
+        return write_stream_atomically(
+            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement); });
+    void (*write)(std::ostream&, const TetMesh&, const Placement&) = nullptr;
     if (extension == ".mesh")
         write = write_medit;
     else if (extension == ".msh")
         write = write_gmsh;
     else
         refuse_extension(path, extension);
-    write_stream_atomically(path, [&](std::ostream& out) { write(out, tets); });
+    write_stream_atomically(path, [&](std::ostream& out) { write(out, tets, placement); });
 }
 
 } // namespace vdb_shell

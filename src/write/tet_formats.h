@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <algorithm>
@@ -19,10 +20,11 @@ inline bool has_layers(const TetMesh& tets)
 }
 
 /// `certified` by tet, or empty.
-void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified);
-void write_tetgen_node(std::ostream& out, const TetMesh& tets);
+void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
+               const Placement& placement);
+void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& placement);
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets);
-void write_medit(std::ostream& out, const TetMesh& tets);
-void write_gmsh(std::ostream& out, const TetMesh& tets);
+void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placement);
+void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placement);
 
 } // namespace vdb_shell

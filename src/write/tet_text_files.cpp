@@ -15,6 +15,12 @@ void write_corners(TextOut& text, const openvdb::Vec4I& tet, std::uint32_t base)
         text << ' ' << tet[corner] + base;
 }
 
+openvdb::Vec3d placed(const Placement& placement, const openvdb::Vec3s& point)
+{
+    // Adding an origin of 0 would turn -0 into 0.
+    return placement.moves() ? placement.in_file(point) : openvdb::Vec3d(point);
+}
+
 /// One named scalar per node or element, tags from 1.
 template <typename T>
 void write_gmsh_data(TextOut& text, const char* section, const char* name,
@@ -26,24 +32,24 @@ void write_gmsh_data(TextOut& text, const char* section, const char* name,
     text << "$End" << section << '\n';
 }
 
-void write_gmsh_entities(TextOut& text, const TetMesh& tets)
+void write_gmsh_entities(TextOut& text, const TetMesh& tets, const Placement& placement)
 {
     const Bounds bounds = tets.points.empty() ? Bounds{} : bounds_of(tets.points);
     text << "$Entities\n0 0 0 1\n1";
     for (const openvdb::Vec3d& corner : {bounds.low, bounds.high})
         for (int axis = 0; axis < 3; ++axis)
-            text << ' ' << corner[axis];
+            text << ' ' << placement.origin[axis] + placement.unit * corner[axis];
     text << " 0 0\n$EndEntities\n";
 }
 
 } // namespace
 
-void write_tetgen_node(std::ostream& out, const TetMesh& tets)
+void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& placement)
 {
     TextOut text(out);
     text << "# index x y z source_vertex layer\n" << tets.points.size() << " 3 2 0\n";
     for (std::size_t i = 0; i < tets.points.size(); ++i)
-        text << i << ' ' << tets.points[i] << ' ' << tets.source_vertex[i] << ' '
+        text << i << ' ' << placed(placement, tets.points[i]) << ' ' << tets.source_vertex[i] << ' '
              << int(tets.layer[i]) << '\n';
 }
 
@@ -63,13 +69,13 @@ void write_tetgen_ele(std::ostream& out, const TetMesh& tets)
     }
 }
 
-void write_medit(std::ostream& out, const TetMesh& tets)
+void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placement)
 {
     TextOut text(out);
     // Version 2: coordinates are read as doubles.
     text << "MeshVersionFormatted 2\nDimension 3\nVertices\n" << tets.points.size() << '\n';
     for (std::size_t i = 0; i < tets.points.size(); ++i)
-        text << tets.points[i] << ' ' << int(tets.layer[i]) << '\n';
+        text << placed(placement, tets.points[i]) << ' ' << int(tets.layer[i]) << '\n';
     text << "Tetrahedra\n" << tets.tets.size() << '\n';
     for (const openvdb::Vec4I& tet : tets.tets) {
         for (int corner = 0; corner < 4; ++corner)
@@ -80,17 +86,17 @@ void write_medit(std::ostream& out, const TetMesh& tets)
     text << "End\n";
 }
 
-void write_gmsh(std::ostream& out, const TetMesh& tets)
+void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placement)
 {
     TextOut text(out);
     const std::size_t points = tets.points.size(), count = tets.tets.size();
     text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
-    write_gmsh_entities(text, tets);
+    write_gmsh_entities(text, tets, placement);
     text << "$Nodes\n1 " << points << " 1 " << points << "\n3 1 0 " << points << '\n';
     for (std::size_t i = 0; i < points; ++i)
         text << i + 1 << '\n';
     for (const openvdb::Vec3s& point : tets.points)
-        text << point << '\n';
+        text << placed(placement, point) << '\n';
     constexpr int kFourNodeTet = 4;
     text << "$EndNodes\n$Elements\n1 " << count << " 1 " << count << "\n3 1 " << kFourNodeTet << ' '
          << count << '\n';

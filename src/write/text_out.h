@@ -39,9 +39,10 @@ public:
     }
     /// Three coordinates with a space between. Their digits are those of the double: the digits of
     /// the float mean another number to a program that reads doubles.
-    TextOut& operator<<(const openvdb::Vec3s& point)
+    TextOut& operator<<(const openvdb::Vec3s& point) { return *this << openvdb::Vec3d(point); }
+    TextOut& operator<<(const openvdb::Vec3d& point)
     {
-        return *this << double(point[0]) << ' ' << double(point[1]) << ' ' << double(point[2]);
+        return *this << point[0] << ' ' << point[1] << ' ' << point[2];
     }
 
 private:

@@ -39,8 +39,24 @@ void require_half_range(const FloatGrid& grid)
                             "; half floats end at 65504, write it without --half");
 }
 
+/// Moves a grid by its transform alone, which is of doubles. Precondition: voxels are cubes along
+/// the axes, as the grids of a shell that was read from a mesh are.
+void put_in_place(GridBase& grid, const openvdb::Vec3d& shift)
+{
+    if (shift == openvdb::Vec3d(0.0))
+        return;
+    // Not a copy of the transform: OpenVDB takes that one's voxel size from a matrix, as a
+    // difference of far places.
+    const openvdb::Vec3d there = grid.indexToWorld(openvdb::Vec3d(0.0)) + shift;
+    const auto moved = openvdb::math::Transform::createLinearTransform(grid.voxelSize()[0]);
+    if (there != openvdb::Vec3d(0.0))
+        moved->postTranslate(there);
+    grid.setTransform(moved);
+}
+
 /// Shares the voxels, so that name and metadata can be set without touching the caller's grid.
-FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, bool half)
+FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, bool half,
+                          const Placement& placement)
 {
     if (!grid)
         throw InvalidOption(std::string("the shell cannot be written as .vdb: grid \"") + name +
@@ -49,6 +65,7 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, boo
     copy->setName(name);
     copy->setCreator(creator_name());
     copy->setSaveFloatAsHalf(half);
+    put_in_place(*copy, placement.shift());
     if (half)
         require_half_range(*copy);
     return copy;
@@ -145,13 +162,16 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     require_consistent(file.stack, file.tets);
     const bool beside = options.points == PointPlacement::beside;
     const openvdb::MetaMap metadata = shell_metadata(path, file, options.points);
-    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, options.half),
-                                named_copy(file.depth, kDepthGrid, options.half)};
+    openvdb::GridPtrVec volumes{
+        named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
+        named_copy(file.depth, kDepthGrid, options.half, file.placement)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
     const PointGrids made = make_point_grids(file.stack, file.tets);
     const openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
+    for (const GridBase::Ptr& grid : points)
+        put_in_place(*grid, file.placement.shift());
     for (const GridBase::Ptr& grid : points)
         add_points_metadata(*grid, metadata);
 
@@ -185,6 +205,9 @@ ShellFile read_shell_vdb(const fs::path& path)
         ShellFile result;
         result.surface = read_grid<FloatGrid>(file, path.string(), kSurfaceGrid);
         result.depth = read_grid<FloatGrid>(file, path.string(), kDepthGrid);
+        result.placement = info.placement;
+        put_in_place(*result.surface, -info.placement.shift());
+        put_in_place(*result.depth, -info.placement.shift());
         const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
                                  info.tets,     info.layers, info.skin};
         read_point_grids(find_points(file, info, path), counts, info.points_at.string(),

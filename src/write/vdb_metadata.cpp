@@ -6,6 +6,7 @@
 #include "write/point_grids.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -27,6 +28,8 @@ constexpr const char* kTetsKey = "vdb_shell_tets";
 constexpr const char* kLayersKey = "vdb_shell_layers";
 constexpr const char* kSkinKey = "vdb_shell_skin";
 constexpr const char* kRipplesKey = "vdb_shell_ripples";
+constexpr const char* kOriginKey = "vdb_shell_origin";
+constexpr const char* kUnitKey = "vdb_shell_unit";
 constexpr const char* kOrientationKey = "vdb_shell_orientation";
 constexpr const char* kChecksumKey = "vdb_shell_checksum";
 constexpr const char* kGridsKey = "vdb_shell_grids";
@@ -123,6 +126,20 @@ void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellIn
                        ", expected at most " + std::to_string(info.layers));
 }
 
+void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Placement& placement)
+{
+    if (!metadata[kOriginKey] && !metadata[kUnitKey])
+        return;
+    placement.origin = entry<openvdb::Vec3d>(metadata, path, kOriginKey);
+    placement.unit = entry<double>(metadata, path, kUnitKey);
+    int exponent = 0;
+    if (!placement.origin.isFinite() || !(placement.unit > 0) || !std::isfinite(placement.unit) ||
+        std::frexp(placement.unit, &exponent) != 0.5)
+        fail(path, std::string("metadata \"") + kOriginKey + "\" is " + placement.origin.str() +
+                       " and \"" + kUnitKey + "\" is " + std::to_string(placement.unit) +
+                       ", expected a finite point and a power of two");
+}
+
 std::size_t ripples_of(const ShellStack& stack)
 {
     std::size_t sum = 0;
@@ -165,6 +182,10 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
         map.insertMeta(kLayersKey, Int32Metadata(std::int32_t(counts.layers)));
         map.insertMeta(kSkinKey, Int32Metadata(std::int32_t(counts.skin)));
     }
+    if (file.placement.moves()) {
+        map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
+        map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
+    }
     map.insertMeta(kOrientationKey,
                    StringMetadata(layered(counts) ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets)));
@@ -179,7 +200,9 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
 
 void add_volume_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 {
-    grid.insertMeta(kSchemaKey, *file[kSchemaKey]);
+    for (const char* key : {kSchemaKey, kOriginKey, kUnitKey})
+        if (file[key])
+            grid.insertMeta(key, *file[key]);
     // Houdini turns strings of JSON under names that begin with `dict_` into dictionaries.
     grid.insertMeta("dict_vdb_shell_parameters", *file[kParametersKey]);
     grid.insertMeta("dict_vdb_shell_report", *file[kReportKey]);
@@ -190,7 +213,7 @@ void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
     grid.setCreator(creator_name());
     const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,  kTetPointsKey,
                                 kPrismsKey, kTetsKey,     kRipplesKey, kOrientationKey,
-                                kLayersKey, kSkinKey};
+                                kLayersKey, kSkinKey,     kOriginKey,  kUnitKey};
     for (const char* key : kept)
         if (file[key])
             grid.insertMeta(std::string("global:") + key, *file[key]);
@@ -207,6 +230,7 @@ ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& p
     info.tets = count_entry(metadata, path, kTetsKey);
     info.ripples = count_entry(metadata, path, kRipplesKey);
     read_layers(metadata, path, info);
+    read_placement(metadata, path, info.placement);
     info.creator = entry<std::string>(metadata, path, kCreatorKey);
     info.orientation = entry<std::string>(metadata, path, kOrientationKey);
     info.checksum = entry<std::string>(metadata, path, kChecksumKey);

@@ -70,11 +70,23 @@ void write_cells(TextOut& text, const TetMesh& tets)
     text << "</Cells>\n";
 }
 
-} // namespace
-
-void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified)
+void write_points(TextOut& text, const TetMesh& tets, const Placement& placement)
 {
     static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
+    static_assert(sizeof(openvdb::Vec3d) == 3 * sizeof(double));
+    if (!placement.moves())
+        return write_array(text, "Float32", "Points", 3, tets.points);
+    std::vector<openvdb::Vec3d> placed;
+    for (const openvdb::Vec3s& point : tets.points)
+        placed.push_back(placement.in_file(point));
+    write_array(text, "Float64", "Points", 3, placed);
+}
+
+} // namespace
+
+void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
+               const Placement& placement)
+{
     TextOut text(out);
     text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
             "byte_order=\""
@@ -90,7 +102,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
     if (!certified.empty())
         write_array(text, "UInt8", "certified", 1, certified);
     text << "</CellData>\n<Points>\n";
-    write_array(text, "Float32", "Points", 3, tets.points);
+    write_points(text, tets, placement);
     text << "</Points>\n";
     write_cells(text, tets);
     text << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";

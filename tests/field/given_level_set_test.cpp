@@ -3,6 +3,8 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/field/contour.h"
+#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/mesh/surface_distance.h"
 #include "vdb_shell/pipeline.h"
 
 #include "support/files.h"
@@ -10,6 +12,7 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
+#include <openvdb/tools/GridTransformer.h>
 
 #include <cmath>
 #include <limits>
@@ -215,6 +218,37 @@ TEST(ShellOfLevelSet, RefusesAWrap)
     ShellOptions options = quick_options();
     options.wrap.wanted = true;
     EXPECT_THROW(build_shell_from_level_set(*sphere_field(0.3), options), InvalidOption);
+}
+
+TEST_F(GivenLevelSet, TheCowsLevelSetGivesTheCowBackToWithinAVoxelButForItsTips)
+{
+    VDB_SHELL_NEEDS_REAL_MESHES();
+    const TriangleMesh cow = read_mesh(real_meshes() / "paper" / "cow.obj").mesh;
+    LevelSetOptions options;
+    options.resolution = 128;
+    options.interior_depth = 3 * resolve_voxel_size(cow, options);
+    const openvdb::FloatGrid::Ptr field = mesh_to_level_set(cow, options);
+    const double voxel = field->voxelSize()[0];
+    // The zero surface that the values themselves have, trilinear between them.
+    const auto fine = openvdb::FloatGrid::create(field->background());
+    fine->setTransform(openvdb::math::Transform::createLinearTransform(voxel / 3));
+    fine->setGridClass(openvdb::GRID_LEVEL_SET);
+    openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(*field, *fine);
+    ContourOptions every_facet;
+    every_facet.adaptivity = 0;
+    const TriangleMesh zero = contour(*fine, every_facet), surface = contour(*field);
+    const auto voxels = [&](const TriangleMesh& from, const TriangleMesh& to) {
+        return surface_distance(from, to, voxel / 2).max / voxel;
+    };
+    // What contouring and simplification cost.
+    EXPECT_LT(voxels(surface, zero), 0.5);
+    EXPECT_LT(voxels(zero, surface), 0.5);
+    EXPECT_LT(voxels(surface, cow), 1.0);
+    // What the level set has lost before: horn tips and ears thinner than a voxel.
+    const double lost = voxels(cow, zero);
+    EXPECT_GT(lost, 1.0);
+    EXPECT_NEAR(voxels(cow, surface), lost, 0.5);
+    EXPECT_LT(surface_distance(cow, surface, voxel / 2).mean / voxel, 0.1);
 }
 
 } // namespace

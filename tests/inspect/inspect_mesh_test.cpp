@@ -156,6 +156,10 @@ TEST(InspectMesh, MeasuresWhatFloat32LeavesFarFromTheOrigin)
     const MeshInspection inspection = inspect_mesh(far);
     EXPECT_EQ(inspection.floats.digits, 6);
     EXPECT_DOUBLE_EQ(inspection.floats.spacing, 0.125);
+    EXPECT_DOUBLE_EQ(inspection.floats.longest_side, 8.0);
+    EXPECT_NE(
+        find(findings_of(inspection), "coarse_coordinates")->text.find("0.015625 of the longest"),
+        std::string::npos);
     const std::vector<Finding> findings = findings_of(inspection);
     ASSERT_NE(find(findings, "coarse_coordinates"), nullptr);
     EXPECT_FALSE(find(findings, "coarse_coordinates")->blocks);

@@ -109,6 +109,35 @@ TEST(RepairHoles, HolesThatMeetInAPointAreClosedWithoutACopy)
     EXPECT_EQ(result.report.holes.size(), 2u);
 }
 
+TEST(RepairHoles, ClosesRimsOfMoreThanAThousandEdges)
+{
+    // A drum without its lid, and one of a star's shape, whose rim has reflex corners.
+    for (const double wave : {0.0, 0.2}) {
+        std::vector<openvdb::Vec2d> rim;
+        constexpr int kCorners = 1500;
+        for (int i = 0; i < kCorners; ++i) {
+            const double u = 2 * M_PI * i / kCorners, r = 1 + wave * std::cos(5 * u);
+            rim.emplace_back(r * std::cos(u), r * std::sin(u));
+        }
+        const TriangleMesh drum = test::extruded(rim, {0.0, 1.0});
+        const double whole = signed_volume(drum.points, drum.triangles);
+        const auto last = static_cast<std::uint32_t>(drum.points.size() - 1);
+        TriangleMesh open = drum;
+        open.triangles.clear();
+        for (const openvdb::Vec3I& t : drum.triangles)
+            if (t[0] != last && t[1] != last && t[2] != last)
+                open.triangles.push_back(t);
+        open.points.pop_back();
+        const RepairResult result = repair_mesh(open);
+        test::expect_sound(result.report);
+        ASSERT_EQ(result.report.holes.size(), 1u);
+        EXPECT_EQ(result.report.holes[0].edges, std::size_t(kCorners));
+        EXPECT_EQ(result.report.holes[0].new_triangles, std::size_t(kCorners - 2));
+        EXPECT_EQ(test::expect_kept(open, result), open.triangles.size());
+        EXPECT_NEAR(signed_volume(result.mesh.points, result.mesh.triangles), whole, 1e-5);
+    }
+}
+
 TEST(RepairHoles, LeavesOneSidedSurfacesAsTheyAre)
 {
     const TriangleMesh strip = moebius_strip(24, 3);

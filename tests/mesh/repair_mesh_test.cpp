@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace vdb_shell::test
@@ -191,6 +192,31 @@ TEST(RepairMesh, CutsTheNeighbourOfATriangleWithoutArea)
     EXPECT_EQ(result.report.recut.count, 1u);
     EXPECT_EQ(result.mesh.triangles.size(), 6u);
     EXPECT_NEAR(result.report.after.volume, 1.0 / 6, 1e-12);
+}
+
+TEST(RepairMesh, RemovesTensOfThousandsOfFlatTrianglesInSeconds)
+{
+    // A point in the middle of a side that one triangle knows and its neighbour does not, with the
+    // flat triangle between them. Time that grows with the square would be minutes here.
+    constexpr int kSide = 96;
+    TriangleMesh mesh = gridded_box(Vec3d(0.0), Vec3d(kSide), kSide);
+    const std::size_t triangles = mesh.triangles.size();
+    std::size_t flat = 0;
+    for (std::size_t t = 0; t < triangles; t += 3, ++flat) {
+        const Vec3I corner = mesh.triangles[t];
+        const auto middle = static_cast<std::uint32_t>(mesh.points.size());
+        mesh.points.push_back((mesh.points[corner[0]] + mesh.points[corner[1]]) * 0.5F);
+        mesh.triangles[t] = Vec3I(corner[0], middle, corner[2]);
+        mesh.triangles.emplace_back(middle, corner[1], corner[2]);
+        mesh.triangles.emplace_back(corner[0], corner[1], middle);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const RepairResult result = repair_mesh(mesh);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    expect_sound(result.report);
+    EXPECT_EQ(result.report.degenerate.count, flat);
+    EXPECT_EQ(signed_volume(result.mesh.points, result.mesh.triangles), std::pow(kSide, 3));
+    EXPECT_LT(seconds.count(), 30.0);
 }
 
 TEST(RepairMesh, WeldsWithinATolerance)

@@ -36,6 +36,9 @@ struct FloatLimits {
     /// the origin, fewer far from it.
     int digits = 0;
     double shortest_edge = 0; ///< of length more than zero; 0 when there is none
+    double longest_side = 0;  ///< of the bounding box
+    /// How far rounding moved coordinates of the file; 0 where it had no more digits than these.
+    double largest_rounding = 0;
 };
 
 /// Everything that stands in the way of a shell, or will show in it.
@@ -57,7 +60,8 @@ struct MeshInspection {
 };
 
 struct InspectOptions {
-    LevelSetOptions level_set; ///< for what is thinner than a voxel
+    LevelSetOptions level_set;   ///< for what is thinner than a voxel
+    double largest_rounding = 0; ///< ReadReport::largest_rounding: tells who lost the digits
 };
 
 /// Looks at a surface however bad it is. Preconditions and exactness as check_mesh; blind vertices

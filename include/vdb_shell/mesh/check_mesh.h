@@ -12,6 +12,10 @@
 namespace vdb_shell
 {
 
+/// Coordinates over this are refused: beyond 1.8e18 the broad phase of the exact tests drops
+/// triangles without a word.
+inline constexpr double kLargestCoordinate = 1e18;
+
 /// How many elements have a defect, and the first of them by index (at most kFirstShown).
 template <typename Element> struct Defect {
     static constexpr std::size_t kFirstShown = 8;
@@ -66,9 +70,9 @@ struct CheckOptions {
 };
 
 /// Looks at everything that the stages after this one rely on. Exact predicates, no tolerance.
-/// Precondition, which read_mesh guarantees: finite points, corners that index them; else
-/// InvalidOption. Never throws for a bad surface: the findings are the result. Degenerate and
-/// duplicate triangles are listed as such, not among the self-intersections.
+/// Precondition, which read_mesh guarantees: points within kLargestCoordinate, corners that index
+/// them; else InvalidOption. Never throws for a bad surface: the findings are the result.
+/// Degenerate and duplicate triangles are listed as such, not among the self-intersections.
 MeshCheck check_mesh(const TriangleMesh& mesh);
 
 /// Throws GeometryError with counts and first offenders by index when the mesh cannot be worked

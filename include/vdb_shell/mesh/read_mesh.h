@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <cstddef>
@@ -16,6 +17,11 @@ struct ReadOptions {
     /// stay as the file has them; but STL has no vertices to keep, so there equal positions are
     /// merged in any case.
     bool weld = true;
+    /// Read the object about a point near its middle, which ReadReport::placement keeps: what the
+    /// file says in more digits than float32 has far from the origin is not lost.
+    bool recentre = false;
+    /// Read the object in a unit near its size: for objects of microns, and beyond 1e18.
+    bool rescale = false;
 };
 
 /// What a file said and what became of it. `file_*` is counted by a scan of the file of our own,
@@ -30,6 +36,9 @@ struct ReadReport {
     /// File faces left out, ascending: repeats of the corner before left aside, they have fewer
     /// than three corners or none that comes only once (by index, and by position when welded).
     std::vector<std::size_t> skipped_faces;
+    Placement placement; ///< moves nothing unless ReadOptions ask for that
+    /// The farthest that rounding to float32 moved a coordinate, in the mesh's units.
+    double largest_rounding = 0;
 };
 
 struct ReadResult {
@@ -41,16 +50,19 @@ struct ReadResult {
 /// Polygons are triangulated: a fan when convex, else by cutting ears in the plane of the Newell
 /// normal, which is right for planar simple polygons (of up to 1000 corners; a fan beyond).
 /// Throws ReadError with file, element and value: missing, empty or truncated file, unknown
-/// extension, a coordinate that is not finite in float32, a face index out of range, no faces, data
-/// beyond what a header declares, and binary OFF, of which there are two incompatible kinds. Text
-/// coordinates are rounded once, to the nearest float32.
-/// Guarantee: file_faces = polygons kept + skipped_faces.size(); every triangle of the mesh indexes
-/// three different points; points stand in the file's order.
+/// extension, a coordinate that is not finite in float32 or over kLargestCoordinate, a face index
+/// out of range, no faces, data beyond what a header declares, and binary OFF, of which there are
+/// two incompatible kinds. Text coordinates are rounded once, to the nearest float32 (of the
+/// difference from an origin, in double, with `recentre`). Guarantee: file_faces = polygons kept +
+/// skipped_faces.size(); every triangle of the mesh indexes three different points; points stand in
+/// the file's order.
 ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Writes OBJ, PLY (binary), OFF or STL (binary), by extension. Coordinates are written so that
-/// reading them gives the same float32 bit for bit. The file appears whole or not at all.
-/// Throws WriteError; InvalidOption for an unknown extension.
-void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+/// reading them gives the same float32 bit for bit. With a placement that moves they are written
+/// where the file had them, as doubles; STL has none and is refused. The file appears whole or not
+/// at all. Throws WriteError; InvalidOption for an unknown extension.
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                const Placement& placement = {});
 
 } // namespace vdb_shell

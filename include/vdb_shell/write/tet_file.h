@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <cstdint>
@@ -16,12 +17,13 @@ const std::vector<std::string>& tet_file_extensions();
 
 /// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name
 /// writes both), Medit (.mesh), Gmsh 4.1 (.msh). Coordinates are the float32 values exactly,
-/// whether a program reads them into floats or doubles. Data beside them, where the format has a
+/// whether a program reads them into floats or doubles; with a placement that moves, doubles where
+/// the file of the surface has them. Data beside them, where the format has a
 /// place (docs/file_format.md): per point source vertex and layer, per tet its prism and, where
 /// `certified` is given, its flag (Overlaps::certified; .vtu only). Files appear whole or not at
 /// all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension
 /// and for flags that are not one a tet, WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets,
-                const std::vector<std::uint8_t>& certified = {});
+                const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {});
 
 } // namespace vdb_shell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <openvdb/openvdb.h>
@@ -27,6 +28,9 @@ struct ShellFile {
     TetMesh tets;
     std::string parameters_json;
     std::string report_json;
+    /// Of the surface that was read. In memory grids and points are about the mesh's origin; in the
+    /// .vdb the transforms of the grids put them where the file has them, in the mesh's unit.
+    Placement placement{};
 };
 
 enum class PointPlacement {
@@ -51,6 +55,7 @@ struct ShellInfo {
     std::int64_t tet_points = 0, prisms = 0, tets = 0;
     std::int64_t layers = 1;         ///< as many prisms stand on top of each other
     std::int64_t skin = 0;           ///< ShellStack::skin
+    Placement placement;             ///< moves nothing where the file has none
     std::int64_t ripples = 0;        ///< PrismSplit::ripples, of all layers
     std::string creator;             ///< program and version that wrote it
     std::string orientation;         ///< how triangles and tets are oriented, in words

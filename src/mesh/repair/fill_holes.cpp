@@ -19,9 +19,6 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-/// The table of a rim's triangulations takes a time that grows with the cube of its edges.
-constexpr std::size_t kLongestRim = 1000;
-
 growth::Box box_of(const TriangleMesh& mesh, const Vec3I& t)
 {
     growth::Box box;
@@ -144,8 +141,15 @@ private:
     std::size_t points_, triangles_;
 };
 
+bool is_long(const Rim& rim)
+{
+    return rim.points.size() > kLongestOptimalRim;
+}
+
 Patch make_patch(const Rim& rim, FillMethod method)
 {
+    if (is_long(rim))
+        return cut_rim_ears(rim);
     Patch patch = triangulate_rim(rim, method != FillMethod::area);
     if (patch.triangles.empty() || method == FillMethod::area || method == FillMethod::dihedral)
         return patch;
@@ -164,6 +168,8 @@ void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, Ho
                                     FillMethod::area};
     if (is_planar(rim))
         std::swap(methods[0], methods[1]);
+    if (is_long(rim))
+        methods = {FillMethod::area};
     std::optional<FillMethod> best;
     for (const FillMethod method : methods) {
         const Patch patch = make_patch(rim, method);
@@ -255,8 +261,7 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
         progress.stop_if_interrupted(static_cast<int>(100 * h / holes.size()));
         const Hole& hole = holes[h];
         HoleFill fill = measured(mesh, hole);
-        if (hole.points.size() >= 3 && hole.points.size() <= kLongestRim &&
-            !passes_a_point_twice(hole))
+        if (hole.points.size() >= 3 && !passes_a_point_twice(hole))
             fill_hole(surface, hole, options.keep_crossing_fills, fill);
         report.holes.push_back(fill);
     }

@@ -34,6 +34,15 @@ struct Patch {
 /// triangles when every one needs an edge that exists already.
 Patch triangulate_rim(const Rim& rim, bool by_dihedral);
 
+/// Up to here triangulate_rim takes a second or two.
+inline constexpr std::size_t kLongestOptimalRim = 1000;
+
+/// A triangulation of a rim of any length without new points: always the corner with the smallest
+/// angle whose triangle is empty is cut off, seen along the rim's mean normal. Nothing is best
+/// about it, and it may fold where the rim does. No triangles when every corner left needs an edge
+/// that exists already.
+Patch cut_rim_ears(const Rim& rim);
+
 /// Adds points until edges inside are as long as those around the rim (Liepa 2003), and turns edges
 /// towards a Delaunay triangulation.
 void refine(Patch& patch, const Rim& rim);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/placement_json.h"
+
+#include <locale>
+#include <sstream>
+
+namespace vdb_shell
+{
+
+nlohmann::ordered_json placement_json(const Placement& placement)
+{
+    const openvdb::Vec3d& o = placement.origin;
+    return {{"origin", {o[0], o[1], o[2]}}, {"unit", placement.unit}};
+}
+
+std::string placement_text(const Placement& placement)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    constexpr int kAllDigits = 17;
+    out.precision(kAllDigits);
+    const openvdb::Vec3d& o = placement.origin;
+    out << "read about the point (" << o[0] << ", " << o[1] << ", " << o[2] << ")";
+    if (placement.unit != 1.0)
+        out << ", in units of " << placement.unit;
+    return out.str();
+}
+
+} // namespace vdb_shell
