@@ -18,9 +18,6 @@ public:
 
     /// World units, negative inside.
     double at(const openvdb::Vec3d& point, std::uint32_t triangle) const;
-    /// Without the sign.
-    double unsigned_at(const openvdb::Vec3d& point, std::uint32_t triangle) const;
-
     std::array<openvdb::Vec3d, 3> corners(std::uint32_t triangle) const;
 
 private:

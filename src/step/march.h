@@ -41,14 +41,16 @@ struct LineEnd {
     StopReason reason = StopReason::none;
 };
 
-/// The slope below which a line is no longer on its own sheet. On a sheet the interpolated slope
-/// swings with the position in the cell, by a share of how far the sheet's gradients are apart: up
-/// to 0.15 between two planes and 0.31 between three, over random lattices.
+/// On a sheet the interpolated slope swings with the position in the cell, by a share of how far the
+/// sheet's gradients are apart: up to 0.15 between two planes and 0.31 between three, over random
+/// lattices.
+inline constexpr double kStencilSwing = 0.31;
+
+/// The slope below which a line is no longer on its own sheet.
 inline double sheet_threshold(double own_slope, double sheet_cosine)
 {
-    constexpr double kSwing = 0.31;
     const double apart = std::sqrt(std::max(0.0, 1 - own_slope * own_slope));
-    return std::max(0.0, sheet_cosine * own_slope - kSwing * apart);
+    return std::max(0.0, sheet_cosine * own_slope - kStencilSwing * apart);
 }
 
 /// Bisection on eq. 1: the largest length at which e = -phi(q) up to the threshold, taking for
@@ -78,9 +80,40 @@ LineEnd bisect_line(Field& field, const Line& line, const MarchRules& rules)
     return end;
 }
 
+/// Looks at every step; step/skip_ahead.h has one that does not.
+struct NoSkip {
+    static constexpr bool wanted = false;
+};
+
+/// What the slope towards -inward must be over for the test to hold, whatever else; over 1 where a
+/// slope cannot tell.
+inline double slope_wanted(const Line& line, const MarchRules& rules,
+                           const openvdb::Vec3d& start_gradient, double reference_slope)
+{
+    switch (rules.test) {
+    case StopTest::normal:
+        return rules.rho;
+    case StopTest::relative_normal:
+        return rules.rho * std::max(0.0, reference_slope);
+    case StopTest::own_sheet:
+        return sheet_threshold(line.own_slope, rules.sheet_cosine);
+    case StopTest::start_gradient: {
+        // A gradient within this angle of the line is near enough to the one at the start.
+        const double length = start_gradient.length();
+        const double apart =
+            std::acos(std::clamp(-start_gradient.dot(line.inward) / length, -1.0, 1.0));
+        const double angle = length > rules.rho ? std::acos(rules.rho / length) - apart : -1.0;
+        return angle > 0 ? std::cos(angle) : 2.0;
+    }
+    default:
+        return 2.0;
+    }
+}
+
 /// Steps along the line while the test holds. The length is the last one at which it held.
-template <typename Field>
-LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
+/// `skip` may know without looking that the test holds up to some length.
+template <typename Field, typename Skip = NoSkip>
+LineEnd march_line(Field& field, const Line& line, const MarchRules& rules, const Skip& skip = {})
 {
     const openvdb::Vec3d outward = -line.inward;
     const auto sample_at = [&](double e) { return field.at(line.start + e * line.inward); };
@@ -121,8 +154,25 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
     };
 
     LineEnd end;
-    bool inside = false;
+    bool inside = false, skipped = !Skip::wanted;
     while (true) {
+        if constexpr (Skip::wanted)
+            if (!skipped && inside && end.length > rules.reference + rules.period) {
+                skipped = true;
+                const double known =
+                    rules.test == StopTest::distance
+                        ? skip.difference_holds(line, end.length, rules.distance_threshold)
+                        : skip.slope_holds(line, end.length,
+                                           slope_wanted(line, rules, start.gradient,
+                                                        reference_slope));
+                // The last step before the largest length is looked at, like all that stop a line.
+                const double steps = std::min(std::floor(known / rules.step),
+                                              std::ceil(line.max_length / rules.step) - 1);
+                if (steps > end.steps) {
+                    end.steps = static_cast<std::uint32_t>(steps);
+                    end.length = end.steps * rules.step;
+                }
+            }
         const double e = std::min(++end.steps * rules.step, line.max_length);
         const auto sample = sample_at(e);
         inside = inside || sample.phi <= 0;
@@ -147,7 +197,8 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
     return end;
 }
 
-template <typename Field> LineEnd step_one(Field& field, const Line& line, const MarchRules& rules)
+template <typename Field, typename Skip = NoSkip>
+LineEnd step_one(Field& field, const Line& line, const MarchRules& rules, const Skip& skip = {})
 {
     if (line.inward.lengthSqr() == 0)
         return {0, 0, StopReason::no_direction};
@@ -160,7 +211,7 @@ template <typename Field> LineEnd step_one(Field& field, const Line& line, const
     case StopTest::bisection:
         return bisect_line(field, line, rules);
     default:
-        return march_line(field, line, rules);
+        return march_line(field, line, rules, skip);
     }
 }
 
