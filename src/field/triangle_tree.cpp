@@ -124,7 +124,8 @@ std::uint32_t TriangleTree::build(const TriangleMesh& mesh, std::vector<Item>& i
     return id;
 }
 
-Four TriangleTree::distances(const Node& node, const std::array<Four, 3>& point)
+template <typename N>
+inline Four TriangleTree::box_distances(const N& node, const std::array<Four, 3>& point)
 {
     Four squared{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -135,11 +136,11 @@ Four TriangleTree::distances(const Node& node, const std::array<Four, 3>& point)
     return squared;
 }
 
-Four TriangleTree::distances(const Block& t, const std::array<Four, 3>& p)
+template <typename B> inline Four TriangleTree::distances(const B& t, const std::array<Four, 3>& p)
 {
     const Four zero{}, one = zero + 1.0F;
     Four nearest = zero + kInfinity, outside = t.bias, height = zero;
-    for (const Block::Side& s : t.side) {
+    for (const auto& s : t.side) {
         const Four x = p[0] - s.x, y = p[1] - s.y, z = p[2] - s.z;
         const Four along =
             smaller(larger((x * s.ex + y * s.ey + z * s.ez) * s.inverse, zero), one);
@@ -182,7 +183,7 @@ std::uint32_t TriangleTree::nearest(const Vec3d& point, float tolerance) const
             continue;
         }
         const Node& node = nodes_[entry.id];
-        const Four d = distances(node, four);
+        const Four d = box_distances(node, four);
         // Nearest on top.
         const std::size_t bottom = top;
         for (std::size_t i = 0; i < kWidth; ++i) {

@@ -49,8 +49,9 @@ private:
                         std::size_t end);
     std::uint32_t add_block(const TriangleMesh& mesh, const std::vector<Item>& items,
                             std::size_t begin, std::size_t end);
-    static Four distances(const Block& block, const std::array<Four, 3>& point);
-    static Four distances(const Node& node, const std::array<Four, 3>& point);
+    // Templates, for they are inlined only when they are not exported.
+    template <typename N> static Four box_distances(const N& node, const std::array<Four, 3>& point);
+    template <typename B> static Four distances(const B& block, const std::array<Four, 3>& point);
     std::array<openvdb::Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle) const;
 
     openvdb::Vec3d middle_;

@@ -6,15 +6,16 @@ namespace vdb_shell
 namespace
 {
 
-// The stencil sees a sheet that the line has not reached yet: two voxels ahead when they meet head
-// on, and up to four when they graze and the slope falls by little.
-constexpr double kBackVoxels = 4.0;
+// The stencil sees a sheet that the line has not reached yet: up to two voxels ahead when they meet
+// head on, farther when they graze. Most lines stop between these two.
+constexpr double kAheadVoxels = 2.0;
+constexpr double kBackVoxels = 3.0;
 // Where a link of the chain proves less than this, slopes this far apart are held against each
 // other instead.
 constexpr double kLinkVoxels = 4.0;
 constexpr int kMostLinks = 8;
 // The search ends when it knows the place this well.
-constexpr double kNearVoxels = 1.0;
+constexpr double kNearVoxels = 0.5;
 // Interpolation across a sheet makes a distance shorter by less than this.
 constexpr double kBlurVoxels = 0.5;
 // Below it the distance to the surface grows too slowly to rule out that the line leaves the solid
@@ -31,6 +32,11 @@ double safe_slope(double threshold)
 }
 
 } // namespace
+
+SkipAhead::SkipAhead(const DeepField& field, double deepest)
+    : back(kBackVoxels * field.voxel()), field_(field), deepest_(deepest)
+{
+}
 
 SkipAhead::Probe SkipAhead::probe(const Line& line, double length) const
 {
@@ -59,7 +65,7 @@ bool SkipAhead::chain_holds(const Line& line, double low, double high, double sl
         if (at - proven <= low)
             return true;
         const bool weak = proven < kLinkVoxels * field_.voxel();
-        gap = weak ? std::min(kLinkVoxels * field_.voxel(), at - low) : 0.0;
+        gap = weak ? std::min({kLinkVoxels * field_.voxel(), at - low, at / 3}) : 0.0;
         above = p.distance;
         at -= weak ? gap : proven;
     }
@@ -71,7 +77,7 @@ template <typename Holds>
 double SkipAhead::search(const Line& line, double from, const Holds& holds) const
 {
     const double voxel = field_.voxel(), end = std::min(line.max_length, deepest_);
-    double known = from, stride = std::max(from, kLinkVoxels * voxel);
+    double known = from, stride = from;
     for (bool growing = true; stride >= kNearVoxels * voxel && known < end;) {
         const double next = std::min(known + stride, end);
         const bool good = holds(known, next);
@@ -79,25 +85,23 @@ double SkipAhead::search(const Line& line, double from, const Holds& holds) cons
         known = good ? next : known;
         stride *= growing ? 2.0 : 0.5;
     }
-    return std::max(from, known - kBackVoxels * voxel);
+    return std::max(from, known - kAheadVoxels * voxel);
 }
 
-double SkipAhead::slope_holds(const Line& line, double from, double threshold) const
+double SkipAhead::holds_up_to(const Line& line, const MarchRules& rules, const RunningTest& test,
+                              double from) const
 {
-    const double slope = std::max(kLeastSlope, safe_slope(threshold));
+    // Length less distance never falls along a line, for distances grow by no more than lengths.
+    const double limit = rules.distance_threshold - kBlurVoxels * field_.voxel();
+    if (rules.test == StopTest::distance)
+        return search(line, from, [&](double, double high) {
+            return high - probe(line, high).distance < limit;
+        });
+    const double slope = std::max(kLeastSlope, safe_slope(test.slope_wanted()));
     if (slope >= 1)
         return from;
     return search(line, from, [&](double low, double high) {
         return chain_holds(line, low, high, slope);
-    });
-}
-
-double SkipAhead::difference_holds(const Line& line, double from, double threshold) const
-{
-    const double limit = threshold - kBlurVoxels * field_.voxel();
-    // Length less distance never falls along a line, for distances grow by no more than lengths.
-    return search(line, from, [&](double, double high) {
-        return high - probe(line, high).distance < limit;
     });
 }
 

@@ -17,13 +17,15 @@ class SkipAhead
 public:
     static constexpr bool wanted = true;
 
-    SkipAhead(const DeepField& field, double deepest) : field_(field), deepest_(deepest) {}
+    SkipAhead(const DeepField& field, double deepest);
 
-    /// A length from which on steps are to be looked at, at least `from`: up to it the stencil's
-    /// slope exceeds `threshold`.
-    double slope_holds(const Line& line, double from, double threshold) const;
-    /// Likewise for |length + phi| < threshold.
-    double difference_holds(const Line& line, double from, double threshold) const;
+    /// By how much a line goes back when its first look after a jump fails.
+    double back;
+
+    /// A length up to which the test holds, as far as nearest points can tell; at least `from`,
+    /// where the test has settled.
+    double holds_up_to(const Line& line, const MarchRules& rules, const RunningTest& test,
+                       double from) const;
 
 private:
     struct Probe {
