@@ -31,9 +31,9 @@ Vec3d DeepField::nearest_point(const Vec3d& world) const
 Vec3d DeepField::nearest_point(const Vec3d& world, float tolerance_voxels) const
 {
     const openvdb::Vec3I& t = mesh_.triangles[tree_.nearest(world, tolerance_voxels)];
-    return nearest_on_triangle({Vec3d(mesh_.points[t[0]]), Vec3d(mesh_.points[t[1]]),
-                                Vec3d(mesh_.points[t[2]])},
-                               world)
+    return nearest_on_triangle(
+               {Vec3d(mesh_.points[t[0]]), Vec3d(mesh_.points[t[1]]), Vec3d(mesh_.points[t[2]])},
+               world)
         .point;
 }
 

@@ -82,8 +82,7 @@ void for_each_leaf_near(const std::array<Vec3d, 3>& corner, double reach, const 
 {
     Coord low, high;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto [least, most] =
-            std::minmax({corner[0][axis], corner[1][axis], corner[2][axis]});
+        const auto [least, most] = std::minmax({corner[0][axis], corner[1][axis], corner[2][axis]});
         low[axis] = static_cast<int>(std::ceil(least - reach)) >> 3;
         high[axis] = static_cast<int>(std::floor(most + reach)) >> 3;
     }
@@ -164,7 +163,8 @@ public:
     }
 
 private:
-    /// Blocks of 8, 4 and 2 voxels a side; `half` is from the block's middle to that of its eighths.
+    /// Blocks of 8, 4 and 2 voxels a side; `half` is from the block's middle to that of its
+    /// eighths.
     void descend(std::size_t level, const std::array<float, 3>& middle, float half)
     {
         EightPoints points;
@@ -193,13 +193,15 @@ private:
             const float closest = std::sqrt(least[i / 4][i % 4]);
             if (closest > reach_ + radius)
                 continue;
-            const float limit = std::min(closest + 2 * radius, reach_ + radius) +
-                                static_cast<float>(kSlackVoxels);
+            const float limit =
+                std::min(closest + 2 * radius, reach_ + radius) + static_cast<float>(kSlackVoxels);
             lists_[level + 1].clear();
             for (std::size_t n = 0; n < list.size(); ++n)
                 if (distances_[level][n][i / 4][i % 4] <= limit * limit)
                     lists_[level + 1].push_back(list[n]);
-            descend(level + 1, {points.x[i / 4][i % 4], points.y[i / 4][i % 4], points.z[i / 4][i % 4]}, half / 2);
+            descend(level + 1,
+                    {points.x[i / 4][i % 4], points.y[i / 4][i % 4], points.z[i / 4][i % 4]},
+                    half / 2);
         }
     }
 
@@ -210,8 +212,10 @@ private:
                 continue;
             const auto in_leaf = [](float x) { return static_cast<int>(std::lround(x + 3.5F)); };
             const Coord at =
-                origin_.offsetBy(in_leaf(points.x[i / 4][i % 4]), in_leaf(points.y[i / 4][i % 4]), in_leaf(points.z[i / 4][i % 4]));
-            const double d = surface_.at(voxel_ * at.asVec3d(), pairs_[nearest[i / 4][i % 4]].triangle);
+                origin_.offsetBy(in_leaf(points.x[i / 4][i % 4]), in_leaf(points.y[i / 4][i % 4]),
+                                 in_leaf(points.z[i / 4][i % 4]));
+            const double d =
+                surface_.at(voxel_ * at.asVec3d(), pairs_[nearest[i / 4][i % 4]].triangle);
             if (!(std::abs(d) < (reach_ - kSlackVoxels) * voxel_))
                 continue;
             if (!leaf_)
@@ -263,7 +267,8 @@ openvdb::FloatGrid::Ptr mesh_to_narrow_band(const TriangleMesh& mesh,
     const StageProgress progress(interrupter, "level set");
     LevelSetOptions narrow = options;
     narrow.exterior_depth.reset();
-    narrow.interior_depth.reset();
+    if (!mesh.points.empty())
+        narrow.interior_depth = narrow.exterior_voxels * resolve_voxel_size(mesh, narrow);
     const double voxel = checked_voxel_size(mesh, narrow);
     const double reach = narrow.exterior_voxels + kSlackVoxels;
     auto grid = openvdb::FloatGrid::create(static_cast<float>(narrow.exterior_voxels * voxel));

@@ -17,8 +17,14 @@ namespace
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kWidth = 4;
 
-Four smaller(const Four& a, const Four& b) { return a < b ? a : b; }
-Four larger(const Four& a, const Four& b) { return a > b ? a : b; }
+Four smaller(const Four& a, const Four& b)
+{
+    return a < b ? a : b;
+}
+Four larger(const Four& a, const Four& b)
+{
+    return a > b ? a : b;
+}
 
 } // namespace
 
@@ -99,8 +105,8 @@ std::uint32_t TriangleTree::build(const TriangleMesh& mesh, std::vector<Item>& i
         return middle;
     };
     const std::size_t half = split(begin, end);
-    const std::array<std::size_t, kWidth + 1> cut{begin, split(begin, half), half,
-                                                  split(half, end), end};
+    const std::array<std::size_t, kWidth + 1> cut{begin, split(begin, half), half, split(half, end),
+                                                  end};
     const auto id = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     Node node;
@@ -142,8 +148,7 @@ template <typename B> inline Four TriangleTree::distances(const B& t, const std:
     Four nearest = zero + kInfinity, outside = t.bias, height = zero;
     for (const auto& s : t.side) {
         const Four x = p[0] - s.x, y = p[1] - s.y, z = p[2] - s.z;
-        const Four along =
-            smaller(larger((x * s.ex + y * s.ey + z * s.ez) * s.inverse, zero), one);
+        const Four along = smaller(larger((x * s.ex + y * s.ey + z * s.ez) * s.inverse, zero), one);
         const Four dx = x - along * s.ex, dy = y - along * s.ey, dz = z - along * s.ez;
         nearest = smaller(nearest, dx * dx + dy * dy + dz * dz);
         outside = larger(outside, x * s.mx + y * s.my + z * s.mz);

@@ -50,7 +50,8 @@ private:
     std::uint32_t add_block(const TriangleMesh& mesh, const std::vector<Item>& items,
                             std::size_t begin, std::size_t end);
     // Templates, for they are inlined only when they are not exported.
-    template <typename N> static Four box_distances(const N& node, const std::array<Four, 3>& point);
+    template <typename N>
+    static Four box_distances(const N& node, const std::array<Four, 3>& point);
     template <typename B> static Four distances(const B& block, const std::array<Four, 3>& point);
     std::array<openvdb::Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle) const;
 

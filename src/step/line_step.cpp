@@ -107,8 +107,7 @@ LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
     if (count == 0)
         return lengths;
     const MarchRules rules = rules_of(job.mesh, job.level_set, job.options);
-    const std::vector<double> thickest =
-        largest_lengths(job.mesh, job.options, job.thickness_grid);
+    const std::vector<double> thickest = largest_lengths(job.mesh, job.options, job.thickness_grid);
     std::vector<double> own_slopes(count, 1.0);
     if (job.options.test == StopTest::own_sheet)
         own_slopes = own_sheet_slopes(job.mesh, job.directions);
@@ -195,9 +194,8 @@ LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid&
         // What a thread remembers is a pure function of the mesh: it saves time and changes
         // nothing.
         using PerThread = tbb::enumerable_thread_specific<DeepSampler>;
-        const auto fields = std::make_shared<PerThread>([deep] {
-            return DeepSampler(deep->band().transform(), DeepVoxels(*deep));
-        });
+        const auto fields = std::make_shared<PerThread>(
+            [deep] { return DeepSampler(deep->band().transform(), DeepVoxels(*deep)); });
         return [&rules, deep, skip, fields](const auto& range, const auto& line_of,
                                             const auto& store) {
             DeepSampler& field = fields->local();

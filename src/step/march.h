@@ -41,9 +41,9 @@ struct LineEnd {
     StopReason reason = StopReason::none;
 };
 
-/// On a sheet the interpolated slope swings with the position in the cell, by a share of how far the
-/// sheet's gradients are apart: up to 0.15 between two planes and 0.31 between three, over random
-/// lattices.
+/// On a sheet the interpolated slope swings with the position in the cell, by a share of how far
+/// the sheet's gradients are apart: up to 0.15 between two planes and 0.31 between three, over
+/// random lattices.
 inline constexpr double kStencilSwing = 0.31;
 
 /// The slope below which a line is no longer on its own sheet.
@@ -120,8 +120,8 @@ public:
     /// Beyond this length the test no longer changes.
     double settled() const { return rules_.reference + rules_.period; }
 
-    /// The slope towards -inward over which the test holds, whatever else, once it has settled; over
-    /// 1 where a slope cannot tell.
+    /// The slope towards -inward over which the test holds, whatever else, once it has settled;
+    /// over 1 where a slope cannot tell.
     double slope_wanted() const
     {
         switch (rules_.test) {
@@ -206,8 +206,7 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules, cons
     const double entry = rules.entry + std::max(0.0, start.phi);
     RunningTest test(line, rules, start.gradient);
     if (rules.test == StopTest::relative_normal)
-        test.set_reference(
-            test.slope_of(sample_at(std::min(rules.reference, line.max_length))));
+        test.set_reference(test.slope_of(sample_at(std::min(rules.reference, line.max_length))));
 
     LineEnd end;
     Jump jump;

@@ -26,8 +26,7 @@ constexpr double kLeastSlope = 0.25;
 double safe_slope(double threshold)
 {
     const double length = std::sqrt(1 + kStencilSwing * kStencilSwing);
-    const double angle =
-        std::acos(std::min(1.0, threshold / length)) - std::atan(kStencilSwing);
+    const double angle = std::acos(std::min(1.0, threshold / length)) - std::atan(kStencilSwing);
     return angle > 0 ? std::cos(angle) : 2.0;
 }
 
@@ -100,9 +99,8 @@ double SkipAhead::holds_up_to(const Line& line, const MarchRules& rules, const R
     const double slope = std::max(kLeastSlope, safe_slope(test.slope_wanted()));
     if (slope >= 1)
         return from;
-    return search(line, from, [&](double low, double high) {
-        return chain_holds(line, low, high, slope);
-    });
+    return search(line, from,
+                  [&](double low, double high) { return chain_holds(line, low, high, slope); });
 }
 
 } // namespace vdb_shell

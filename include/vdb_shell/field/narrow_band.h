@@ -10,6 +10,13 @@
 namespace vdb_shell
 {
 
+/// Where the lines' field is computed.
+enum class FieldRoute {
+    automatic, ///< sparse where it is right and less work
+    sparse,    ///< sparse where it is right
+    dense,     ///< all voxels down to the depth of the lines: mesh_to_level_set
+};
+
 /// The signed distance to a closed mesh within options.exterior_voxels of it on either side, as
 /// mesh_to_level_set names and places it, background likewise; depths in the options are not read.
 /// Each value is the distance in doubles to the nearest triangle, rounded once; its sign is that of
