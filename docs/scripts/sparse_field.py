@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the sparse field against the dense one: python3 docs/scripts/sparse_field.py COMMAND FOLDER_OF_MESHES PAGE
 
-Runs `build --method raw` with --field dense and --field sparse in turn, several times each, and puts the table between
-the page's markers. Lengths are compared vertex by vertex through the inner surfaces, which have the same lines."""
+Runs `build --method raw` with --field dense and --field sparse in turn, several times each, and puts the table into
+the page. Lengths are compared vertex by vertex through the inner surfaces, which have the same lines."""
 import json
 import math
 import pathlib
@@ -14,8 +14,8 @@ import tempfile
 import runs
 
 STAGES = ["level set", "line stepping"]
-HEAD = """| mesh | vertices | dense s | sparse s | ratio | dense peak MiB | sparse peak MiB | median | 99 % | over 2 voxels |
-|---|---|---|---|---|---|---|---|---|---|"""
+HEAD = ["mesh", "vertices", "dense s", "sparse s", "ratio", "dense peak MiB", "sparse peak MiB", "median", "99 %",
+        "over 2 voxels"]
 
 
 def inner_points(path):
@@ -28,8 +28,8 @@ def run(command, mesh, route, folder):
     subprocess.run([command, "build", str(mesh), "--method", "raw", "--samples", "0", "--field", route, "-q",
                     "--report", str(report), "-o", str(inner)], check=True)
     figures = json.loads(report.read_text())
-    costs = {cost["stage"]: cost["seconds"] for cost in figures["costs"]["stages"]}
-    peak = next(cost["peak_memory_bytes"] for cost in figures["costs"]["stages"] if cost["stage"] == "line stepping")
+    costs = {cost["stage"]: cost["seconds"] for cost in figures["stages"]}
+    peak = next(cost["peak_memory_bytes"] for cost in figures["stages"] if cost["stage"] == "line stepping")
     return sum(costs[stage] for stage in STAGES), peak / 2**20, figures["field"], inner_points(inner)
 
 
@@ -43,19 +43,16 @@ def row(command, name, folder, repeats):
     apart = sorted(math.dist(a, b) / voxel for a, b in zip(dense[3], sparse[3]))
     seconds = [statistics.median(pair[i][0] for pair in pairs) for i in (0, 1)]
     ratio = statistics.median(pair[0][0] / pair[1][0] for pair in pairs)
-    return (f"| {name.split('/')[1]} | {len(apart)} | {seconds[0]:.3f} | {seconds[1]:.3f} | {ratio:.1f} | "
-            f"{dense[1]:.0f} | {sparse[1]:.0f} | {statistics.median(apart):.2f} | {apart[int(0.99 * len(apart))]:.1f} | "
-            f"{sum(a > 2 for a in apart)} |")
+    return [name.split("/")[1], str(len(apart)), f"{seconds[0]:.3f}", f"{seconds[1]:.3f}", f"{ratio:.1f}",
+            f"{dense[1]:.0f}", f"{sparse[1]:.0f}", f"{statistics.median(apart):.2f}",
+            f"{apart[int(0.99 * len(apart))]:.1f}", str(sum(a > 2 for a in apart))]
 
 
 def main():
     arguments = runs.arguments(__doc__)
     meshes = ["paper/sphere", "paper/teapot", "artist/fandisk"] if arguments.quick else runs.CLEAN_MESHES
     rows = [row(arguments.command, name, arguments.folder, 1 if arguments.quick else 5) for name in meshes]
-    text = arguments.page.read_text()
-    begin, end = "<!-- table -->\n", "<!-- end -->"
-    head, rest = text.split(begin)
-    arguments.page.write_text(head + begin + "\n".join([HEAD, *rows]) + "\n" + end + rest.split(end)[1])
+    runs.replace_tables(arguments.page, runs.table(HEAD, rows))
 
 
 if __name__ == "__main__":

@@ -50,7 +50,7 @@ double SignedDistance::at(const Vec3d& point, std::uint32_t triangle) const
     const std::array<Vec3d, 3> c = corners(triangle);
     const NearestOnTriangle nearest = nearest_on_triangle(c, point);
     const Vec3d offset = point - nearest.point;
-    Vec3d normal;
+    Vec3d normal(0.0);
     switch (nearest.on) {
     case NearestOnTriangle::On::face:
         normal = (c[1] - c[0]).cross(c[2] - c[0]);

@@ -156,7 +156,7 @@ LineLengths look_at_every_step(const Stage& stage, StopTest test)
 
 TEST(SparseStep, SkippingAheadChangesNothing)
 {
-    const std::vector<openvdb::Vec2d> notched{{0, 0}, {1, 0}, {1, 1}, {0.55, 0.2}, {0, 1}};
+    const std::vector<openvdb::Vec2d> notched{{0, 0}, {1, 0}, {1, 1}, {0.55, 0.6}, {0, 1}};
     for (const TriangleMesh& mesh :
          {test::icosphere(0.4, 3), test::torus(1, 0.4, 30, 12),
           test::gridded_box(Vec3d(0), Vec3d(1, 1, 0.5), 6),
