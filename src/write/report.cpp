@@ -111,6 +111,7 @@ ordered_json decimate_json(const DecimateReport& decimate)
 ordered_json field_json(const FieldReport& field)
 {
     return {{"origin", field.origin},
+            {"sparse", field.sparse},
             {"voxel_size", field.voxel_size},
             {"active_voxels", field.active_voxels},
             {"memory_bytes", field.memory_bytes},
