@@ -88,7 +88,9 @@ void make_field(ShellResult& r, const ShellOptions& options, const openvdb::Floa
 {
     const LevelSetOptions band = band_for(options, r.surface, thickness_grid);
     std::string& origin = r.report.field.origin;
-    origin = "made of the surface";
+    const std::string dense_for = why_not_sparse(options, r, thickness_grid);
+    origin = dense_for.empty() ? "a narrow band made of the surface, deeper where lines end"
+                               : "made of the surface, dense for " + dense_for;
     if (given) {
         // A given band outside is as wide as its maker needed, not as the lines do.
         const std::string hindrance = options.side == Side::inward
@@ -99,9 +101,11 @@ void make_field(ShellResult& r, const ShellOptions& options, const openvdb::Floa
             r.level_set = given->deepCopy();
             return;
         }
-        origin = "made anew of the surface, for of the given one " + hindrance;
+        origin += ", for of the given one " + hindrance;
     }
-    r.level_set = mesh_to_level_set(r.surface, band, interrupter);
+    r.report.field.sparse = dense_for.empty();
+    r.level_set = dense_for.empty() ? mesh_to_narrow_band(r.surface, band, interrupter)
+                                    : mesh_to_level_set(r.surface, band, interrupter);
 }
 
 /// All stages from the check on. `given` may be null.
@@ -206,6 +210,7 @@ std::string options_json(const ShellOptions& options)
                          {"exterior_voxels", options.level_set.exterior_voxels},
                          {"exterior_depth", or_null(options.level_set.exterior_depth)},
                          {"interior_depth", or_null(options.level_set.interior_depth)}};
+    json["field"] = name_in_table(options.field);
     json["smooth"] = {{"iterations", options.smooth.iterations}};
     json["directions"] = {{"source", name_in_table(options.directions.source)},
                           {"perturbation_radians", options.directions.perturbation_radians},

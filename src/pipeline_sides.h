@@ -8,6 +8,11 @@
 namespace vdb_shell
 {
 
+/// Why the lines need a dense field, or an empty string when a narrow band will do. Reads the
+/// result's surface and what the check found.
+std::string why_not_sparse(const ShellOptions& options, const ShellResult& result,
+                           const openvdb::FloatGrid* thickness_grid);
+
 /// The band that the lines of the options' side need, no deeper than the longest line that the user
 /// allows.
 LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surface,

@@ -5,6 +5,7 @@
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/given_level_set.h"
 #include "vdb_shell/field/level_set.h"
+#include "vdb_shell/field/narrow_band.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -38,6 +39,11 @@ struct ShellOptions {
     ContourOptions contour; ///< for build_shell_from_level_set alone
     CheckOptions check;
     LevelSetOptions level_set;
+    /// Sparse: the level set is a narrow band, and deeper voxels are computed where lines read them
+    /// (line_step_sparse). Dense all the same, with the reason in report.field.origin, for lines
+    /// outward, smoothing, a band of a given depth, a surface that crosses itself and a given level
+    /// set that lines can step through.
+    FieldRoute field = FieldRoute::automatic;
     SmoothOptions smooth;
     DirectionOptions directions;
     LineStepOptions line_step;

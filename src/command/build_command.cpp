@@ -88,6 +88,9 @@ void add_field_options(CLI::App& app, ShellOptions& shell)
     app.add_option("--interior-depth", shell.level_set.interior_depth,
                    "Depth of the band inside, world units [the thickness, else half the diagonal]")
         ->group("Level set");
+    bind_enum(app, "--field", shell.field,
+              "Deep voxels only where lines end, or all of them; auto takes what is less work")
+        ->group("Level set");
     app.add_option("--max-memory", shell.level_set.max_memory_gib,
                    "Refuse a level set that would need more GiB than this [what is free]")
         ->group("Level set");

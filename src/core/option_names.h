@@ -5,6 +5,7 @@
 
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/field/contour.h"
+#include "vdb_shell/field/narrow_band.h"
 #include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/shell/tessellate.h"
@@ -35,6 +36,14 @@ inline const NameTable<DirectionSource>& names(DirectionSource)
 {
     static const NameTable<DirectionSource> table{{"pseudo-normal", DirectionSource::pseudo_normal},
                                                   {"gradient", DirectionSource::gradient}};
+    return table;
+}
+
+inline const NameTable<FieldRoute>& names(FieldRoute)
+{
+    static const NameTable<FieldRoute> table{{"auto", FieldRoute::automatic},
+                                             {"sparse", FieldRoute::sparse},
+                                             {"dense", FieldRoute::dense}};
     return table;
 }
 

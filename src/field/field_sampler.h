@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -16,15 +17,30 @@ struct FieldSample {
     bool in_band = false;         ///< every voxel that was read is active
 };
 
-/// Reads a level set at world points. The gradient is OpenTissue's: central differences at the
+/// The voxels of a grid.
+class GridVoxels
+{
+public:
+    explicit GridVoxels(const openvdb::FloatGrid& grid) : accessor_(grid.getConstAccessor()) {}
+    bool probe(const openvdb::Coord& at, float& value) const
+    {
+        return accessor_.probeValue(at, value);
+    }
+
+private:
+    openvdb::FloatGrid::ConstAccessor accessor_;
+};
+
+/// Reads a level set at world points; Voxels has bool probe(Coord, float&), true where the voxel is
+/// active. The gradient is OpenTissue's: central differences at the
 /// eight voxels around the point, interpolated trilinearly, left at the length that comes out (half
 /// the stencil's slope across a medial sheet; method of the paper's authors). One object per
 /// thread.
-class FieldSampler
+template <typename Voxels> class StencilSampler
 {
 public:
-    explicit FieldSampler(const openvdb::FloatGrid& grid)
-        : transform_(grid.transform()), accessor_(grid.getConstAccessor())
+    StencilSampler(const openvdb::math::Transform& transform, Voxels voxels)
+        : transform_(transform), voxels_(std::move(voxels))
     {
     }
 
@@ -73,17 +89,26 @@ private:
                     if (beyond > 1)
                         continue;
                     float read = 0;
-                    in_band_ &= accessor_.probeValue(base.offsetBy(i, j, k), read);
+                    in_band_ &= voxels_.probe(base.offsetBy(i, j, k), read);
                     values_[slot(i, j, k)] = read;
                 }
     }
 
     const openvdb::math::Transform& transform_;
-    openvdb::FloatGrid::ConstAccessor accessor_;
+    Voxels voxels_;
     // Two steps of half a voxel mostly fall into one cell: the stencil is read once for both.
     openvdb::Coord base_;
     bool fetched_ = false, in_band_ = false;
     std::array<double, 64> values_{};
+};
+
+class FieldSampler : public StencilSampler<GridVoxels>
+{
+public:
+    explicit FieldSampler(const openvdb::FloatGrid& grid)
+        : StencilSampler(grid.transform(), GridVoxels(grid))
+    {
+    }
 };
 
 } // namespace vdb_shell

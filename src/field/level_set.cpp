@@ -4,6 +4,7 @@
 #include "core/stage_progress.h"
 #include "field/cavities.h"
 #include "field/latched_interrupter.h"
+#include "field/level_set_checks.h"
 #include "vdb_shell/core/error.h"
 
 #include <openvdb/tools/Count.h>
@@ -229,28 +230,38 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
     return voxels * kBytesPerVoxel + kFixed;
 }
 
-openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
-                                          Interrupter* interrupter)
+double checked_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& options)
 {
-    const StageProgress progress(interrupter, "level set");
     check_mesh_and_options(mesh, options);
     const double voxel = resolve_voxel_size(mesh, options);
     check_voxel_size(mesh, voxel);
     check_memory(mesh, voxel, options);
+    return voxel;
+}
 
+void finish_level_set(openvdb::FloatGrid& grid, const TriangleMesh& mesh)
+{
+    if (!has_inside(grid))
+        fail<GeometryError>(
+            "voxel larger than the object: no voxel centre lies inside, voxel size ",
+            grid.voxelSize()[0], ", longest side ", longest_side(bounds_of(mesh.points)));
+    grid.setName("surface");
+    grid.setGridClass(openvdb::GRID_LEVEL_SET);
+    grid.setIsInWorldSpace(true);
+    grid.setCreator("vdb_shell");
+}
+
+openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
+                                          Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "level set");
+    const double voxel = checked_voxel_size(mesh, options);
     const BandVoxels band = band_of(mesh, voxel, options);
     // Voxel centres at whole multiples of the voxel size, wherever the mesh stands: grids of
     // different objects of a scene then fit voxel on voxel.
     const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
     auto grid = convert_nested(mesh, *transform, band, interrupter);
-    if (!has_inside(*grid))
-        fail<GeometryError>(
-            "voxel larger than the object: no voxel centre lies inside, voxel size ", voxel,
-            ", longest side ", longest_side(bounds_of(mesh.points)));
-    grid->setName("surface");
-    grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    grid->setIsInWorldSpace(true);
-    grid->setCreator("vdb_shell");
+    finish_level_set(*grid, mesh);
     return grid;
 }
 

@@ -3,13 +3,19 @@
 
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "field/deep_field.h"
 #include "field/field_sampler.h"
 #include "step/march.h"
+#include "step/skip_ahead.h"
 #include "step/thickness.h"
 #include "vdb_shell/core/error.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <cassert>
+#include <memory>
 #include <sstream>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -75,6 +81,58 @@ MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_se
     return rules;
 }
 
+/// What both routes are given.
+struct Job {
+    const TriangleMesh& mesh;
+    const openvdb::FloatGrid& level_set;
+    const Directions& directions;
+    const LineStepOptions& options;
+    const openvdb::FloatGrid* thickness_grid;
+    Interrupter* interrupter;
+};
+
+/// `make_stepper(rules)` gives what steps the lines of a range: step(range, line_of, store).
+template <typename MakeStepper>
+LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
+{
+    const StageProgress progress(job.interrupter, "line step");
+    check_options(job.options);
+    const std::size_t count = job.mesh.points.size();
+    assert(job.directions.inward.size() == count);
+    if (!job.level_set.hasUniformVoxels())
+        throw GeometryError("line step: the level set '" + job.level_set.getName() +
+                            "' has voxels of different sizes along the axes");
+    LineLengths lengths{std::vector<double>(count), std::vector<std::uint32_t>(count),
+                        std::vector<StopReason>(count, StopReason::none)};
+    if (count == 0)
+        return lengths;
+    const MarchRules rules = rules_of(job.mesh, job.level_set, job.options);
+    const std::vector<double> thickest = largest_lengths(job.mesh, job.options, job.thickness_grid);
+    std::vector<double> own_slopes(count, 1.0);
+    if (job.options.test == StopTest::own_sheet)
+        own_slopes = own_sheet_slopes(job.mesh, job.directions);
+    const auto line_of = [&](std::size_t v) {
+        return Line{openvdb::Vec3d(job.mesh.points[v]), job.directions.inward[v], thickest[v],
+                    own_slopes[v]};
+    };
+    const auto store = [&](std::size_t v, const LineEnd& end) {
+        lengths.length[v] = end.length;
+        lengths.steps[v] = end.steps;
+        lengths.reason[v] = end.reason;
+    };
+    const auto step = make_stepper(rules);
+    for (std::size_t block = 0; block < count; block += kBlock) {
+        progress.stop_if_interrupted(static_cast<int>(100 * block / count));
+        for_each_range(
+            std::min(kBlock, count - block),
+            [&](std::size_t begin, std::size_t end) {
+                step(std::pair(block + begin, block + end), line_of, store);
+            },
+            16);
+    }
+    return lengths;
+}
+
 } // namespace
 
 const char* name_of(StopReason reason)
@@ -115,40 +173,36 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
                       const Directions& directions, const LineStepOptions& options,
                       const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "line step");
-    check_options(options);
-    const std::size_t count = mesh.points.size();
-    assert(directions.inward.size() == count);
-    if (!level_set.hasUniformVoxels())
-        throw GeometryError("line step: the level set '" + level_set.getName() +
-                            "' has voxels of different sizes along the axes");
-    LineLengths lengths{std::vector<double>(count), std::vector<std::uint32_t>(count),
-                        std::vector<StopReason>(count, StopReason::none)};
-    if (count == 0)
-        return lengths;
-    const MarchRules rules = rules_of(mesh, level_set, options);
-    const std::vector<double> thickest = largest_lengths(mesh, options, thickness_grid);
-    std::vector<double> own_slopes(count, 1.0);
-    if (options.test == StopTest::own_sheet)
-        own_slopes = own_sheet_slopes(mesh, directions);
-
-    for (std::size_t block = 0; block < count; block += kBlock) {
-        progress.stop_if_interrupted(static_cast<int>(100 * block / count));
-        for_each_range(std::min(kBlock, count - block), [&](std::size_t begin, std::size_t end) {
+    const Job job{mesh, level_set, directions, options, thickness_grid, interrupter};
+    return step_all(job, [&](const MarchRules& rules) {
+        return [&](const auto& range, const auto& line_of, const auto& store) {
             FieldSampler field(level_set);
-            for (std::size_t v = block + begin; v < block + end; ++v) {
-                const LineEnd line_end =
-                    step_one(field,
-                             {openvdb::Vec3d(mesh.points[v]), directions.inward[v], thickest[v],
-                              own_slopes[v]},
-                             rules);
-                lengths.length[v] = line_end.length;
-                lengths.steps[v] = line_end.steps;
-                lengths.reason[v] = line_end.reason;
-            }
-        });
-    }
-    return lengths;
+            for (std::size_t v = range.first; v < range.second; ++v)
+                store(v, step_one(field, line_of(v), rules));
+        };
+    });
+}
+
+LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid& narrow_band,
+                             const Directions& directions, const LineStepOptions& options,
+                             const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    const Job job{mesh, narrow_band, directions, options, thickness_grid, interrupter};
+    return step_all(job, [&](const MarchRules& rules) {
+        const auto deep = std::make_shared<const DeepField>(mesh, narrow_band);
+        const SkipAhead skip(*deep, 2 * rules.search_depth);
+        // What a thread remembers is a pure function of the mesh: it saves time and changes
+        // nothing.
+        using PerThread = tbb::enumerable_thread_specific<DeepSampler>;
+        const auto fields = std::make_shared<PerThread>(
+            [deep] { return DeepSampler(deep->band().transform(), DeepVoxels(*deep)); });
+        return [&rules, deep, skip, fields](const auto& range, const auto& line_of,
+                                            const auto& store) {
+            DeepSampler& field = fields->local();
+            for (std::size_t v = range.first; v < range.second; ++v)
+                store(v, step_one(field, line_of(v), rules, skip));
+        };
+    });
 }
 
 } // namespace vdb_shell

@@ -41,14 +41,16 @@ struct LineEnd {
     StopReason reason = StopReason::none;
 };
 
-/// The slope below which a line is no longer on its own sheet. On a sheet the interpolated slope
-/// swings with the position in the cell, by a share of how far the sheet's gradients are apart: up
-/// to 0.15 between two planes and 0.31 between three, over random lattices.
+/// On a sheet the interpolated slope swings with the position in the cell, by a share of how far
+/// the sheet's gradients are apart: up to 0.15 between two planes and 0.31 between three, over
+/// random lattices.
+inline constexpr double kStencilSwing = 0.31;
+
+/// The slope below which a line is no longer on its own sheet.
 inline double sheet_threshold(double own_slope, double sheet_cosine)
 {
-    constexpr double kSwing = 0.31;
     const double apart = std::sqrt(std::max(0.0, 1 - own_slope * own_slope));
-    return std::max(0.0, sheet_cosine * own_slope - kSwing * apart);
+    return std::max(0.0, sheet_cosine * own_slope - kStencilSwing * apart);
 }
 
 /// Bisection on eq. 1: the largest length at which e = -phi(q) up to the threshold, taking for
@@ -78,62 +80,158 @@ LineEnd bisect_line(Field& field, const Line& line, const MarchRules& rules)
     return end;
 }
 
-/// Steps along the line while the test holds. The length is the last one at which it held.
-template <typename Field>
-LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
+/// The stop test along one line. relative_normal remembers the least slope it has seen, so lengths
+/// are asked in ascending order.
+class RunningTest
 {
-    const openvdb::Vec3d outward = -line.inward;
-    const auto sample_at = [&](double e) { return field.at(line.start + e * line.inward); };
-    const auto start = sample_at(0);
-    // Smoothing can leave a vertex outside the zero crossing: it has that much further to go in.
-    const double entry = rules.entry + std::max(0.0, start.phi);
+public:
+    RunningTest(const Line& line, const MarchRules& rules, const openvdb::Vec3d& start_gradient)
+        : line_(line), rules_(rules), start_gradient_(start_gradient),
+          sheet_threshold_(sheet_threshold(line.own_slope, rules.sheet_cosine))
+    {
+    }
 
-    const auto slope_of = [&](const auto& sample) { return sample.gradient.dot(outward); };
+    template <typename Sample> double slope_of(const Sample& sample) const
+    {
+        return -sample.gradient.dot(line_.inward);
+    }
+    void set_reference(double slope) { reference_slope_ = slope; }
 
-    double reference_slope = 0;
-    if (rules.test == StopTest::relative_normal)
-        reference_slope = slope_of(sample_at(std::min(rules.reference, line.max_length)));
-    const auto relative_holds = [&](double e, double slope) {
-        if (e > rules.reference + rules.period)
-            return slope > rules.rho * std::max(0.0, reference_slope);
-        if (e >= rules.reference)
-            reference_slope = std::min(reference_slope, slope);
-        return slope > 0;
-    };
-    const double threshold = sheet_threshold(line.own_slope, rules.sheet_cosine);
-    const auto holds = [&](double e, const auto& sample) {
-        switch (rules.test) {
+    template <typename Sample> bool holds(double e, const Sample& sample)
+    {
+        switch (rules_.test) {
         case StopTest::normal:
-            return slope_of(sample) > rules.rho;
+            return slope_of(sample) > rules_.rho;
         case StopTest::start_gradient:
-            return sample.gradient.dot(start.gradient) > rules.rho;
+            return sample.gradient.dot(start_gradient_) > rules_.rho;
         case StopTest::distance:
-            return std::abs(e + sample.phi) < rules.distance_threshold;
+            return std::abs(e + sample.phi) < rules_.distance_threshold;
         case StopTest::relative_normal:
             return relative_holds(e, slope_of(sample));
         case StopTest::own_sheet:
-            return slope_of(sample) > (e < rules.reference ? 0.0 : threshold);
+            return slope_of(sample) > (e < rules_.reference ? 0.0 : sheet_threshold_);
         case StopTest::none:
         case StopTest::bisection:
             break;
         }
         return true;
-    };
+    }
+
+    /// Beyond this length the test no longer changes.
+    double settled() const { return rules_.reference + rules_.period; }
+
+    /// The slope towards -inward over which the test holds, whatever else, once it has settled;
+    /// over 1 where a slope cannot tell.
+    double slope_wanted() const
+    {
+        switch (rules_.test) {
+        case StopTest::normal:
+            return rules_.rho;
+        case StopTest::relative_normal:
+            return rules_.rho * std::max(0.0, reference_slope_);
+        case StopTest::own_sheet:
+            return sheet_threshold_;
+        case StopTest::start_gradient: {
+            // A gradient within this angle of the line is near enough to the one at the start.
+            const double length = start_gradient_.length();
+            const double cosine = -start_gradient_.dot(line_.inward) / length;
+            const double apart = std::acos(std::clamp(cosine, -1.0, 1.0));
+            const double angle = length > rules_.rho ? std::acos(rules_.rho / length) - apart : 0.0;
+            return angle > 0 ? std::cos(angle) : 2.0;
+        }
+        default:
+            return 2.0;
+        }
+    }
+
+private:
+    bool relative_holds(double e, double slope)
+    {
+        if (e > settled())
+            return slope > rules_.rho * std::max(0.0, reference_slope_);
+        if (e >= rules_.reference)
+            reference_slope_ = std::min(reference_slope_, slope);
+        return slope > 0;
+    }
+
+    const Line& line_;
+    const MarchRules& rules_;
+    openvdb::Vec3d start_gradient_;
+    double sheet_threshold_;
+    double reference_slope_ = 0;
+};
+
+/// Looks at every step; step/skip_ahead.h has one that does not.
+struct NoSkip {
+    static constexpr bool wanted = false;
+    static constexpr double back = 0;
+    static double holds_up_to(const Line&, const MarchRules&, const RunningTest&, double from)
+    {
+        return from;
+    }
+};
+
+/// Where a line jumps to, in steps, and from where: steps just before a stop are looked at, and if
+/// the first of them already fails, the ones before are.
+struct Jump {
+    std::uint32_t from = 0, to = 0;
+    bool done = false;
+
+    void back_by(double steps)
+    {
+        to = to - from > steps ? to - static_cast<std::uint32_t>(steps) : from;
+    }
+};
+
+/// How the step to length e ends the line, if it does: StopReason::none to go on.
+template <typename Sample>
+StopReason stop_at(double e, const Sample& sample, bool inside, double entry, RunningTest& test)
+{
+    const bool solid = sample.phi <= 0;
+    if (!solid && (inside || e > entry))
+        return StopReason::left_solid;
+    if (solid && !sample.in_band)
+        return StopReason::left_band;
+    return test.holds(e, sample) ? StopReason::none : StopReason::stop_test;
+}
+
+/// Steps along the line while the test holds. The length is the last one at which it held.
+/// `skip` may know without looking that the test holds up to some length.
+template <typename Field, typename Skip = NoSkip>
+LineEnd march_line(Field& field, const Line& line, const MarchRules& rules, const Skip& skip = {})
+{
+    const auto sample_at = [&](double e) { return field.at(line.start + e * line.inward); };
+    const auto start = sample_at(0);
+    // Smoothing can leave a vertex outside the zero crossing: it has that much further to go in.
+    const double entry = rules.entry + std::max(0.0, start.phi);
+    RunningTest test(line, rules, start.gradient);
+    if (rules.test == StopTest::relative_normal)
+        test.set_reference(test.slope_of(sample_at(std::min(rules.reference, line.max_length))));
 
     LineEnd end;
+    Jump jump;
     bool inside = false;
     while (true) {
+        if (Skip::wanted && !jump.done && inside && end.length > test.settled()) {
+            const double known = skip.holds_up_to(line, rules, test, end.length);
+            // The last step before the largest length is looked at, like all that stop a line.
+            const double steps = std::min(std::floor(known / rules.step),
+                                          std::ceil(line.max_length / rules.step) - 1);
+            jump = {end.steps, std::max(end.steps, static_cast<std::uint32_t>(steps)), true};
+            end.steps = jump.to;
+            end.length = end.steps * rules.step;
+        }
         const double e = std::min(++end.steps * rules.step, line.max_length);
         const auto sample = sample_at(e);
         inside = inside || sample.phi <= 0;
-        const bool left = !(sample.phi <= 0) && (inside || e > entry);
-        if (left || (sample.phi <= 0 && !sample.in_band)) {
-            end.reason = left ? StopReason::left_solid : StopReason::left_band;
-            break;
-        }
-        if (!holds(e, sample)) {
-            end.reason = StopReason::stop_test;
-            break;
+        end.reason = stop_at(e, sample, inside, entry, test);
+        if (end.reason != StopReason::none) {
+            if (end.steps > jump.to + 1 || jump.to == jump.from)
+                break;
+            jump.back_by(skip.back / rules.step + 1);
+            end.steps = jump.to;
+            end.length = end.steps * rules.step;
+            continue;
         }
         end.length = e;
         if (e >= line.max_length) {
@@ -147,7 +245,8 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules)
     return end;
 }
 
-template <typename Field> LineEnd step_one(Field& field, const Line& line, const MarchRules& rules)
+template <typename Field, typename Skip = NoSkip>
+LineEnd step_one(Field& field, const Line& line, const MarchRules& rules, const Skip& skip = {})
 {
     if (line.inward.lengthSqr() == 0)
         return {0, 0, StopReason::no_direction};
@@ -160,7 +259,7 @@ template <typename Field> LineEnd step_one(Field& field, const Line& line, const
     case StopTest::bisection:
         return bisect_line(field, line, rules);
     default:
-        return march_line(field, line, rules);
+        return march_line(field, line, rules, skip);
     }
 }
 

@@ -97,6 +97,7 @@ ordered_json mesh_json(const MeshCheck& mesh)
 ordered_json field_json(const FieldReport& field)
 {
     return {{"origin", field.origin},
+            {"sparse", field.sparse},
             {"voxel_size", field.voxel_size},
             {"active_voxels", field.active_voxels},
             {"memory_bytes", field.memory_bytes},

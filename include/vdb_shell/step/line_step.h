@@ -95,4 +95,13 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
                       const openvdb::FloatGrid* thickness_grid = nullptr,
                       Interrupter* interrupter = nullptr);
 
+/// The same lengths from a narrow band alone (mesh_to_narrow_band of this very mesh): voxels deeper
+/// than the band are computed where a line reads them, each minus its distance to the mesh, to a
+/// hundredth of a voxel; and where nearest points prove that the test holds, lines skip ahead.
+/// Guarantees and exceptions as above. Cost: a few nearest points and stencils for each line.
+LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid& narrow_band,
+                             const Directions& directions, const LineStepOptions& options,
+                             const openvdb::FloatGrid* thickness_grid = nullptr,
+                             Interrupter* interrupter = nullptr);
+
 } // namespace vdb_shell

@@ -37,6 +37,7 @@ struct StageCost {
 
 struct FieldReport {
     std::string origin; ///< what it was made of, in words
+    bool sparse = false; ///< a narrow band; deeper voxels only where lines read them
     double voxel_size = 0;
     std::uint64_t active_voxels = 0;
     std::uint64_t memory_bytes = 0;

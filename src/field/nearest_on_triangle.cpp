@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "field/nearest_on_triangle.h"
+
+namespace vdb_shell
+{
+
+using openvdb::Vec3d;
+
+namespace
+{
+
+NearestOnTriangle nearest_on_side(const std::array<Vec3d, 3>& c, int k, const Vec3d& p)
+{
+    const auto i = static_cast<std::size_t>(k), j = (i + 1) % 3;
+    const Vec3d e = c[j] - c[i];
+    const double squared = e.lengthSqr(), along = squared > 0 ? (p - c[i]).dot(e) / squared : 0.0;
+    if (along <= 0)
+        return {c[i], NearestOnTriangle::On::corner, k};
+    if (along >= 1)
+        return {c[j], NearestOnTriangle::On::corner, static_cast<int>(j)};
+    return {c[i] + along * e, NearestOnTriangle::On::side, k};
+}
+
+} // namespace
+
+NearestOnTriangle nearest_on_triangle(const std::array<Vec3d, 3>& c, const Vec3d& p)
+{
+    const Vec3d n = (c[1] - c[0]).cross(c[2] - c[0]);
+    const double squared = n.lengthSqr();
+    bool beyond_any = !(squared > 0);
+    for (std::size_t k = 0; k < 3; ++k)
+        beyond_any = beyond_any || (c[(k + 1) % 3] - c[k]).cross(n).dot(p - c[k]) > 0;
+    if (!beyond_any)
+        return {p - (p - c[0]).dot(n) / squared * n, NearestOnTriangle::On::face, 0};
+    NearestOnTriangle best = nearest_on_side(c, 0, p);
+    for (int k = 1; k < 3; ++k) {
+        const NearestOnTriangle other = nearest_on_side(c, k, p);
+        if ((other.point - p).lengthSqr() < (best.point - p).lengthSqr())
+            best = other;
+    }
+    return best;
+}
+
+} // namespace vdb_shell
