@@ -22,19 +22,14 @@ class Job:
         self.resolution, self.threads = str(resolution), str(threads)
 
 
-def has_field_option(command):
-    return "--field " in subprocess.run([command, "build", "--help"], capture_output=True, text=True).stdout
-
-
 def arguments_of(name, job):
     """The command line and the files that a success leaves."""
     if name == OURS:
         return [job.command, "--threads", job.threads, "build", "-q", str(job.mesh), "-o", "ours.vdb", "--resolution",
                 job.resolution, "--report", "ours.json"], ["ours.vdb", "ours.json"]
     if name == DEEP:
-        dense = ["--field", "dense"] if has_field_option(job.command) else []
-        return [job.command, "build", "-q", str(job.mesh), "--method", "raw", "--samples", "0", *dense, "--resolution",
-                job.resolution, "--report", "deep.json"], ["deep.json"]
+        return [job.command, "build", "-q", str(job.mesh), "--method", "raw", "--samples", "0", "--field", "dense",
+                "--resolution", job.resolution, "--report", "deep.json"], ["deep.json"]
     if name == LEVEL_SET:
         return ["vdb_tool", "-read", str(job.mesh), "-mesh2ls", f"dim={job.resolution}", "-write",
                 "level_set.vdb"], ["level_set.vdb"]

@@ -41,15 +41,22 @@ void check(benchmark::State& state, Surface surface, std::int64_t size)
 void level_set_narrow(benchmark::State& state, Surface surface, std::int64_t size)
 {
     const TriangleMesh& mesh = mesh_of(surface, size);
-    const LevelSetOptions options = narrow_band(mesh);
+    const LevelSetOptions options = narrow_options(mesh);
     for (auto _ : state)
         benchmark::DoNotOptimize(mesh_to_level_set(mesh, options).get());
+}
+
+void narrow_band(benchmark::State& state, Surface surface, std::int64_t size)
+{
+    const TriangleMesh& mesh = mesh_of(surface, size);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(mesh_to_narrow_band(mesh, deep_options()).get());
 }
 
 void level_set_deep(benchmark::State& state, Surface surface, std::int64_t size)
 {
     const TriangleMesh& mesh = mesh_of(surface, size);
-    const LevelSetOptions options = deep_band();
+    const LevelSetOptions options = deep_options();
     for (auto _ : state)
         benchmark::DoNotOptimize(mesh_to_level_set(mesh, options).get());
 }
@@ -61,6 +68,15 @@ void stepping(benchmark::State& state, Surface surface, std::int64_t size)
     const Directions& directions = directions_of(surface, size);
     for (auto _ : state)
         benchmark::DoNotOptimize(line_step(mesh, field, directions, {}).length.data());
+}
+
+void stepping_sparse(benchmark::State& state, Surface surface, std::int64_t size)
+{
+    const TriangleMesh& mesh = mesh_of(surface, size);
+    const openvdb::FloatGrid& field = narrow_field_of(surface, size);
+    const Directions& directions = directions_of(surface, size);
+    for (auto _ : state)
+        benchmark::DoNotOptimize(line_step_sparse(mesh, field, directions, {}).length.data());
 }
 
 void growth(benchmark::State& state, Surface surface, std::int64_t size)
@@ -161,8 +177,10 @@ void add_all()
     add("read_obj", read_obj);
     add("check", check);
     add("level_set_narrow", level_set_narrow);
+    add("narrow_band", narrow_band);
     add("level_set_deep", level_set_deep);
     add("stepping", stepping);
+    add("stepping_sparse", stepping_sparse);
     add("growth", growth);
     add("certificate", certificate);
     add("coverage", coverage);

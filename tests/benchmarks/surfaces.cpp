@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/surfaces.h"
 
+#include "vdb_shell/field/narrow_band.h"
+
 #include "support/shapes.h"
 
 #include <limits>
@@ -44,16 +46,16 @@ private:
 
 } // namespace
 
-LevelSetOptions deep_band()
+LevelSetOptions deep_options()
 {
     LevelSetOptions options;
     options.resolution = kResolution;
     return options;
 }
 
-LevelSetOptions narrow_band(const TriangleMesh& mesh)
+LevelSetOptions narrow_options(const TriangleMesh& mesh)
 {
-    LevelSetOptions options = deep_band();
+    LevelSetOptions options = deep_options();
     // The grid gets three voxels more than this: the half-width of a usual level set.
     constexpr double kNone = 1e-3;
     options.interior_depth = kNone * resolve_voxel_size(mesh, options);
@@ -75,14 +77,14 @@ const openvdb::FloatGrid& deep_field_of(Surface surface, std::int64_t size)
 {
     static Kept<openvdb::FloatGrid::Ptr> kept;
     return *kept.get(surface, size,
-                     [&] { return mesh_to_level_set(mesh_of(surface, size), deep_band()); });
+                     [&] { return mesh_to_level_set(mesh_of(surface, size), deep_options()); });
 }
 
 const openvdb::FloatGrid& narrow_field_of(Surface surface, std::int64_t size)
 {
     static Kept<openvdb::FloatGrid::Ptr> kept;
     const TriangleMesh& mesh = mesh_of(surface, size);
-    return *kept.get(surface, size, [&] { return mesh_to_level_set(mesh, narrow_band(mesh)); });
+    return *kept.get(surface, size, [&] { return mesh_to_narrow_band(mesh, deep_options()); });
 }
 
 const Directions& directions_of(Surface surface, std::int64_t size)

@@ -27,13 +27,14 @@ inline constexpr int kResolution = 256;
 
 /// Options of a level set that is as deep as lines go, and of a usual one, three voxels to either
 /// side.
-LevelSetOptions deep_band();
-LevelSetOptions narrow_band(const TriangleMesh& mesh);
+LevelSetOptions deep_options();
+LevelSetOptions narrow_options(const TriangleMesh& mesh);
 
 /// A surface and what the stages before the measured one make of it: made at the first call, then
 /// kept, so that no benchmark pays for the stages before its own.
 const TriangleMesh& mesh_of(Surface surface, std::int64_t size);
 const openvdb::FloatGrid& deep_field_of(Surface surface, std::int64_t size);
+/// By mesh_to_narrow_band.
 const openvdb::FloatGrid& narrow_field_of(Surface surface, std::int64_t size);
 const Directions& directions_of(Surface surface, std::int64_t size);
 const LineLengths& lengths_of(Surface surface, std::int64_t size);
