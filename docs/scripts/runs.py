@@ -15,8 +15,9 @@ CLEAN_MESHES = [
 METHODS = ["certified", "thickest"]
 
 
-def arguments(description, tables=None):
-    """`tables`: names that --tables may list; without it the option does not exist."""
+def arguments(description, tables=None, options=()):
+    """`tables`: names that --tables may list; without it the option does not exist. `options`: more of them, each with
+    what argparse wants to know about it."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
     parser.add_argument("folder", type=pathlib.Path)
@@ -25,6 +26,8 @@ def arguments(description, tables=None):
     parser.add_argument("--results")
     if tables:
         parser.add_argument("--tables", nargs="+", choices=tables, default=tables)
+    for name, about in options:
+        parser.add_argument(name, **about)
     return parser.parse_args()
 
 
