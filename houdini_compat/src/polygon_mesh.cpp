@@ -47,12 +47,21 @@ std::vector<openvdb::Vec3s> positions_of(const HoudiniGeometry& geometry, const 
                      " components, or is not of floats; 3 or 4 floats are needed");
 }
 
+void require_polygons(const HoudiniGeometry& geometry, const std::string& name)
+{
+    for (std::size_t i = 0; i < geometry.primitives.size(); ++i)
+        if (geometry.primitives[i].type != PrimitiveType::polygon)
+            refuse(name, "primitive " + std::to_string(i) +
+                             " is a tetrahedron; a surface is of polygons only");
+}
+
 } // namespace
 
 ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
                         const ReadOptions& options)
 {
     const HoudiniGeometry& geometry = read.geometry;
+    require_polygons(geometry, name);
     FileScan scan;
     scan.format = name_of(read.format);
     scan.file_vertices = geometry.points;
@@ -67,9 +76,6 @@ ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
     std::size_t vertex = 0;
     for (std::size_t i = 0; i < geometry.primitives.size(); ++i) {
         const Primitive& primitive = geometry.primitives[i];
-        if (primitive.type != PrimitiveType::polygon)
-            refuse(name, "primitive " + std::to_string(i) +
-                             " is a tetrahedron; a surface is of polygons only");
         const auto first = geometry.vertex_point.begin() + static_cast<std::ptrdiff_t>(vertex);
         Corners corners(first, first + static_cast<std::ptrdiff_t>(primitive.vertices));
         // The first corner stays the first, so that fans keep their apex.

@@ -196,7 +196,7 @@ TEST(Simplify, KeepsPointsWhereTheyWereAndWallsApart)
     // Two plates 0.01 apart, tolerance 0.1: only holding what touches keeps them apart.
     const TriangleMesh plates =
         joined(gridded_box({0, 0, 0}, {4, 4, 1}, 12), gridded_box({0, 0, 1.01}, {4, 4, 2}, 12));
-    const Simplified simple = simplify(plates, 0.1, 2.0, nullptr);
+    const Simplified simple = simplify(plates, {0.1, 2.0}, nullptr);
     expect_sound(simple.mesh);
     EXPECT_LT(simple.mesh.triangles.size(), plates.triangles.size());
     for (const openvdb::Vec3s& p : simple.mesh.points)
@@ -207,7 +207,7 @@ TEST(Simplify, KeepsPointsWhereTheyWereAndWallsApart)
 TEST(Simplify, TurbulentSurfacesStayEmbedded)
 {
     const TriangleMesh rough = tets_of(*random_signs(8, 1.0f));
-    const Simplified simple = simplify(rough, 1.0, 10.0, nullptr);
+    const Simplified simple = simplify(rough, {1.0, 10.0}, nullptr);
     expect_sound(simple.mesh);
     EXPECT_LT(simple.mesh.triangles.size(), rough.triangles.size());
 }
