@@ -425,7 +425,7 @@ TEST(Grow, FillsRealMeshes)
         EXPECT_EQ(result.report.signs.inverted.count, 0U);
         EXPECT_EQ(result.report.signs.flat.count, 0U);
         expect_twelve_positive(result.stack.layers[0]);
-        EXPECT_EQ(result.report.coverage.samples, 100000U);
+        EXPECT_EQ(result.report.coverage.samples, ShellOptions{}.coverage.samples);
         EXPECT_EQ(result.report.coverage.in_several, 0U);
         EXPECT_EQ(result.report.coverage.outside_covered, 0U);
         EXPECT_GT(result.report.fill, 0.95);

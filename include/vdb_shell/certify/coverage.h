@@ -12,7 +12,7 @@ namespace vdb_shell
 
 struct CoverageOptions {
     /// Random points inside the solid. 0: no estimate is made.
-    std::uint64_t samples = 100000;
+    std::uint64_t samples = 20000;
     std::uint64_t seed = 1;
 };
 

@@ -78,8 +78,10 @@ void Bounds::clear(const Vec3d& here, double scale)
 void Bounds::add(const Vec3d& n, const Vec3d& p)
 {
     const double length = n.length();
-    if (length > 0)
-        add_unit(Vec3s(n / length), n.dot(here_ - p) / length);
+    if (!(length > 0))
+        return;
+    const double inverse = 1 / length;
+    add_unit(Vec3s(n * inverse), n.dot(here_ - p) * inverse);
 }
 
 void Bounds::add_unit(const Vec3s& n, double value)

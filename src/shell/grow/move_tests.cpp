@@ -49,18 +49,42 @@ MovedTriangle moved_triangle(const GrowState& s, const FaceCorner& at, const Vec
     return moved;
 }
 
+/// A moved triangle among its kin.
+struct Moved {
+    const MovedTriangle& triangle;
+    exact::PlaneFilter plane;
+};
+
+/// Whether inner triangle g, with corners c, meets the moved one nowhere but in the corners they
+/// share. With all its other corners on one side of the moved one's plane it cannot; what that
+/// leaves open goes to the exact test.
+bool clear_of_kin(const GrowState& s, const Moved& moved, int g, const Corners& c)
+{
+    int first = 0;
+    bool one_side = true;
+    for (int k = 0; k < 3; ++k) {
+        if (s.mesh->incident_to(moved.triangle.face, s.mesh->corner(g, k)))
+            continue;
+        const int side = moved.plane.side(c[k]);
+        one_side = one_side && side != 0 && (first == 0 || side == first);
+        first = side;
+    }
+    return one_side ||
+           !improper_contact(moved.triangle.corners, moved.triangle.ids, c, inner_ids(s, g));
+}
+
 /// The moved triangle against those around its corner u that hold neither v nor `done`, whose
 /// triangles have been looked at; where u is pinned also against the outer ones.
-bool kin_clear_around(const GrowState& s, int v, const MovedTriangle& moved, int u, int done)
+bool kin_clear_around(const GrowState& s, int v, const Moved& moved, int u, int done)
 {
     const Connectivity& m = *s.mesh;
     for (const FaceCorner& at : star(m, u)) {
         const int g = at.face;
         if (!m.incident_to(g, v) && (done < 0 || !m.incident_to(g, done)) &&
-            improper_contact(moved.corners, moved.ids, inner_corners(s, g), inner_ids(s, g)))
+            !clear_of_kin(s, moved, g, inner_corners(s, g)))
             return false;
-        if (s.pinned[u] &&
-            improper_contact(moved.corners, moved.ids, outer_corners(s, g), outer_ids(s, g)))
+        if (s.pinned[u] && improper_contact(moved.triangle.corners, moved.triangle.ids,
+                                            outer_corners(s, g), outer_ids(s, g)))
             return false;
     }
     return true;
@@ -166,12 +190,6 @@ bool holds_component(const GrowState& s, int f)
     return false;
 }
 
-bool move_allowed(const GrowState& s, int v, const Vec3d& x)
-{
-    return within_cap(s, v, x) && tets_positive_at(s, v, x) && star_clear_at(s, v, x) &&
-           !swallows_component(s, v, x);
-}
-
 bool split_positive(const GrowState& s, int f, int order)
 {
     for (const OrientedTet& tet : tables().three[order])
@@ -226,11 +244,14 @@ bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
     const Connectivity& m = *s.mesh;
     const Slice<FaceCorner> fan = star(m, v);
     for (const FaceCorner& at : fan) {
-        const MovedTriangle moved = moved_triangle(s, at, x);
+        const MovedTriangle triangle = moved_triangle(s, at, x);
+        const Corners& c = triangle.corners;
+        const Moved moved{triangle, {c[0], c[1], c[2]}};
         for (const FaceCorner& other : fan)
             if (other.face > at.face) {
-                const MovedTriangle too = moved_triangle(s, other, x);
-                if (improper_contact(moved.corners, moved.ids, too.corners, too.ids))
+                Corners too = inner_corners(s, other.face);
+                too[other.local] = x;
+                if (!clear_of_kin(s, moved, other.face, too))
                     return false;
             }
         const int next = m.corner(at.face, (at.local + 1) % 3);

@@ -33,9 +33,6 @@ bool swallows_component(const GrowState& s, int v, const Vec3d& x);
 /// Does prism f hold another component as a whole? Precondition: its tets are positive.
 bool holds_component(const GrowState& s, int f);
 
-/// Everything a single move must satisfy, cheapest test first.
-bool move_allowed(const GrowState& s, int v, const Vec3d& x);
-
 /// All tets of face f positive (under s.twelve or its order), and its inner triangle not
 /// degenerate.
 bool prism_valid(const GrowState& s, int f);

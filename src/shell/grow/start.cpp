@@ -164,7 +164,6 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
         place(s, directions, h);
         update_candidates(s, changed);
     }
-    rebuild_candidates(s);
 }
 
 } // namespace vdb_shell::growth
