@@ -23,8 +23,8 @@ struct RefinedMesh {
 
 /// Cuts the triangles `wanted`, most wanted first, as many of them as `most_triangles` leaves room
 /// for, by halving their longest edges, and the triangles around them so that the surface conforms:
-/// no triangle is cut before its longest edge is (Rivara), hence angles stay above half of the
-/// smallest there was. The shape stays, but for the rounding of the middles to float32; where
+/// no triangle is cut before its longest edge is (Rivara), which keeps angles from shrinking round
+/// by round. The shape stays, but for the rounding of the middles to float32; where
 /// halving an edge would make triangles touch or lose their area by that, it stays whole.
 /// A surface that is embedded stays so. Deterministic. Precondition: closed, manifold.
 RefinedMesh refine_triangles(const TriangleMesh& mesh, const std::vector<std::uint32_t>& wanted,

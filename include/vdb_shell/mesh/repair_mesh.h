@@ -33,7 +33,8 @@ enum class FillMethod : std::uint8_t {
     smooth,   ///< refined, then continuing the slopes of the rim (least squared Laplacians)
     membrane, ///< refined, then each new point the mean of its neighbours
     dihedral, ///< no new points; the flattest edges (Liepa 2003, "Filling holes in meshes")
-    area,     ///< no new points; the least area (Barequet and Sharir 1995)
+    area,     ///< no new points; the least area (Barequet and Sharir 1995), or ears cut from a rim
+              ///< of more than 1000 edges
     none,     ///< left open
 };
 const char* name_of(FillMethod method);

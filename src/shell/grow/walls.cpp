@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace vdb_shell::growth
 {
@@ -166,7 +167,7 @@ template <class Visit> void for_each_reached(const GrowState& s, const Barrier& 
 }
 
 /// Lists by vertex, in the order of the chunks whatever thread wrote first.
-void hand_out(const GrowState& s, const std::vector<Chunk>& chunks, Walls& w)
+void hand_out(const GrowState& s, std::vector<Chunk> chunks, Walls& w)
 {
     const std::size_t vertices = s.b.size();
     std::vector<std::atomic<std::uint32_t>> count(vertices);
@@ -206,6 +207,7 @@ void hand_out(const GrowState& s, const std::vector<Chunk>& chunks, Walls& w)
             }
         },
         4);
+    chunks = {}; // there may be a gigabyte of them
     w.wall.resize(entry.size());
     for_each_index(vertices, [&](std::size_t v) {
         std::sort(entry.begin() + std::ptrdiff_t(w.first[v]),
@@ -237,7 +239,7 @@ void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w)
         for (const int f : chunk.locked)
             for (int k = 0; k < 3; ++k)
                 w.locked[s.mesh->corner(f, k)] = 1;
-    hand_out(s, chunks, w);
+    hand_out(s, std::move(chunks), w);
 }
 
 } // namespace vdb_shell::growth
