@@ -63,7 +63,7 @@ openvdb::FloatGrid::Ptr in_place(const openvdb::FloatGrid::Ptr& grid, const Plac
 {
     if (!grid || !placement.moves())
         return grid;
-    const auto moved = grid->deepCopy();
+    auto moved = grid->deepCopy();
     moved->transform().postTranslate(-placement.origin);
     moved->transform().postScale(1.0 / placement.unit);
     const auto divided = [&](const auto& value) {
