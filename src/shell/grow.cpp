@@ -24,9 +24,10 @@ using growth::GrowState;
 
 // Rounds under the twelve-tet test before the three-tet ones: enough to spread the vertices.
 constexpr int kTwelveRoundsFirst = 25;
-// From here on lines finish what the start began, sooner than free moves; elsewhere free moves do
-// as well without them.
-constexpr double kNearlyFull = 0.9;
+// Of the solid. From the one on lines finish what the start began, sooner than free moves; below
+// the other, where the start had to be a thin one, free moves alone would get stuck. In between
+// they do as well without lines.
+constexpr double kNearlyFull = 0.9, kThin = 0.3;
 // Of the barrier's weight per round, and what the last rounds must win: half the rounds, and a
 // fifth of a point of fill less, than what the thickest shell is given.
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
@@ -197,7 +198,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
         settle(s, lines, start, options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
-    if (options.grow_lines && (!s.bounded || growth::fill_of(s) > kNearlyFull))
+    const double started = growth::fill_of(s);
+    if (options.grow_lines && (!s.bounded || started > kNearlyFull || started < kThin))
         growth::lengthen_lines(s, lines, progress);
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)

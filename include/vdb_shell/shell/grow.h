@@ -28,13 +28,13 @@ struct GrowOptions {
     bool smooth_directions = true; ///< bilateral smoothing of the directions, visibility kept
     bool top_down = true;          ///< start from long lines, shrunk until valid, instead of a thin
                                    ///< shell
-    bool grow_lines = true;        ///< lengthen along the lines: outward, and inward where the start
-                                   ///< is nearly full already (round and convex solids)
-    bool free_moves = true;        ///< let inner vertices leave their lines
-    bool soft_contacts = true;     ///< free moves keep clear of near triangles before they touch
-    bool flips = true;             ///< choose diagonals again while moving (thickest) and for
-                                   ///< quality at the end
-    int free_rounds = 40;          ///< upper bound on rounds of free moves, under each prism test
+    bool grow_lines = true;    ///< lengthen along the lines: outward, and inward where the start
+                               ///< is nearly full already (round and convex solids) or thin
+    bool free_moves = true;    ///< let inner vertices leave their lines
+    bool soft_contacts = true; ///< free moves keep clear of near triangles before they touch
+    bool flips = true;         ///< choose diagonals again while moving (thickest) and for
+                               ///< quality at the end
+    int free_rounds = 40;      ///< upper bound on rounds of free moves, under each prism test
     /// Bound that the mean ratio of every tet should reach (certify/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.

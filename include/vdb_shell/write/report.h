@@ -38,7 +38,7 @@ struct StageCost {
 };
 
 struct FieldReport {
-    std::string origin; ///< what it was made of, in words
+    std::string origin;  ///< what it was made of, in words
     bool sparse = false; ///< a narrow band; deeper voxels only where lines read them
     double voxel_size = 0;
     std::uint64_t active_voxels = 0;
