@@ -28,6 +28,8 @@ constexpr int kTwelveRoundsFirst = 25;
 // the other, where the start had to be a thin one, free moves alone would get stuck. In between
 // they do as well without lines.
 constexpr double kNearlyFull = 0.9, kThin = 0.3;
+// What a round of lines has to win where free moves come after them.
+constexpr double kLeastLineGain = 3e-3;
 // Of the barrier's weight per round, and what the last rounds must win: half the rounds, and a
 // fifth of a point of fill less, than what the thickest shell is given.
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
@@ -96,6 +98,12 @@ Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& 
             pillars.lines.inward[v] = arm / pillars.length[v];
     }
     return pillars;
+}
+
+bool worth_lengthening(const GrowState& s)
+{
+    const double fill = growth::fill_of(s);
+    return !s.bounded || fill > kNearlyFull || fill < kThin;
 }
 
 void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOptions& options,
@@ -198,9 +206,9 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
         settle(s, lines, start, options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
-    const double started = growth::fill_of(s);
-    if (options.grow_lines && (!s.bounded || started > kNearlyFull || started < kThin))
-        growth::lengthen_lines(s, lines, progress);
+    if (options.grow_lines && (!options.free_moves || worth_lengthening(s)))
+        growth::lengthen_lines(s, lines, options.free_moves && s.bounded ? kLeastLineGain : -1.0,
+                               progress);
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)
         move_off_the_lines(s, lines, options, progress, result.report);

@@ -16,7 +16,6 @@ constexpr double kMostStep = 1e-2;
 constexpr double kLeastStep = 2e-4; ///< below it a vertex sleeps
 constexpr int kMostRounds = 400;
 constexpr int kFirstRounds = 3;      ///< while the steps find their length
-constexpr double kLeastGain = 3e-3;  ///< share of the solid that a round must win to go on
 constexpr double kShareOfRoom = 0.9; ///< to keep off the walls
 
 struct Lines {
@@ -71,7 +70,8 @@ int update_steps(const GrowState& s, Lines& lines)
 
 } // namespace
 
-void lengthen_lines(GrowState& s, const Directions& directions, const StageProgress& progress)
+void lengthen_lines(GrowState& s, const Directions& directions, double least_gain,
+                    const StageProgress& progress)
 {
     Lines lines{std::vector<double>(s.b.size()),
                 std::vector<double>(s.b.size(), kFirstStep * s.diagonal)};
@@ -93,7 +93,7 @@ void lengthen_lines(GrowState& s, const Directions& directions, const StageProgr
         awake_count = update_steps(s, lines);
         const double gain = fill_of(s) - fill;
         fill += gain;
-        if (s.bounded && round >= kFirstRounds && gain < kLeastGain)
+        if (round >= kFirstRounds && gain < least_gain)
             break;
     }
 }
