@@ -200,7 +200,8 @@ TEST(Grow, FreeMovesWinWhereLinesAreStuck)
     const GrowResult lines = grown(c, lines_only), free = grown(c);
     EXPECT_EQ(lines.report.rounds, 0U);
     EXPECT_NEAR(fill_of(lines.shell), lines.report.fill_after_lines, 1e-12);
-    EXPECT_EQ(lines.report.fill_after_lines, free.report.fill_after_lines);
+    // Free moves do not wait for lines that are far from done.
+    EXPECT_LE(free.report.fill_after_lines, lines.report.fill_after_lines);
     EXPECT_GT(fill_of(free.shell), fill_of(lines.shell) + 0.01);
 }
 
