@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline_sides.h"
 
+#include "mesh/triangle_area.h"
 #include "step/thickness.h"
 
 #include <openvdb/tools/Count.h>
@@ -43,13 +44,7 @@ double dense_voxels(const ShellOptions& options, const TriangleMesh& surface,
     const double voxel = resolve_voxel_size(surface, options.level_set);
     const double solid = std::abs(signed_volume(surface.points, surface.triangles));
     const std::optional<double> longest = longest_line(options.line_step, thickness_grid);
-    double area = 0;
-    for (const openvdb::Vec3I& t : surface.triangles) {
-        const openvdb::Vec3d a(surface.points[t[0]]);
-        area += 0.5 * (openvdb::Vec3d(surface.points[t[1]]) - a)
-                          .cross(openvdb::Vec3d(surface.points[t[2]]) - a)
-                          .length();
-    }
+    const double area = surface_area(surface.points, surface.triangles);
     return std::min(solid, longest ? area * *longest : solid) / std::pow(voxel, 3);
 }
 

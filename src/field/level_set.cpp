@@ -5,6 +5,7 @@
 #include "field/cavities.h"
 #include "field/latched_interrupter.h"
 #include "field/level_set_checks.h"
+#include "mesh/triangle_area.h"
 #include "vdb_shell/core/error.h"
 
 #include <openvdb/tools/Count.h>
@@ -205,12 +206,7 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
                                 const LevelSetOptions& options)
 {
     const BandVoxels band = band_of(mesh, voxel_size, options);
-    double area = 0;
-    for (const openvdb::Vec3I& t : mesh.triangles) {
-        const Vec3d a(mesh.points[t[0]]);
-        area += 0.5 * (Vec3d(mesh.points[t[1]]) - a).cross(Vec3d(mesh.points[t[2]]) - a).length();
-    }
-    area /= voxel_size * voxel_size;
+    const double area = surface_area(mesh.points, mesh.triangles) / (voxel_size * voxel_size);
     const double solid =
         std::abs(signed_volume(mesh.points, mesh.triangles)) / std::pow(voxel_size, 3);
     // A sheet of w voxels meets the 8^3 leaves within w + 8 (|nx| + |ny| + |nz|) voxels, 1.5 on

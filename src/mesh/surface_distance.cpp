@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "mesh/triangle_area.h"
 #include "mesh/triangle_pieces.h"
 #include "vdb_shell/core/error.h"
 
@@ -134,11 +135,7 @@ struct Samples {
 
 Samples sample(const TriangleMesh& mesh, double spacing)
 {
-    double area = 0;
-    for (const openvdb::Vec3I& t : mesh.triangles) {
-        const Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
-        area += 0.5 * (b - a).cross(c - a).length();
-    }
+    const double area = surface_area(mesh.points, mesh.triangles);
     // Halving leaves pieces of a quarter of the square at worst on average.
     if (!(std::isfinite(spacing) && spacing > 0 && area / (spacing * spacing) * 8 < kMostSamples))
         throw InvalidOption("surface distance: spacing is " + std::to_string(spacing) +

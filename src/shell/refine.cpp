@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "mesh/topology.h"
+#include "mesh/triangle_area.h"
 #include "shell/void_volumes.h"
 #include "vdb_shell/core/error.h"
 
@@ -20,11 +21,8 @@ using openvdb::Vec3I;
 std::vector<double> areas_of(const PrismShell& shell)
 {
     std::vector<double> areas(shell.triangles.size());
-    for (std::size_t t = 0; t < areas.size(); ++t) {
-        const Vec3I& c = shell.triangles[t];
-        const Vec3d a(shell.outer[c[0]]), b(shell.outer[c[1]]), d(shell.outer[c[2]]);
-        areas[t] = 0.5 * (b - a).cross(d - a).length();
-    }
+    for (std::size_t t = 0; t < areas.size(); ++t)
+        areas[t] = triangle_area(shell.outer, shell.triangles[t]);
     return areas;
 }
 

@@ -163,8 +163,8 @@ private:
 
 /// Looks at every step; step/skip_ahead.h has one that does not.
 struct NoSkip {
-    static constexpr bool wanted = false;
-    static constexpr double back = 0;
+    static constexpr bool kWanted = false;
+    static double back() { return 0; }
     static double holds_up_to(const Line&, const MarchRules&, const RunningTest&, double from)
     {
         return from;
@@ -212,7 +212,7 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules, cons
     Jump jump;
     bool inside = false;
     while (true) {
-        if (Skip::wanted && !jump.done && inside && end.length > test.settled()) {
+        if (Skip::kWanted && !jump.done && inside && end.length > test.settled()) {
             const double known = skip.holds_up_to(line, rules, test, end.length);
             // The last step before the largest length is looked at, like all that stop a line.
             const double steps = std::min(std::floor(known / rules.step),
@@ -228,7 +228,7 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules, cons
         if (end.reason != StopReason::none) {
             if (end.steps > jump.to + 1 || jump.to == jump.from)
                 break;
-            jump.back_by(skip.back / rules.step + 1);
+            jump.back_by(skip.back() / rules.step + 1);
             end.steps = jump.to;
             end.length = end.steps * rules.step;
             continue;

@@ -33,7 +33,7 @@ double safe_slope(double threshold)
 } // namespace
 
 SkipAhead::SkipAhead(const DeepField& field, double deepest)
-    : back(kBackVoxels * field.voxel()), field_(field), deepest_(deepest)
+    : back_(kBackVoxels * field.voxel()), field_(field), deepest_(deepest)
 {
 }
 

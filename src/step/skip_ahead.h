@@ -15,12 +15,12 @@ namespace vdb_shell
 class SkipAhead
 {
 public:
-    static constexpr bool wanted = true;
+    static constexpr bool kWanted = true;
 
     SkipAhead(const DeepField& field, double deepest);
 
     /// By how much a line goes back when its first look after a jump fails.
-    double back;
+    double back() const { return back_; }
 
     /// A length up to which the test holds, as far as nearest points can tell; at least `from`,
     /// where the test has settled.
@@ -36,6 +36,7 @@ private:
     template <typename Holds>
     double search(const Line& line, double from, const Holds& holds) const;
 
+    double back_;
     const DeepField& field_;
     double deepest_;
 };

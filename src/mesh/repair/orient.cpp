@@ -2,6 +2,7 @@
 #include "mesh/orientation.h"
 #include "mesh/repair/working_surface.h"
 #include "mesh/surface_defects.h"
+#include "mesh/triangle_area.h"
 
 #include <algorithm>
 #include <map>
@@ -15,12 +16,6 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3I;
-
-double area_of(const TriangleMesh& mesh, const Vec3I& t)
-{
-    const Vec3d a(mesh.points[t[0]]);
-    return 0.5 * (Vec3d(mesh.points[t[1]]) - a).cross(Vec3d(mesh.points[t[2]]) - a).length();
-}
 
 /// An edge at which something is wrong, with how often each piece uses it.
 struct BadEdge {
@@ -74,7 +69,7 @@ void drop_sheets(WorkingSurface& surface, RepairReport& report)
         const std::vector<BadEdge> bad = bad_edges(uses, pieces.piece_of);
         std::vector<double> area(pieces.one_sided.size());
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-            area[pieces.piece_of[t]] += area_of(mesh, mesh.triangles[t]);
+            area[pieces.piece_of[t]] += triangle_area(mesh.points, mesh.triangles[t]);
         const double all = std::accumulate(area.begin(), area.end(), 0.0);
         std::vector<std::uint32_t> smallest_first(area.size());
         std::iota(smallest_first.begin(), smallest_first.end(), 0U);

@@ -63,14 +63,6 @@ bool far_apart(const Reachable& s, const Reachable& t)
     return apart_along(between, s, t) || apart_along(s.normal, s, t) || apart_along(t.normal, s, t);
 }
 
-bool share_a_corner(const GrowState& s, int f, int g)
-{
-    for (int k = 0; k < 3; ++k)
-        if (s.mesh->incident_to(g, s.mesh->corner(f, k)))
-            return true;
-    return false;
-}
-
 } // namespace
 
 namespace
@@ -109,7 +101,7 @@ void list_candidates(GrowState& s, const std::vector<Reachable>& inner, int f)
     s.near_inner[f].clear();
     s.near_outer[f].clear();
     s.inner_tree.for_each_overlap(box, [&](int g) {
-        if (g != f && (share_a_corner(s, f, g) || !far_apart(inner[f], inner[g])))
+        if (g != f && (s.mesh->share_a_corner(f, g) || !far_apart(inner[f], inner[g])))
             s.near_inner[f].push_back(g);
     });
     s.outer_tree.for_each_overlap(box, [&](int g) {

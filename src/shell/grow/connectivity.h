@@ -33,6 +33,11 @@ struct Connectivity {
     {
         return corner(face, 0) == vertex || corner(face, 1) == vertex || corner(face, 2) == vertex;
     }
+    bool share_a_corner(int f, int g) const
+    {
+        return incident_to(g, corner(f, 0)) || incident_to(g, corner(f, 1)) ||
+               incident_to(g, corner(f, 2));
+    }
 };
 
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces);

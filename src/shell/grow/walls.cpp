@@ -35,14 +35,6 @@ struct Stock {
     std::vector<std::uint8_t> still; ///< by face: none of its corners will move
 };
 
-bool share_a_corner(const GrowState& s, int f, int g)
-{
-    for (int k = 0; k < 3; ++k)
-        if (s.mesh->incident_to(g, s.mesh->corner(f, k)))
-            return true;
-    return false;
-}
-
 bool share_a_pin(const GrowState& s, int f, int g)
 {
     for (int k = 0; k < 3; ++k) {
@@ -74,23 +66,20 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
             }
             stock.inner[f] = body_of(inner_corners(s, f), reach);
             stock.box[f] = box_of(stock.inner[f].corner);
-            s.inner_box[f] = stock.box[f];
             stock.box[f].inflate(reach);
         },
         256);
     return stock;
 }
 
+/// GrowState::rounding is that of one coordinate to float32.
 double rounding_of_walls(const GrowState& s)
 {
-    double largest = 0;
-    for (const Vec3d& p : s.a)
-        for (int k = 0; k < 3; ++k)
-            largest = std::max(largest, std::abs(p[k]));
     // Four roundings of terms of at most |x|, and the offset's own.
     constexpr double kRoundings = 16;
-    return kRoundings * std::numeric_limits<double>::epsilon() *
-           (largest + (s.bounded ? 0.0 : s.diagonal));
+    constexpr double kOfDoubles =
+        std::numeric_limits<double>::epsilon() / double(std::numeric_limits<float>::epsilon());
+    return kRoundings * kOfDoubles * s.rounding;
 }
 
 class Builder
@@ -108,7 +97,7 @@ public:
             return;
         s_.inner_tree.for_each_overlap(stock_.box[f], [&](int g) {
             // Each pair once: from its smaller face, or from the one that moves.
-            if (g == f || (g < f && !stock_.still[g]) || share_a_corner(s_, f, g))
+            if (g == f || (g < f && !stock_.still[g]) || s_.mesh->share_a_corner(f, g))
                 return;
             add(f, g, stock_.inner[g], stock_.still[g] ? 0.0 : 0.5, out);
         });
