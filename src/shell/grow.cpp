@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cassert>
 #include <string>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -24,10 +25,9 @@ using growth::GrowState;
 
 // Rounds under the twelve-tet test before the three-tet ones: enough to spread the vertices.
 constexpr int kTwelveRoundsFirst = 25;
-// Of the solid. From the one on lines finish what the start began, sooner than free moves; below
-// the other, where the start had to be a thin one, free moves alone would get stuck. In between
-// they do as well without lines.
-constexpr double kNearlyFull = 0.9, kThin = 0.3;
+// Of the solid. Below it, where the start had to be a thin one, free moves alone would get stuck;
+// from there to kNearlyFull they do as well without lines.
+constexpr double kThin = 0.3;
 // What a round of lines has to win where free moves come after them.
 constexpr double kLeastLineGain = 3e-3;
 // Of the barrier's weight per round, and what the last rounds must win: half the rounds, and a
@@ -67,17 +67,20 @@ std::ptrdiff_t pins(const GrowState& s)
 void settle(GrowState& s, const Directions& directions, const LineLengths& start,
             const GrowOptions& options, const StageProgress& progress)
 {
-    growth::settle_start(s, directions, growth::thin_heights(s), progress);
-    if (!options.top_down)
+    const std::vector<double> thin = growth::thin_heights(s);
+    if (options.top_down) {
+        growth::settle_start(s, directions, first_lengths(s, directions, start), progress);
+        if (pins(s) == 0)
+            return;
+    }
+    const std::vector<openvdb::Vec3d> long_b = std::exchange(s.b, s.a);
+    const std::vector<std::uint8_t> long_pinned = s.pinned;
+    const std::ptrdiff_t long_pins = pins(s);
+    growth::settle_start(s, directions, thin, progress);
+    if (!options.top_down || pins(s) < long_pins)
         return;
-    const std::vector<openvdb::Vec3d> thin_b = s.b;
-    const std::vector<std::uint8_t> thin_pinned = s.pinned;
-    const std::ptrdiff_t thin_pins = pins(s);
-    growth::settle_start(s, directions, first_lengths(s, directions, start), progress);
-    if (pins(s) <= thin_pins)
-        return;
-    s.b = thin_b;
-    s.pinned = thin_pinned;
+    s.b = long_b;
+    s.pinned = long_pinned;
 }
 
 /// The pillars up to `inner` as lines. Vertices that have none keep their direction, for growth may
@@ -103,7 +106,7 @@ Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& 
 bool worth_lengthening(const GrowState& s)
 {
     const double fill = growth::fill_of(s);
-    return !s.bounded || fill > kNearlyFull || fill < kThin;
+    return !s.bounded || fill > growth::kNearlyFull || fill < kThin;
 }
 
 void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOptions& options,

@@ -57,7 +57,7 @@ std::vector<double> void_volumes(const PrismShell& shell)
         for (int corner = 0; corner < 3; ++corner)
             boxes[t].add(Vec3d(inner.points[inner.triangles[t][corner]]));
     growth::BoxTree tree;
-    tree.build(std::move(boxes));
+    tree.build(boxes);
     const double longest = diagonal_of(bounds_of(inner.points));
     std::vector<double> volumes(inner.triangles.size());
     for_each_index(volumes.size(), [&](std::size_t t) {

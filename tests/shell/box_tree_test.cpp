@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace
 {
 
@@ -28,16 +30,32 @@ std::vector<Box> random_boxes(int count, std::uint64_t seed)
     return boxes;
 }
 
+/// All that overlap, and besides these at most what does so once it has grown by a float's
+/// rounding.
+void expect_overlaps(std::vector<int> found, const std::vector<Box>& boxes, std::size_t query)
+{
+    constexpr double kRounding = 1e-6; // of coordinates below 2
+    Box wide = boxes[query];
+    wide.inflate(kRounding);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "query " << query;
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+        const bool there = std::binary_search(found.begin(), found.end(), static_cast<int>(k));
+        if (boxes[query].overlaps(boxes[k])) {
+            EXPECT_TRUE(there) << "query " << query << ", box " << k << " of " << boxes.size();
+        }
+        if (!wide.overlaps(boxes[k])) {
+            EXPECT_FALSE(there) << "query " << query << ", box " << k << " of " << boxes.size();
+        }
+    }
+}
+
 void expect_same_as_all_pairs(const BoxTree& tree, const std::vector<Box>& boxes)
 {
     for (std::size_t i = 0; i < boxes.size(); i += 7) {
-        std::vector<int> found, expected;
+        std::vector<int> found;
         tree.for_each_overlap(boxes[i], [&](int k) { found.push_back(k); });
-        for (std::size_t k = 0; k < boxes.size(); ++k)
-            if (boxes[i].overlaps(boxes[k]))
-                expected.push_back(static_cast<int>(k));
-        std::sort(found.begin(), found.end());
-        ASSERT_EQ(found, expected) << "query " << i << " of " << boxes.size();
+        expect_overlaps(found, boxes, i);
     }
 }
 
@@ -49,6 +67,28 @@ TEST(BoxTree, FindsWhatAllPairsFind)
         BoxTree tree;
         tree.build(boxes);
         expect_same_as_all_pairs(tree, boxes);
+    }
+}
+
+TEST(BoxTree, AGroupFindsWhatItsBoxesFindOneByOne)
+{
+    const auto wanted = [](int i) { return i % 3 != 0; };
+    for (const int count : {1, 15, 16, 17, 500}) {
+        const std::vector<Box> boxes = random_boxes(count, 1);
+        BoxTree tree;
+        tree.build(boxes);
+        std::vector<std::vector<int>> found(boxes.size());
+        BoxTree::Near near;
+        for (std::size_t group = 0; group < tree.groups(); ++group)
+            tree.for_each_overlap_of(group, tree, near, wanted, [&](int i, int k) {
+                found[static_cast<std::size_t>(i)].push_back(k);
+            });
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            if (wanted(static_cast<int>(i)))
+                expect_overlaps(found[i], boxes, i);
+            else
+                EXPECT_TRUE(found[i].empty()) << i;
+        }
     }
 }
 

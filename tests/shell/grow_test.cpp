@@ -448,10 +448,9 @@ TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
     EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0)), 0);
     EXPECT_EQ(growth::release_pins(s, c.directions.visibility), 3);
     growth::rebuild_candidates(s);
-    std::vector<int> touched;
     for (int f = 0; f < mesh.face_count(); ++f) {
         EXPECT_TRUE(growth::prism_valid(s, f));
-        EXPECT_TRUE(growth::inner_triangle_clear(s, f, touched));
+        EXPECT_TRUE(growth::inner_triangle_clear(s, f));
     }
     for (const int v : {0, 1, 11})
         EXPECT_NE(s.b[v], s.a[v]);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace
 {
@@ -126,9 +127,10 @@ TEST(Separation, StopsLookingBeyondEnough)
 {
     const Corners s{Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)};
     const Corners t{Vec3d(0, 0, 5), Vec3d(1, 0, 5), Vec3d(0, 1, 6)};
-    const Slab found = slab(s, t, 1.0);
+    EXPECT_EQ(slab(s, t, 1.0).gap, std::numeric_limits<double>::infinity());
+    const Slab found = slab(s, t, 5.5);
     expect_apart(s, t, found);
-    EXPECT_GT(found.gap, 1.0);
+    EXPECT_NEAR(found.gap, 5.0, 1e-6);
 }
 
 TEST(Separation, TouchingAndDegenerateTrianglesHaveNoGap)

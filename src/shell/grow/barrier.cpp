@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/barrier.h"
 
+#include "core/two_targets.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,6 +42,8 @@ bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
     dx[0] = (y0 - l10 * dx[1] - l20 * dx[2]) / l00;
     return true;
 }
+
+using EightFloats __attribute__((vector_size(32))) = float;
 
 /// Where x + t dx leaves the ball. Precondition: x lies in it.
 double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
@@ -101,6 +105,36 @@ void Bounds::add_unit(const Vec3s& n, double value)
     b.weight[lane] = 1.0f;
 }
 
+VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
+{
+    // By axis; the last three lanes are not asked for.
+    std::array<EightFloats, 3> at{};
+    for (int i = 0; i < 5; ++i)
+        for (int k = 0; k < 3; ++k)
+            at[k][i] = static_cast<float>((corner[i][k] - here_[k]) * scale_);
+    std::array<EightFloats, 3> p, u, w;
+    for (int k = 0; k < 3; ++k) {
+        // The bases of PrismTables, in an order of their own. The nearest corner comes first, an
+        // inner one if there is one, for floats are relative to the vertex.
+        p[k] = __builtin_shufflevector(at[k], at[k], 4, 4, 4, 2, 4, 3, 3, 4);
+        u[k] = __builtin_shufflevector(at[k], at[k], 3, 3, 1, 1, 3, 0, 1, 1) - p[k];
+        w[k] = __builtin_shufflevector(at[k], at[k], 0, 1, 2, 0, 2, 2, 2, 0) - p[k];
+    }
+    const EightFloats x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
+                      z = u[0] * w[1] - u[1] * w[0];
+    const EightFloats squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
+    size_ += kLanes;
+    Block& b = block_.emplace_back();
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        // A base without area has no normal: its value is nought, and it does not count.
+        constexpr float kTiny = 1e-30F;
+        const float inverse = 1.0F / (std::sqrt(squared[i]) + kTiny);
+        b.x[i] = x[i] * inverse, b.y[i] = y[i] * inverse, b.z[i] = z[i] * inverse;
+        b.value[i] = value[i] > 0 ? value[i] * inverse : 1.0F;
+        b.weight[i] = value[i] > 0 ? 1.0F : 0.0F;
+    }
+}
+
 void Bounds::weigh(std::size_t first, float weight)
 {
     for (std::size_t i = first; i < size_; ++i)
@@ -146,14 +180,15 @@ public:
     }
 
 private:
-    using Lane = std::array<float, Bounds::kLanes>;
+    using Lane = Bounds::Lane;
 
     static double sum(const Lane& lane)
     {
-        double total = 0;
-        for (const float value : lane)
-            total += static_cast<double>(value);
-        return total;
+        static_assert(Bounds::kLanes == 8);
+        std::array<float, 4> four;
+        for (std::size_t i = 0; i < 4; ++i)
+            four[i] = lane[i] + lane[i + 4];
+        return static_cast<double>((four[0] + four[2]) + (four[1] + four[3]));
     }
 
     void slope(Vec3d& gradient, Curvature& h) const
@@ -207,7 +242,8 @@ private:
     Ball ball_;
 };
 
-Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness)
+VDB_SHELL_TWO_TARGETS Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient,
+                                            double softness)
 {
     return Newton(bounds, ball, gradient, softness).minimum();
 }

@@ -19,6 +19,10 @@ public:
     void add(const Vec3d& n, const Vec3d& p);
     /// A bound of unit normal n and value here.
     void add_unit(const Vec3s& n, double value);
+    /// The bounds of all tets of a prism that hold this vertex, under the twelve-tet test: what add
+    /// would make of each, in float32. The other corners: a of the vertex, a of the next and of the
+    /// one before it in its triangle, b of these.
+    void add_prism(const std::array<Vec3d, 5>& corner);
     /// Gives the bounds from `first` on the weight `weight` each; all have 1 else.
     void weigh(std::size_t first, float weight);
     std::size_t size() const { return size_; }
@@ -26,8 +30,9 @@ public:
 private:
     friend class Newton;
     static constexpr std::size_t kLanes = 8;
+    using Lane = std::array<float, kLanes>;
     struct Block {
-        std::array<float, kLanes> x, y, z, value, weight;
+        Lane x, y, z, value, weight;
     };
     std::vector<Block> block_;
     std::size_t size_ = 0;

@@ -2,6 +2,7 @@
 #include "shell/grow/connectivity.h"
 
 #include "mesh/topology.h"
+#include "shell/grow/plane_sides.h"
 
 #include <algorithm>
 
@@ -92,6 +93,67 @@ void colour_vertices(Connectivity& c)
     }
 }
 
+int place_of(const std::vector<int>& list, int entry)
+{
+    return static_cast<int>(std::find(list.begin(), list.end(), entry) - list.begin());
+}
+
+/// The pairs of one vertex, with `ring` and `face` filled in; false where they are too many.
+bool list_kin(const Connectivity& c, int v, std::vector<int>& ring, std::vector<int>& face,
+              std::vector<KinPair>& pairs)
+{
+    for (const FaceCorner& at : star(c, v))
+        face.push_back(at.face);
+    const std::size_t moved = face.size();
+    for (const int u : neighbours(c, v))
+        for (const FaceCorner& at : star(c, u)) {
+            if (!c.incident_to(at.face, v) &&
+                std::find(face.begin() + std::ptrdiff_t(moved), face.end(), at.face) == face.end())
+                face.push_back(at.face);
+            for (int k = 0; k < 3; ++k)
+                if (c.corner(at.face, k) != v)
+                    ring.push_back(c.corner(at.face, k));
+        }
+    sort_unique(ring);
+    if (ring.size() > PlaneSides::kMostPoints || moved > PlaneSides::kMostPlanes ||
+        face.size() > 255)
+        return false;
+    for (std::size_t m = 0; m < moved; ++m)
+        for (std::size_t o = m + 1; o < face.size(); ++o) {
+            if (!c.share_a_corner(face[m], face[o]))
+                continue;
+            std::vector<std::uint8_t> own;
+            for (int k = 0; k < 3; ++k)
+                if (!c.incident_to(face[m], c.corner(face[o], k)))
+                    own.push_back(static_cast<std::uint8_t>(place_of(ring, c.corner(face[o], k))));
+            if (!own.empty())
+                pairs.push_back({static_cast<std::uint8_t>(m), static_cast<std::uint8_t>(o),
+                                 own.front(), own.back()});
+        }
+    return true;
+}
+
+void build_kin(Connectivity& c)
+{
+    Kin& kin = c.kin;
+    kin.first_ring.assign(1, 0);
+    kin.first_face.assign(1, 0);
+    kin.first_pair.assign(1, 0);
+    std::vector<int> ring, face;
+    std::vector<KinPair> pairs;
+    for (int v = 0; v < c.vertices; ++v) {
+        ring.clear(), face.clear(), pairs.clear();
+        if (list_kin(c, v, ring, face, pairs)) {
+            kin.ring.insert(kin.ring.end(), ring.begin(), ring.end());
+            kin.face.insert(kin.face.end(), face.begin(), face.end());
+            kin.pair.insert(kin.pair.end(), pairs.begin(), pairs.end());
+        }
+        kin.first_ring.push_back(static_cast<int>(kin.ring.size()));
+        kin.first_face.push_back(static_cast<int>(kin.face.size()));
+        kin.first_pair.push_back(kin.pair.size());
+    }
+}
+
 } // namespace
 
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
@@ -103,6 +165,7 @@ Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
     build_neighbours(c);
     label_components(c);
     colour_vertices(c);
+    build_kin(c);
     return c;
 }
 

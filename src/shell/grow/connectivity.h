@@ -3,6 +3,8 @@
 
 #include <openvdb/Types.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace vdb_shell::growth
@@ -15,6 +17,23 @@ struct FaceCorner {
     int face, local;
 };
 
+/// Two triangles that share a corner, the first around the vertex whose move makes them meet or
+/// not: places in Kin's lists.
+struct KinPair {
+    std::uint8_t moved, other; ///< of the triangles
+    std::uint8_t i, j;         ///< of the corners that the first does not have; the same if but one
+};
+
+/// What could meet the triangles around a vertex in spite of a common corner, by vertex. A vertex
+/// with more around it than the lists' small numbers can tell has none.
+struct Kin {
+    std::vector<int> first_ring, ring; ///< vertices up to two edges away
+    std::vector<int> first_face,
+        face; ///< its triangles, in the order of its star, and those beside
+    std::vector<std::size_t> first_pair;
+    std::vector<KinPair> pair;
+};
+
 /// The combinatorics of the surface, which growth never changes. Indices are int: they are counted
 /// down and compared with -1 all over, and a surface has fewer than 2^31 corners.
 struct Connectivity {
@@ -25,6 +44,7 @@ struct Connectivity {
     std::vector<int> neighbour_first, neighbour; ///< vertex -> adjacent vertices, ascending
     std::vector<int> component;                  ///< by vertex
     int components = 0;
+    Kin kin;
     std::vector<std::vector<int>> colour; ///< classes of vertices with no common neighbour
 
     int face_count() const { return static_cast<int>(faces.size()); }
@@ -52,6 +72,14 @@ template <class Entry> struct Slice {
 inline Slice<FaceCorner> star(const Connectivity& c, int v)
 {
     return {c.incident.data() + c.first[v], c.incident.data() + c.first[v + 1]};
+}
+inline Slice<int> kin_ring(const Connectivity& c, int v)
+{
+    return {c.kin.ring.data() + c.kin.first_ring[v], c.kin.ring.data() + c.kin.first_ring[v + 1]};
+}
+inline Slice<KinPair> kin_pairs(const Connectivity& c, int v)
+{
+    return {c.kin.pair.data() + c.kin.first_pair[v], c.kin.pair.data() + c.kin.first_pair[v + 1]};
 }
 inline Slice<int> neighbours(const Connectivity& c, int v)
 {

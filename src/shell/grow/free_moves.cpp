@@ -21,6 +21,7 @@ constexpr double kCoolFast = 0.3;  ///< factor per round where little is won
 constexpr double kStale = 5e-4;    ///< share of the solid: a round that wins less is such a round
 constexpr int kSweepsPerRound = 2; ///< between the same walls
 constexpr int kHalvings = 5;
+constexpr double kReachOfEdges = 3; ///< first reach over the shortest edge, nearly full
 constexpr double kReachAhead = 1.5; ///< next reach over the last move
 constexpr double kReachKept = 0.3;  ///< least share of a reach that is left for the next round
 /// How far from a vertex walls steer it, as a share of its reach; the others only stop it.
@@ -110,15 +111,19 @@ bool propose_move(const GrowState& s, const Walls& w, int v, const MoveRules& ru
     return false;
 }
 
-/// Short where the inner surface has already collapsed: the walls stay few there.
-double first_reach(const GrowState& s, int v)
+/// Short where the inner surface has already collapsed: the walls stay few there. In a solid that
+/// is nearly full it has collapsed in one direction at least.
+double first_reach(const GrowState& s, int v, bool nearly_full)
 {
-    double outer = 0, inner = 0;
+    double outer = 0, longest = 0, shortest = kReachOfEdges * s.diagonal;
     for (const int u : neighbours(*s.mesh, v)) {
+        const double inner = (s.b[u] - s.b[v]).length();
         outer += (s.a[u] - s.a[v]).length();
-        inner = std::max(inner, (s.b[u] - s.b[v]).length());
+        longest = std::max(longest, inner);
+        shortest = std::min(shortest, inner);
     }
     const int count = std::max(1, neighbours(*s.mesh, v).size());
+    const double inner = nearly_full ? std::min(longest, kReachOfEdges * shortest) : longest;
     return std::max(std::min(0.3 * outer / count, inner), 200 * s.rounding);
 }
 
@@ -181,7 +186,7 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
     const std::vector<Vec3d> first_b = s.b;
     const std::vector<std::uint8_t> first_order = s.order, first_pinned = s.pinned;
     for (int v = 0; v < s.mesh->vertices; ++v)
-        s.reach[v] = first_reach(s, v);
+        s.reach[v] = first_reach(s, v, s.bounded && first_fill > kNearlyFull);
     double fill = first_fill;
     // A barrier worth more than what is left to win would only undo what is reached.
     double softness = s.bounded ? std::min(stage.softness, std::max(kLeastSoftness, 7 * (1 - fill)))

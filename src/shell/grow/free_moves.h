@@ -14,6 +14,10 @@ namespace vdb_shell::growth
 inline constexpr double kTwelveSoftness = 1.0;
 inline constexpr double kThreeSoftness = 0.02;
 
+/// Of the solid. From here on the inner surface has collapsed, in one direction at least: lines
+/// finish what the start began sooner than free moves do, which set out in short steps.
+inline constexpr double kNearlyFull = 0.9;
+
 struct FreeStage {
     int rounds;        ///< upper bound
     double softness;   ///< at the first round

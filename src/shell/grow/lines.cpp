@@ -11,7 +11,7 @@ namespace
 {
 
 // Shares of the diagonal.
-constexpr double kFirstStep = 2e-3;
+constexpr double kFirstStep = 1e-3;
 constexpr double kMostStep = 1e-2;
 constexpr double kLeastStep = 2e-4; ///< below it a vertex sleeps
 constexpr int kMostRounds = 400;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/move_tests.h"
 
+#include "shell/grow/plane_sides.h"
 #include "shell/pillar.h"
 
 #include <algorithm>
@@ -42,49 +43,23 @@ struct MovedTriangle {
     Box box;
 };
 
-MovedTriangle moved_triangle(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
 {
-    MovedTriangle moved{at.face, inner_corners(s, at.face), inner_ids(s, at.face), {}};
-    moved.corners[at.local] = x;
-    return moved;
+    Corners corners = inner_corners(s, at.face);
+    corners[at.local] = x;
+    return corners;
 }
 
-/// A moved triangle among its kin.
-struct Moved {
-    const MovedTriangle& triangle;
-    exact::PlaneFilter plane;
-};
-
-/// Whether inner triangle g, with corners c, meets the moved one nowhere but in the corners they
-/// share. With all its other corners on one side of the moved one's plane it cannot; what that
-/// leaves open goes to the exact test.
-bool clear_of_kin(const GrowState& s, const Moved& moved, int g, const Corners& c)
-{
-    int first = 0;
-    bool one_side = true;
-    for (int k = 0; k < 3; ++k) {
-        if (s.mesh->incident_to(moved.triangle.face, s.mesh->corner(g, k)))
-            continue;
-        const int side = moved.plane.side(c[k]);
-        one_side = one_side && side != 0 && (first == 0 || side == first);
-        first = side;
-    }
-    return one_side ||
-           !improper_contact(moved.triangle.corners, moved.triangle.ids, c, inner_ids(s, g));
-}
-
-/// The moved triangle against those around its corner u that hold neither v nor `done`, whose
+/// Inner triangle `moved` against those around its corner u that hold neither v nor `done`, whose
 /// triangles have been looked at; where u is pinned also against the outer ones.
-bool kin_clear_around(const GrowState& s, int v, const Moved& moved, int u, int done)
+bool kin_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int u, int done)
 {
     const Connectivity& m = *s.mesh;
     for (const FaceCorner& at : star(m, u)) {
         const int g = at.face;
-        if (!m.incident_to(g, v) && (done < 0 || !m.incident_to(g, done)) &&
-            !clear_of_kin(s, moved, g, inner_corners(s, g)))
+        if (!m.incident_to(g, v) && (done < 0 || !m.incident_to(g, done)) && moved.meets_inner(g))
             return false;
-        if (s.pinned[u] && improper_contact(moved.triangle.corners, moved.triangle.ids,
-                                            outer_corners(s, g), outer_ids(s, g)))
+        if (s.pinned[u] && moved.meets_outer(g))
             return false;
     }
     return true;
@@ -101,6 +76,45 @@ bool touches_inner(const GrowState& s, int v, const MovedTriangle& moved, const 
         if (s.mesh->corner(g, k) == v)
             other[k] = x;
     return improper_contact(moved.corners, moved.ids, other, inner_ids(s, g));
+}
+
+/// The corners of an inner triangle with b_v = x.
+Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
+{
+    Corners corners = inner_corners(s, f);
+    for (int k = 0; k < 3; ++k)
+        if (s.mesh->corner(f, k) == v)
+            corners[k] = x;
+    return corners;
+}
+
+bool pair_meets(const GrowState& s, int v, const Vec3d& x, int f, int g)
+{
+    return improper_contact(corners_with(s, f, v, x), inner_ids(s, f), corners_with(s, g, v, x),
+                            inner_ids(s, g));
+}
+
+bool any_pinned(const GrowState& s, const Slice<int>& vertices)
+{
+    return std::any_of(vertices.begin(), vertices.end(), [&](int u) { return s.pinned[u] != 0; });
+}
+
+/// kin_clear_at, for vertices that Kin has nothing about or that have pins beside them.
+bool kin_clear_one_by_one(const GrowState& s, int v, const Vec3d& x)
+{
+    const Connectivity& m = *s.mesh;
+    const Slice<FaceCorner> fan = star(m, v);
+    for (const FaceCorner& at : fan) {
+        const InnerTriangle moved(s, at, x);
+        for (const FaceCorner& other : fan)
+            if (other.face > at.face && moved.meets_inner(other.face, moved_corners(s, other, x)))
+                return false;
+        const int next = m.corner(at.face, (at.local + 1) % 3);
+        for (const int u : {next, m.corner(at.face, (at.local + 2) % 3)})
+            if (!kin_clear_around(s, v, moved, u, u == next ? -1 : next))
+                return false;
+    }
+    return true;
 }
 
 } // namespace
@@ -124,8 +138,8 @@ bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker)
         return false;
     };
     for (const FaceCorner& at : star(*s.mesh, v)) {
-        MovedTriangle moved = moved_triangle(s, at, x);
-        moved.box = box_of(moved.corners);
+        const Corners corners = moved_corners(s, at, x);
+        const MovedTriangle moved{at.face, corners, inner_ids(s, at.face), box_of(corners)};
         for (const int g : s.near_inner[at.face])
             if (touches_inner(s, v, moved, x, g))
                 return blocked_by(g);
@@ -212,23 +226,60 @@ bool prism_valid(const GrowState& s, int f)
     return !pins || !exact::collinear(Vec3s(b[0]), Vec3s(b[1]), Vec3s(b[2]));
 }
 
-bool inner_triangle_clear(const GrowState& s, int f, std::vector<int>& touched)
+bool inner_triangle_clear(const GrowState& s, int f)
 {
-    const Corners c = inner_corners(s, f);
-    const CornerIds id = inner_ids(s, f);
-    touched.clear();
+    const InnerTriangle triangle(s, f);
     for (const int g : s.near_inner[f])
-        if (improper_contact(c, id, inner_corners(s, g), inner_ids(s, g)))
-            touched.push_back(g);
-    bool clear = touched.empty();
+        if (triangle.meets_inner(g))
+            return false;
     for (const int g : s.near_outer[f])
-        clear = clear && !improper_contact(c, id, outer_corners(s, g), outer_ids(s, g));
-    return clear;
+        if (triangle.meets_outer(g))
+            return false;
+    return true;
+}
+
+InnerTriangle::InnerTriangle(const GrowState& s, int f)
+    : s_(s), face_(f), corners_(inner_corners(s, f)), plane_(corners_[0], corners_[1], corners_[2])
+{
+}
+
+InnerTriangle::InnerTriangle(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+    : s_(s), face_(at.face), corners_(moved_corners(s, at, x)),
+      plane_(corners_[0], corners_[1], corners_[2])
+{
+}
+
+bool InnerTriangle::meets_inner(int g, const Corners& c) const
+{
+    // With all its other corners on one side of this one's plane it cannot; what that leaves open
+    // goes to the exact test.
+    int first = 0;
+    bool one_side = true;
+    for (int k = 0; k < 3; ++k) {
+        if (s_.mesh->incident_to(face_, s_.mesh->corner(g, k)))
+            continue;
+        const int side = plane_.side(c[k]);
+        one_side = one_side && side != 0 && (first == 0 || side == first);
+        first = side;
+    }
+    return !one_side && improper_contact(corners_, inner_ids(s_, face_), c, inner_ids(s_, g));
+}
+
+bool InnerTriangle::meets_outer(int g) const
+{
+    return improper_contact(corners_, inner_ids(s_, face_), outer_corners(s_, g), outer_ids(s_, g));
 }
 
 void tet_bounds(const GrowState& s, int v, Bounds& out)
 {
-    for (const FaceCorner& at : star(*s.mesh, v))
+    const Connectivity& m = *s.mesh;
+    for (const FaceCorner& at : star(m, v)) {
+        const int next = m.corner(at.face, (at.local + 1) % 3);
+        const int last = m.corner(at.face, (at.local + 2) % 3);
+        if (s.twelve && !s.pinned[next] && !s.pinned[last]) {
+            out.add_prism({s.a[v], s.a[next], s.a[last], s.b[next], s.b[last]});
+            continue;
+        }
         for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local)) {
             if (dropped(s, at.face, tet.pillar))
                 continue;
@@ -237,27 +288,29 @@ void tet_bounds(const GrowState& s, int v, Bounds& out)
             const Vec3d w = corner_of(s, at.face, tet.base[2]) - p;
             out.add(u.cross(w), p);
         }
+    }
 }
 
 bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
 {
     const Connectivity& m = *s.mesh;
-    const Slice<FaceCorner> fan = star(m, v);
-    for (const FaceCorner& at : fan) {
-        const MovedTriangle triangle = moved_triangle(s, at, x);
-        const Corners& c = triangle.corners;
-        const Moved moved{triangle, {c[0], c[1], c[2]}};
-        for (const FaceCorner& other : fan)
-            if (other.face > at.face) {
-                Corners too = inner_corners(s, other.face);
-                too[other.local] = x;
-                if (!clear_of_kin(s, moved, other.face, too))
-                    return false;
-            }
-        const int next = m.corner(at.face, (at.local + 1) % 3);
-        for (const int u : {next, m.corner(at.face, (at.local + 2) % 3)})
-            if (!kin_clear_around(s, v, moved, u, u == next ? -1 : next))
-                return false;
+    const Slice<int> ring = kin_ring(m, v);
+    if (ring.size() == 0 || any_pinned(s, neighbours(m, v)))
+        return kin_clear_one_by_one(s, v, x);
+    PlaneSides sides;
+    for (const int u : ring)
+        sides.add_point(s.b[u]);
+    for (const FaceCorner& at : star(m, v))
+        sides.add_plane(moved_corners(s, at, x));
+    sides.compute();
+    const int* const face = m.kin.face.data() + m.kin.first_face[v];
+    for (const KinPair& pair : kin_pairs(m, v)) {
+        const std::int64_t side = sides.side(pair.moved, pair.i);
+        // With all its other corners on one side of the plane the other cannot meet the first.
+        if (side != 0 && side == sides.side(pair.moved, pair.j))
+            continue;
+        if (pair_meets(s, v, x, face[pair.moved], face[pair.other]))
+            return false;
     }
     return true;
 }

@@ -38,9 +38,29 @@ bool holds_component(const GrowState& s, int f);
 bool prism_valid(const GrowState& s, int f);
 /// Whether the chosen tets of face f were positive with this order.
 bool split_positive(const GrowState& s, int f, int order);
-/// Whether inner triangle f is free of improper contact with every other triangle on its lists;
-/// the inner ones that it does touch go into `touched`.
-bool inner_triangle_clear(const GrowState& s, int f, std::vector<int>& touched);
+/// Whether inner triangle f is free of improper contact with every other triangle on its lists.
+bool inner_triangle_clear(const GrowState& s, int f);
+
+/// An inner triangle that is held against others, one after another; with `x`, as it is when its
+/// corner `local` is there.
+class InnerTriangle
+{
+public:
+    InnerTriangle(const GrowState& s, int f);
+    InnerTriangle(const GrowState& s, const FaceCorner& at, const Vec3d& x);
+
+    int face() const { return face_; }
+    /// Improper contact with inner triangle g, or with what it is when its corners are c. Exact.
+    bool meets_inner(int g) const { return meets_inner(g, inner_corners(s_, g)); }
+    bool meets_inner(int g, const Corners& c) const;
+    bool meets_outer(int g) const;
+
+private:
+    const GrowState& s_;
+    int face_;
+    Corners corners_;
+    exact::PlaneFilter plane_;
+};
 
 /// Appends the linear bounds that the tets around v put on b_v.
 void tet_bounds(const GrowState& s, int v, Bounds& out);

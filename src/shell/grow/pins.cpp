@@ -43,9 +43,8 @@ double longest_try(const GrowState& s, int v)
 
 bool star_valid(const GrowState& s, int v)
 {
-    std::vector<int> touched;
     for (const FaceCorner& at : star(*s.mesh, v))
-        if (!prism_valid(s, at.face) || !inner_triangle_clear(s, at.face, touched) ||
+        if (!prism_valid(s, at.face) || !inner_triangle_clear(s, at.face) ||
             holds_component(s, at.face))
             return false;
     return true;

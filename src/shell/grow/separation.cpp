@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/separation.h"
 
+#include "core/four_floats.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,12 +22,22 @@ Pair relative(const Corners& s, const Corners& t)
     return {{Vec3d(0.0), s[1] - s[0], s[2] - s[0]}, {t[0] - s[0], t[1] - s[0], t[2] - s[0]}};
 }
 
-/// Takes the slab across `axis` when it is wider than the best so far.
-void try_axis(const Vec3d& axis, const Pair& p, Slab& best)
+/// The room between the triangles across an axis, in units of the axis' length.
+double room_across(const Vec3d& axis, const Pair& p)
 {
+    const double s1 = axis.dot(p.s[1]), s2 = axis.dot(p.s[2]);
+    const double t0 = axis.dot(p.t[0]), t1 = axis.dot(p.t[1]), t2 = axis.dot(p.t[2]);
+    const double above = std::min({0.0, s1, s2}) - std::max({t0, t1, t2});
+    const double below = std::min({t0, t1, t2}) - std::max({0.0, s1, s2});
+    return std::max(above, below);
+}
+
+Slab slab_across(const Vec3d& axis, const Pair& p)
+{
+    Slab slab;
     const double length = axis.length();
     if (!(length > 0))
-        return;
+        return slab;
     // The wall is made of this rounded normal, so its slab has to be measured with it.
     const Vec3s n(axis / length);
     const Vec3d m(n);
@@ -33,10 +45,8 @@ void try_axis(const Vec3d& axis, const Pair& p, Slab& best)
     const double t0 = m.dot(p.t[0]), t1 = m.dot(p.t[1]), t2 = m.dot(p.t[2]);
     const double s_lo = std::min({0.0, s1, s2}), s_hi = std::max({0.0, s1, s2});
     const double t_lo = std::min({t0, t1, t2}), t_hi = std::max({t0, t1, t2});
-    if (s_lo - t_hi > best.gap)
-        best = {n, s_lo, t_hi, s_lo - t_hi};
-    if (t_lo - s_hi > best.gap)
-        best = {-n, -s_hi, -t_lo, t_lo - s_hi};
+    return s_lo - t_hi > t_lo - s_hi ? Slab{n, s_lo, t_hi, s_lo - t_hi}
+                                     : Slab{-n, -s_hi, -t_lo, t_lo - s_hi};
 }
 
 /// From the closest point of the segment p + [0, 1] d to that of q + [0, 1] e (Ericson 2005,
@@ -60,71 +70,114 @@ Vec3d between_segments(const Vec3d& p, const Vec3d& d, const Vec3d& q, const Vec
 }
 
 struct EdgePair {
-    int at; ///< 3 * edge of the first + edge of the second
+    int i, j; ///< edge of the first, edge of the second
     double distance2;
 };
 
-/// The two edges, one of each triangle, that come closest, in units of `size`. The loop has no
-/// branches, so that the compiler can do several pairs at a time.
-template <class Real> EdgePair closest_edges(const Pair& pair, double size)
+/// What the three edges of the second triangle have to say to one edge of the first, one to a lane.
+struct EdgeLanes {
+    FourFloats x, y, z, dx, dy, dz; ///< where they begin, and how they run
+    FourFloats squared, inverse;    ///< of their lengths
+};
+
+// Squares of it are far from underflow, which would cost more than all the rest.
+constexpr float kTiny = 1e-12F;
+
+EdgeLanes edges_of(const std::array<Vec3d, 3>& corner, double scale)
 {
-    constexpr int kPairs = 9, kLanes = 12; // whole vectors
-    Real p[3][kLanes] = {}, d[3][kLanes] = {}, q[3][kLanes] = {}, e[3][kLanes] = {};
-    Real distance2[kLanes];
-    const double scale = 1 / size;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            for (int k = 0; k < 3; ++k) {
-                const int at = 3 * i + j, i1 = (i + 1) % 3, j1 = (j + 1) % 3;
-                p[k][at] = static_cast<Real>(scale * pair.s[i][k]);
-                d[k][at] = static_cast<Real>(scale * (pair.s[i1][k] - pair.s[i][k]));
-                q[k][at] = static_cast<Real>(scale * pair.t[j][k]);
-                e[k][at] = static_cast<Real>(scale * (pair.t[j1][k] - pair.t[j][k]));
-            }
-    for (int at = 0; at < kLanes; ++at) {
-        // Squares of it are far from underflow, which would cost more than all the rest.
-        constexpr Real kTiny = Real(1e-12), kParallel = 16 * std::numeric_limits<Real>::epsilon();
-        const Real rx = p[0][at] - q[0][at], ry = p[1][at] - q[1][at], rz = p[2][at] - q[2][at];
-        const Real dx = d[0][at], dy = d[1][at], dz = d[2][at];
-        const Real ex = e[0][at], ey = e[1][at], ez = e[2][at];
-        const Real dd = dx * dx + dy * dy + dz * dz + kTiny;
-        const Real ee = ex * ex + ey * ey + ez * ez + kTiny;
-        const Real de = dx * ex + dy * ey + dz * ez;
-        const Real dr = dx * rx + dy * ry + dz * rz, er = ex * rx + ey * ry + ez * rz;
-        const auto least_of = [](Real x, Real y) { return x < y ? x : y; };
-        const auto most_of = [](Real x, Real y) { return x > y ? x : y; };
-        const Real denominator = most_of(dd * ee - de * de, kParallel * dd * ee);
-        const auto share = [&](Real x) { return least_of(most_of(x, Real(0)), Real(1)); };
-        const auto from = [&](Real start) {
-            const Real t = share((de * start + er) / ee), s = share((de * t - dr) / dd);
-            const Real x = rx + s * dx - t * ex, y = ry + s * dy - t * ey;
-            const Real z = rz + s * dz - t * ez;
-            return x * x + y * y + z * z;
-        };
-        // Of edges that are nearly parallel one end is among the closest points.
-        distance2[at] = least_of(from(share((de * er - dr * ee) / denominator)),
-                                 least_of(from(Real(0)), from(Real(1))));
+    EdgeLanes e{};
+    for (int j = 0; j < 4; ++j) {
+        const Vec3d& p = corner[j % 3]; // the fourth lane is the first once more
+        const Vec3d run = corner[(j + 1) % 3] - p;
+        e.x[j] = static_cast<float>(scale * p[0]), e.dx[j] = static_cast<float>(scale * run[0]);
+        e.y[j] = static_cast<float>(scale * p[1]), e.dy[j] = static_cast<float>(scale * run[1]);
+        e.z[j] = static_cast<float>(scale * p[2]), e.dz[j] = static_cast<float>(scale * run[2]);
     }
-    const Real* const least = std::min_element(distance2, distance2 + kPairs);
-    return {static_cast<int>(least - distance2), static_cast<double>(*least)};
+    e.squared = e.dx * e.dx + e.dy * e.dy + e.dz * e.dz + four(kTiny);
+    e.inverse = four(1) / e.squared;
+    return e;
 }
 
-void try_closest_edges(const Pair& p, Slab& best)
+/// Squared distances of the edge p + [0, 1] d from three others.
+FourFloats distances2(const Vec3s& p, const Vec3s& d, const EdgeLanes& e)
 {
-    // Below this distance, in units of the pair's size, float32 cannot choose.
-    constexpr double kNear = 0.004;
+    constexpr float kParallel = 16 * std::numeric_limits<float>::epsilon();
+    const FourFloats zero{}, one = four(1);
+    const float dd = d.dot(d) + kTiny, dd_inverse = 1 / dd;
+    const FourFloats rx = p[0] - e.x, ry = p[1] - e.y, rz = p[2] - e.z;
+    const FourFloats de = d[0] * e.dx + d[1] * e.dy + d[2] * e.dz;
+    const FourFloats dr = d[0] * rx + d[1] * ry + d[2] * rz;
+    const FourFloats er = e.dx * rx + e.dy * ry + e.dz * rz;
+    const auto share = [&](const FourFloats& x) { return least_of(most_of(x, zero), one); };
+    const auto from = [&](const FourFloats& start) {
+        const FourFloats t = share((de * start + er) * e.inverse);
+        const FourFloats s = share((de * t - dr) * dd_inverse);
+        const FourFloats x = rx + s * d[0] - t * e.dx, y = ry + s * d[1] - t * e.dy;
+        const FourFloats z = rz + s * d[2] - t * e.dz;
+        return x * x + y * y + z * z;
+    };
+    const FourFloats most = dd * e.squared;
+    const FourFloats denominator = most_of(most - de * de, kParallel * most);
+    // Of edges that are nearly parallel one end is among the closest points.
+    return least_of(from(share((de * er - dr * e.squared) / denominator)),
+                    least_of(from(zero), from(one)));
+}
+
+/// The two edges, one of each triangle, that come closest, in units of `size`, as floats see it.
+EdgePair closest_edges(const Pair& pair, double size)
+{
+    const double scale = 1 / size;
+    const EdgeLanes e = edges_of(pair.t, scale);
+    EdgePair closest{0, 0, std::numeric_limits<double>::max()};
+    for (int i = 0; i < 3; ++i) {
+        const Vec3d run = pair.s[(i + 1) % 3] - pair.s[i];
+        const FourFloats found = distances2(Vec3s(scale * pair.s[i]), Vec3s(scale * run), e);
+        for (int j = 0; j < 3; ++j)
+            if (static_cast<double>(found[j]) < closest.distance2)
+                closest = {i, j, static_cast<double>(found[j])};
+    }
+    return closest;
+}
+
+Vec3d between_edges(const Pair& p, int i, int j)
+{
+    return between_segments(p.s[i], p.s[(i + 1) % 3] - p.s[i], p.t[j], p.t[(j + 1) % 3] - p.t[j]);
+}
+
+/// The same in doubles, for edges so close that floats cannot choose.
+Vec3d between_closest_edges(const Pair& p)
+{
+    Vec3d least;
+    double distance2 = std::numeric_limits<double>::max();
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const Vec3d between = between_edges(p, i, j);
+            if (between.lengthSqr() < distance2)
+                least = between, distance2 = between.lengthSqr();
+        }
+    return least;
+}
+
+double size_of(const Pair& p)
+{
     double size = 0;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
             size = std::max({size, std::abs(p.s[i][k]), std::abs(p.t[i][k])});
+    return size;
+}
+
+/// From one triangle to the other where their edges come closest; zero where they touch.
+Vec3d across_edges(const Pair& p)
+{
+    // Below this distance, in units of the pair's size, float32 cannot choose.
+    constexpr double kNear = 0.004;
+    const double size = size_of(p);
     if (!(size > 0))
-        return;
-    EdgePair closest = closest_edges<float>(p, size);
-    if (closest.distance2 < kNear * kNear)
-        closest = closest_edges<double>(p, size);
-    const int i = closest.at / 3, j = closest.at % 3;
-    try_axis(between_segments(p.s[i], p.s[(i + 1) % 3] - p.s[i], p.t[j], p.t[(j + 1) % 3] - p.t[j]),
-             p, best);
+        return Vec3d(0.0);
+    const EdgePair closest = closest_edges(p, size);
+    return closest.distance2 < kNear * kNear ? between_closest_edges(p)
+                                             : between_edges(p, closest.i, closest.j);
 }
 
 } // namespace
@@ -139,17 +192,28 @@ Body body_of(const Corners& corner, double reach)
 Slab slab_between(const Body& first, const Body& second, double enough)
 {
     const Pair p = relative(first.corner, second.corner);
-    Slab best;
-    try_axis(p.t[0] + p.t[1] + p.t[2] - p.s[1] - p.s[2], p, best);
-    if (best.gap > enough)
-        return best;
+    Slab wide;
+    wide.gap = std::numeric_limits<double>::infinity();
+    const Vec3d middles = p.t[0] + p.t[1] + p.t[2] - p.s[1] - p.s[2];
+    const double room = room_across(middles, p), squared = middles.lengthSqr();
+    if (room > 0 && room * room > enough * enough * squared)
+        return wide;
     // A corner of one against the inside of the other: across that one's own plane.
-    try_axis(first.normal, p, best);
-    try_axis(second.normal, p, best);
-    if (best.gap > enough)
-        return best;
-    try_closest_edges(p, best);
-    return best;
+    const double across_first = room_across(first.normal, p);
+    const double across_second = room_across(second.normal, p);
+    if (std::max(across_first, across_second) > enough)
+        return wide;
+    const Vec3d* axis = &middles;
+    double widest = squared > 0 ? room / std::sqrt(squared) : 0;
+    if (across_first > widest)
+        axis = &first.normal, widest = across_first;
+    if (across_second > widest)
+        axis = &second.normal, widest = across_second;
+    const Vec3d edges = across_edges(p);
+    const double length = edges.length();
+    if (length > 0 && room_across(edges, p) > widest * length)
+        axis = &edges;
+    return slab_across(*axis, p);
 }
 
 } // namespace vdb_shell::growth

@@ -26,8 +26,8 @@ struct Slab {
 };
 
 /// The widest slab between two triangles, but for rounding: across the direction between their
-/// closest points. Not computed further when it is seen to be wider than `enough`. gap <= 0 where
-/// the triangles touch, or nearly so.
+/// closest points. Where it is seen to be wider than `enough`, only the gap is given, as infinite.
+/// gap <= 0 where the triangles touch, or nearly so.
 Slab slab_between(const Body& first, const Body& second, double enough);
 
 } // namespace vdb_shell::growth

@@ -2,11 +2,12 @@
 #include "shell/grow/start.h"
 
 #include "core/parallel.h"
-#include "shell/grow/candidates.h"
 #include "shell/grow/move_tests.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
+#include <optional>
 
 namespace vdb_shell::growth
 {
@@ -39,22 +40,66 @@ void place(GrowState& s, const Directions& directions, const std::vector<double>
     });
 }
 
-/// Looks at the marked faces, which are all that have changed, and marks those that violate.
-std::vector<std::uint8_t> violating_faces(const GrowState& s,
-                                          const std::vector<std::uint8_t>& changed)
+using Marks = std::vector<std::atomic<std::uint8_t>>;
+
+void mark(std::atomic<std::uint8_t>& entry)
 {
-    std::vector<std::uint8_t> bad(changed.size(), 0);
-    std::vector<std::vector<int>> touched(changed.size());
+    entry.store(1, std::memory_order_relaxed);
+}
+
+/// Marks the triangles that touch others in a place where they should not, of those that `changed`
+/// and are not marked yet.
+void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
+{
+    std::vector<Box> boxes(changed.size());
+    std::vector<std::uint8_t> ask(changed.size());
+    for_each_index(boxes.size(), [&](std::size_t f) {
+        boxes[f] = box_of(inner_corners(s, static_cast<int>(f)));
+        ask[f] = changed[f] && !bad[f];
+    });
+    first ? s.inner_tree.build(boxes) : s.inner_tree.refit(boxes);
+    const auto asked = [&](int f) { return ask[f] != 0; };
+    for_each_range(
+        s.inner_tree.groups(),
+        [&](std::size_t begin, std::size_t end) {
+            BoxTree::Near near;
+            std::optional<InnerTriangle> triangle;
+            const auto of = [&](int f) -> const InnerTriangle& {
+                if (!triangle || triangle->face() != f)
+                    triangle.emplace(s, f);
+                return *triangle;
+            };
+            for (std::size_t group = begin; group < end; ++group) {
+                s.inner_tree.for_each_overlap_of(
+                    group, s.inner_tree, near, asked, [&](int f, int g) {
+                        // Each pair once where both are asked about.
+                        if (f == g || (asked(g) && g < f) || !of(f).meets_inner(g))
+                            return;
+                        mark(bad[f]);
+                        mark(bad[g]);
+                    });
+                s.inner_tree.for_each_overlap_of(group, s.outer_tree, near, asked,
+                                                 [&](int f, int g) {
+                                                     if (!bad[f] && of(f).meets_outer(g))
+                                                         mark(bad[f]);
+                                                 });
+            }
+        },
+        4);
+}
+
+/// Looks at the faces that have changed, and marks those that violate.
+std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
+                                          bool first)
+{
+    Marks bad(changed.size());
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
-        if (changed[f])
-            bad[f] = !inner_triangle_clear(s, f, touched[f]) || !prism_valid(s, f) ||
-                     holds_component(s, f);
+        if (changed[f] && (!prism_valid(s, f) || holds_component(s, f)))
+            mark(bad[f]);
     });
-    for (const std::vector<int>& faces : touched)
-        for (const int g : faces)
-            bad[g] = 1;
-    return bad;
+    mark_contacts(s, changed, first, bad);
+    return {bad.begin(), bad.end()};
 }
 
 /// Parameter where p + t d meets the triangle, or infinity: a hint, in plain doubles.
@@ -156,13 +201,13 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
     if (first_yielding > 0)
         std::fill(yields.begin() + std::ptrdiff_t(first_yielding), yields.end(), kYields);
     place(s, directions, h);
-    rebuild_candidates(s);
+    bool first = true;
     // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
     // crosses itself: with all its vertices pinned.
-    while (shrink_around(s, violating_faces(s, changed), h, yields, changed)) {
+    while (shrink_around(s, violating_faces(s, changed, first), h, yields, changed)) {
         progress.stop_if_interrupted(0);
         place(s, directions, h);
-        update_candidates(s, changed);
+        first = false;
     }
 }
 

@@ -14,7 +14,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-constexpr std::size_t kChunk = 128; ///< faces whose walls are listed together
+constexpr std::size_t kChunk = 8; ///< groups of faces whose walls are listed together
 
 /// A wall before it is handed to the vertices: corners 0..2 of face f lie where value > 0, those of
 /// inner face g where it is < 0.
@@ -91,17 +91,17 @@ public:
     {
     }
 
-    void list(int f, Chunk& out) const
+    /// The walls of the triangles of one group of the inner tree.
+    void list(std::size_t group, BoxTree::Near& near, Chunk& out) const
     {
-        if (stock_.still[f])
-            return;
-        s_.inner_tree.for_each_overlap(stock_.box[f], [&](int g) {
+        const auto moves = [&](int f) { return !stock_.still[f]; };
+        s_.inner_tree.for_each_overlap_of(group, s_.inner_tree, near, moves, [&](int f, int g) {
             // Each pair once: from its smaller face, or from the one that moves.
-            if (g == f || (g < f && !stock_.still[g]) || s_.mesh->share_a_corner(f, g))
+            if (g == f || (g < f && moves(g)) || s_.mesh->share_a_corner(f, g))
                 return;
             add(f, g, stock_.inner[g], stock_.still[g] ? 0.0 : 0.5, out);
         });
-        s_.outer_tree.for_each_overlap(stock_.box[f], [&](int g) {
+        s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, moves, [&](int f, int g) {
             if (!share_a_pin(s_, f, g))
                 add(f, -1, body_of(outer_corners(s_, g), 0.0), 0.0, out);
         });
@@ -213,14 +213,15 @@ void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w)
     const Stock stock = take_stock(s, still);
     s.inner_tree.build(stock.box);
     w.slack = rounding_of_walls(s);
-    std::vector<Chunk> chunks((stock.inner.size() + kChunk - 1) / kChunk);
+    const std::size_t groups = s.inner_tree.groups();
+    std::vector<Chunk> chunks((groups + kChunk - 1) / kChunk);
     const Builder builder(s, stock, still, w.slack);
     for_each_index(
         chunks.size(),
         [&](std::size_t c) {
-            const std::size_t end = std::min(stock.inner.size(), (c + 1) * kChunk);
-            for (std::size_t f = c * kChunk; f < end; ++f)
-                builder.list(static_cast<int>(f), chunks[c]);
+            BoxTree::Near near;
+            for (std::size_t g = c * kChunk; g < std::min(groups, (c + 1) * kChunk); ++g)
+                builder.list(g, near, chunks[c]);
         },
         1);
     w.locked.assign(s.b.size(), 0);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
+namespace vdb_shell
+{
+
+/// GCC's and Clang's vectors: loops over arrays are too often left scalar by the compiler, at a
+/// quarter of the speed.
+using FourFloats __attribute__((vector_size(16))) = float;
+
+inline FourFloats four(float x)
+{
+    return FourFloats{x, x, x, x};
+}
+/// x < y ? x : y in each lane, which compilers leave as three instructions.
+inline FourFloats least_of(const FourFloats& x, const FourFloats& y)
+{
+#ifdef __SSE__
+    return _mm_min_ps(x, y);
+#else
+    return x < y ? x : y;
+#endif
+}
+/// x > y ? x : y.
+inline FourFloats most_of(const FourFloats& x, const FourFloats& y)
+{
+#ifdef __SSE__
+    return _mm_max_ps(x, y);
+#else
+    return x > y ? x : y;
+#endif
+}
+
+} // namespace vdb_shell

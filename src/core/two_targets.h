@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Compiles a function, with all that it calls inlined, for AVX2 as well; the processor at hand
+/// decides which runs. The same bits either way: no fused multiply-add.
+#if defined(__GNUC__) && defined(__x86_64__) && defined(__ELF__)
+#define VDB_SHELL_TWO_TARGETS __attribute__((target_clones("avx2", "default"), flatten))
+#else
+#define VDB_SHELL_TWO_TARGETS
+#endif
