@@ -119,17 +119,21 @@ TEST(Walls, StandWhereTheVerticesAreOnTheirRightSide)
 
 TEST(Walls, AreTheSameForAnyNumberOfThreads)
 {
-    std::vector<Wall> first;
+    Walls first;
     for (const std::size_t threads : {1, 2, 7}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         const auto shell = thick_torus();
         Walls walls;
         raise_walls(shell->state, std::vector<std::uint8_t>(shell->state.b.size(), 0), walls);
-        if (first.empty())
-            first = walls.wall;
-        ASSERT_EQ(walls.wall.size(), first.size());
-        for (std::size_t i = 0; i < first.size(); ++i)
-            ASSERT_TRUE(walls.wall[i].n == first[i].n && walls.wall[i].d == first[i].d) << i;
+        if (first.wall.empty())
+            first = walls;
+        ASSERT_EQ(walls.first, first.first);
+        ASSERT_EQ(walls.side, first.side);
+        ASSERT_EQ(walls.locked, first.locked);
+        ASSERT_EQ(walls.wall.size(), first.wall.size());
+        for (std::size_t i = 0; i < first.wall.size(); ++i)
+            ASSERT_TRUE(walls.wall[i].n == first.wall[i].n && walls.wall[i].d == first.wall[i].d)
+                << i;
     }
 }
 

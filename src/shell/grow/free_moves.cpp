@@ -80,11 +80,12 @@ void wall_bounds(const GrowState& s, const Walls& w, int v, Bounds& bounds)
 {
     const double range = kSoftRange * s.reach[v];
     const std::size_t first = bounds.size();
-    for (const Wall& wall : walls_of(w, v)) {
+    all_walls_of(w, v, [&](const Wall& wall) {
         const double value = wall.value(s.b[v]);
         if (value < range)
             bounds.add_unit(wall.n, value);
-    }
+        return true;
+    });
     const auto count = static_cast<float>(bounds.size() - first);
     if (count > kWallWeight)
         bounds.weigh(first, kWallWeight / count);

@@ -31,11 +31,12 @@ bool awake(const GrowState& s, const Lines& lines, int v)
 double room_to_walls(const Walls& w, int v, const Vec3d& b, const Vec3d& x)
 {
     double room = 2;
-    for (const Wall& wall : walls_of(w, v)) {
+    all_walls_of(w, v, [&](const Wall& wall) {
         const double here = wall.value(b), there = wall.value(x);
         if (there < here)
             room = std::min(room, here / (here - there));
-    }
+        return true;
+    });
     return room;
 }
 

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace vdb_shell::growth
@@ -16,17 +18,17 @@ namespace
 
 constexpr std::size_t kChunk = 8; ///< groups of faces whose walls are listed together
 
-/// A wall before it is handed to the vertices: corners 0..2 of face f lie where value > 0, those of
-/// inner face g where it is < 0.
-struct Barrier {
-    Wall wall;
+/// Whose wall it is: corners 0..2 of face f lie where value > 0, those of inner face g where it is
+/// < 0.
+struct Owners {
     int f, g;                 ///< g: -1 for an outer triangle
     std::uint8_t reached = 0; ///< bit k: corner k of f, bit 3 + k: corner k of g
 };
 
 struct Chunk {
-    std::vector<Barrier> barriers;
-    std::vector<int> locked; ///< faces
+    std::vector<Wall> wall;
+    std::vector<Owners> owners; ///< of each wall
+    std::vector<int> locked;    ///< faces
 };
 
 struct Stock {
@@ -123,14 +125,17 @@ private:
             return;
         }
         const double at = slab.hi + std::max(share * slab.gap, 2 * slack_);
-        Barrier barrier{{slab.n, Vec3d(slab.n).dot(body.corner[0]) + at}, f, g};
+        const Wall wall{slab.n, Vec3d(slab.n).dot(body.corner[0]) + at};
+        Owners owners{f, g};
         for (int k = 0; k < 3; ++k) {
-            barrier.reached |= std::uint8_t(reaches(barrier.wall, f, k, 1.0) << k);
+            owners.reached |= std::uint8_t(reaches(wall, f, k, 1.0) << k);
             if (share > 0)
-                barrier.reached |= std::uint8_t(reaches(barrier.wall, g, k, -1.0) << (3 + k));
+                owners.reached |= std::uint8_t(reaches(wall, g, k, -1.0) << (3 + k));
         }
-        if (barrier.reached)
-            out.barriers.push_back(barrier);
+        if (!owners.reached)
+            return;
+        out.wall.push_back(wall);
+        out.owners.push_back(owners);
     }
 
     bool reaches(const Wall& wall, int f, int k, double side) const
@@ -145,29 +150,46 @@ private:
     double slack_;
 };
 
-template <class Visit> void for_each_reached(const GrowState& s, const Barrier& b, Visit&& visit)
+template <class Visit> void for_each_reached(const GrowState& s, const Owners& o, Visit&& visit)
 {
     for (int k = 0; k < 3; ++k) {
-        if (b.reached >> k & 1)
-            visit(s.mesh->corner(b.f, k), 0u);
-        if (b.reached >> (3 + k) & 1)
-            visit(s.mesh->corner(b.g, k), 1u);
+        if (o.reached >> k & 1)
+            visit(s.mesh->corner(o.f, k), 0U);
+        if (o.reached >> (3 + k) & 1)
+            visit(s.mesh->corner(o.g, k), 1U);
     }
 }
 
-/// Lists by vertex, in the order of the chunks whatever thread wrote first.
-void hand_out(const GrowState& s, std::vector<Chunk> chunks, Walls& w)
+/// Puts the walls one after another, in the order of the chunks; gives back where each begins.
+std::vector<std::size_t> gather_walls(std::vector<Chunk>& chunks, Walls& w)
 {
-    const std::size_t vertices = s.b.size();
-    std::vector<std::atomic<std::uint32_t>> count(vertices);
     std::vector<std::size_t> base(chunks.size() + 1, 0);
     for (std::size_t c = 0; c < chunks.size(); ++c)
-        base[c + 1] = base[c] + chunks[c].barriers.size();
+        base[c + 1] = base[c] + chunks[c].wall.size();
+    assert(base.back() < std::numeric_limits<std::uint32_t>::max() / 2);
+    w.wall.resize(base.back());
     for_each_index(
         chunks.size(),
         [&](std::size_t c) {
-            for (const Barrier& b : chunks[c].barriers)
-                for_each_reached(s, b, [&](int v, unsigned) {
+            std::copy(chunks[c].wall.begin(), chunks[c].wall.end(),
+                      w.wall.begin() + std::ptrdiff_t(base[c]));
+            chunks[c].wall = {};
+        },
+        4);
+    return base;
+}
+
+/// Lists by vertex, in the order of the walls whatever thread wrote first.
+void hand_out(const GrowState& s, std::vector<Chunk> chunks, Walls& w)
+{
+    const std::vector<std::size_t> base = gather_walls(chunks, w);
+    const std::size_t vertices = s.b.size();
+    std::vector<std::atomic<std::uint32_t>> count(vertices);
+    for_each_index(
+        chunks.size(),
+        [&](std::size_t c) {
+            for (const Owners& o : chunks[c].owners)
+                for_each_reached(s, o, [&](int v, unsigned) {
                     count[v].fetch_add(1, std::memory_order_relaxed);
                 });
         },
@@ -176,33 +198,20 @@ void hand_out(const GrowState& s, std::vector<Chunk> chunks, Walls& w)
     w.first[0] = 0;
     for (std::size_t v = 0; v < vertices; ++v)
         w.first[v + 1] = w.first[v] + count[v].exchange(0, std::memory_order_relaxed);
-    struct Entry {
-        std::size_t key; ///< number of the barrier and side
-        Wall wall;
-        bool operator<(const Entry& o) const { return key < o.key; }
-    };
-    std::vector<Entry> entry(w.first[vertices]);
+    w.side.resize(w.first[vertices]);
     for_each_index(
         chunks.size(),
         [&](std::size_t c) {
-            for (std::size_t i = 0; i < chunks[c].barriers.size(); ++i) {
-                const Barrier& b = chunks[c].barriers[i];
-                for_each_reached(s, b, [&](int v, unsigned side) {
-                    const std::size_t slot =
-                        w.first[v] + count[v].fetch_add(1, std::memory_order_relaxed);
-                    entry[slot] = {2 * (base[c] + i) + side,
-                                   side == 0 ? b.wall : Wall{-b.wall.n, -b.wall.d}};
+            for (std::size_t i = 0; i < chunks[c].owners.size(); ++i)
+                for_each_reached(s, chunks[c].owners[i], [&](int v, unsigned side) {
+                    w.side[w.first[v] + count[v].fetch_add(1, std::memory_order_relaxed)] =
+                        static_cast<std::uint32_t>(2 * (base[c] + i) + side);
                 });
-            }
         },
         4);
-    chunks = {}; // there may be a gigabyte of them
-    w.wall.resize(entry.size());
     for_each_index(vertices, [&](std::size_t v) {
-        std::sort(entry.begin() + std::ptrdiff_t(w.first[v]),
-                  entry.begin() + std::ptrdiff_t(w.first[v + 1]));
-        for (std::size_t i = w.first[v]; i < w.first[v + 1]; ++i)
-            w.wall[i] = entry[i].wall;
+        std::sort(w.side.begin() + std::ptrdiff_t(w.first[v]),
+                  w.side.begin() + std::ptrdiff_t(w.first[v + 1]));
     });
 }
 

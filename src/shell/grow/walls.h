@@ -17,16 +17,24 @@ struct Wall {
 };
 
 struct Walls {
-    std::vector<std::size_t> first; ///< vertex -> its first wall; one past the end
-    std::vector<Wall> wall;         ///< of all vertices
+    std::vector<Wall> wall;
+    std::vector<std::size_t> first;  ///< vertex -> its first side; one past the end
+    std::vector<std::uint32_t> side; ///< of all vertices: twice the wall, one more where value < 0
     std::vector<std::uint8_t>
         locked;       ///< by vertex: must not move, something is too near for a wall
     double slack = 0; ///< bound on the rounding error of Wall::value
 };
 
-inline Slice<Wall> walls_of(const Walls& w, int v)
+/// Calls visit(wall) for each wall of vertex v, turned so that v stays where its value is > 0,
+/// until one returns false; whether none did.
+template <class Visit> bool all_walls_of(const Walls& w, int v, Visit&& visit)
 {
-    return {w.wall.data() + w.first[v], w.wall.data() + w.first[v + 1]};
+    for (std::size_t i = w.first[v]; i < w.first[v + 1]; ++i) {
+        const Wall& wall = w.wall[w.side[i] / 2];
+        if (!visit(w.side[i] % 2 == 0 ? wall : Wall{-wall.n, -wall.d}))
+            return false;
+    }
+    return true;
 }
 
 /// Raises a wall between each inner triangle and every other triangle, inner or outer, that it
@@ -40,10 +48,7 @@ void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w)
 /// On the right side of all its walls, for certain.
 inline bool between_walls(const Walls& w, int v, const Vec3d& x)
 {
-    for (const Wall& wall : walls_of(w, v))
-        if (!(wall.value(x) > w.slack))
-            return false;
-    return true;
+    return all_walls_of(w, v, [&](const Wall& wall) { return wall.value(x) > w.slack; });
 }
 
 } // namespace vdb_shell::growth
