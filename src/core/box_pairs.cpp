@@ -5,7 +5,6 @@
 
 #include <embree3/rtcore.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -40,6 +39,30 @@ void store_pairs(void* user, RTCCollision* collisions, unsigned int count)
         if (low < high && collector.keep(low, high))
             pairs.push_back({low, high});
     }
+}
+
+/// All pairs in order, each once: dealt out by their first index, of which each has few.
+std::vector<Pair> in_order(const tbb::enumerable_thread_specific<std::vector<Pair>>& parts,
+                           std::size_t boxes)
+{
+    std::vector<std::size_t> ends(boxes + 1,
+                                  0); // first the numbers, then the starts, then the ends
+    for (const std::vector<Pair>& part : parts)
+        for (const Pair& pair : part)
+            ++ends[pair[0] + 1];
+    for (std::size_t b = 0; b < boxes; ++b)
+        ends[b + 1] += ends[b];
+    std::vector<Pair> pairs(ends.back());
+    for (const std::vector<Pair>& part : parts)
+        for (const Pair& pair : part)
+            pairs[ends[pair[0]]++] = pair;
+    for_each_index(boxes, [&](std::size_t b) {
+        const auto begin = pairs.begin() + std::ptrdiff_t(b == 0 ? 0 : ends[b - 1]);
+        std::sort(begin, pairs.begin() + std::ptrdiff_t(ends[b]),
+                  [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
+    });
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
 }
 
 } // namespace
@@ -90,12 +113,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes, const KeepPai
     if (!ok)
         throw std::runtime_error("Embree could not collide the bounding boxes");
 
-    std::vector<Pair> pairs;
-    for (const std::vector<Pair>& part : collector.by_thread)
-        pairs.insert(pairs.end(), part.begin(), part.end());
-    tbb::parallel_sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    return pairs;
+    return in_order(collector.by_thread, boxes.size());
 }
 
 } // namespace vdb_shell
