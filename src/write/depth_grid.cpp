@@ -213,18 +213,61 @@ struct Job {
     }
 };
 
+/// Whether a line of the column of leaves may meet the tet: each half-space is asked for the
+/// heights that it leaves the column, at its best place.
+bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
+{
+    // Far above the rounding error of heights and weights.
+    constexpr double kHeightSlack = 1e-6, kRounding = 1e-13;
+    const double x_low = std::max(tet.low.x(), leaf_x) - tet.origin[0];
+    const double x_high = std::min(tet.high.x(), leaf_x + kLeafSize - 1) - tet.origin[0];
+    const double y_low = std::max(tet.low.y(), leaf_y) - tet.origin[1];
+    const double y_high = std::min(tet.high.y(), leaf_y + kLeafSize - 1) - tet.origin[1];
+    const double size = (tet.high - tet.low).asVec3d().length() + 1.0;
+    double low = tet.low.z() - tet.origin[2], high = tet.high.z() - tet.origin[2];
+    for (const Affine& weight : tet.barycentric) {
+        const Vec3d& slope = weight.slope;
+        const double slack =
+            2 * kSlack +
+            kRounding * size * (std::abs(slope[0]) + std::abs(slope[1]) + std::abs(slope[2]));
+        const double best = weight.value + slope[0] * (slope[0] > 0.0 ? x_high : x_low) +
+                            slope[1] * (slope[1] > 0.0 ? y_high : y_low) + slack;
+        if (slope[2] > 0.0)
+            low = std::max(low, -best / slope[2] - kHeightSlack);
+        else if (slope[2] < 0.0)
+            high = std::min(high, -best / slope[2] + kHeightSlack);
+        else if (best < 0.0)
+            return false;
+    }
+    return low <= high;
+}
+
+void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
+{
+    if (tet.flat || tet.low.x() > tet.high.x() || tet.low.y() > tet.high.y() ||
+        tet.low.z() > tet.high.z())
+        return;
+    for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
+        for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
+            if (may_meet(tet, x * kLeafSize, y * kLeafSize))
+                jobs.push_back({x, y, index});
+}
+
 std::vector<Job> make_jobs(const std::vector<IndexTet>& tets)
 {
+    constexpr std::size_t kTetsInPart = 256;
+    std::vector<std::vector<Job>> parts((tets.size() + kTetsInPart - 1) / kTetsInPart);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t i) {
+            const std::size_t end = std::min((i + 1) * kTetsInPart, tets.size());
+            for (std::size_t t = i * kTetsInPart; t < end; ++t)
+                add_jobs(tets[t], std::uint32_t(t), parts[i]);
+        },
+        1);
     std::vector<Job> jobs;
-    for (std::size_t t = 0; t < tets.size(); ++t) {
-        const IndexTet& tet = tets[t];
-        if (tet.flat || tet.low.z() > tet.high.z())
-            continue;
-        for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
-            for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
-                if (tet.low.x() <= tet.high.x() && tet.low.y() <= tet.high.y())
-                    jobs.push_back({x, y, std::uint32_t(t)});
-    }
+    for (const std::vector<Job>& part : parts)
+        jobs.insert(jobs.end(), part.begin(), part.end());
     tbb::parallel_sort(jobs.begin(), jobs.end());
     return jobs;
 }
