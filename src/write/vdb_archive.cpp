@@ -71,15 +71,28 @@ std::int64_t size_before_values(std::int8_t flag)
     return size;
 }
 
+/// What LeafNode::writeBuffers writes; that one sorts out active values voxel by voxel even where
+/// all are active, as in most leaves of a fat solid.
+void write_leaf(std::ostream& out, const Leaf& leaf, const StreamMetadata& settings)
+{
+    if (!leaf.isDense() || settings.halfFloat()) {
+        leaf.writeBuffers(out, settings.halfFloat());
+        return;
+    }
+    leaf.valueMask().save(out);
+    out.put(char(openvdb::io::NO_MASK_OR_INACTIVE_VALS));
+    openvdb::io::writeData(out, leaf.buffer().data(), Leaf::SIZE, settings.compression());
+}
+
 /// Leaves `begin` to `end`, and what a reader wants to know about them before it loads them.
-std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end, bool half,
+std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
                        const StreamMetadata& settings, DelayedLoadMetadata& sizes)
 {
     Stream stream(settings);
     std::vector<std::size_t> starts;
     for (std::size_t i = begin; i < end; ++i) {
         starts.push_back(std::size_t(stream.out.tellp()));
-        leaves.leaf(i).writeBuffers(stream.out, half);
+        write_leaf(stream.out, leaves.leaf(i), settings);
     }
     starts.push_back(std::size_t(stream.out.tellp()));
     std::string bytes = stream.out.str();
@@ -109,8 +122,8 @@ std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetada
         parts.size(),
         [&](std::size_t i) {
             const std::size_t begin = i * kLeavesInPart;
-            parts[i] = leaf_bytes(leaves, begin, std::min(begin + kLeavesInPart, count),
-                                  grid.saveFloatAsHalf(), settings, sizes);
+            parts[i] =
+                leaf_bytes(leaves, begin, std::min(begin + kLeavesInPart, count), settings, sizes);
         },
         1);
     return parts;
