@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/box_pairs.h"
 
+#include "core/deal_out.h"
 #include "core/parallel.h"
 
 #include <embree3/rtcore.h>
@@ -39,30 +40,6 @@ void store_pairs(void* user, RTCCollision* collisions, unsigned int count)
         if (low < high && collector.keep(low, high))
             pairs.push_back({low, high});
     }
-}
-
-/// All pairs in order, each once: dealt out by their first index, of which each has few.
-std::vector<Pair> in_order(const tbb::enumerable_thread_specific<std::vector<Pair>>& parts,
-                           std::size_t boxes)
-{
-    std::vector<std::size_t> ends(boxes + 1,
-                                  0); // first the numbers, then the starts, then the ends
-    for (const std::vector<Pair>& part : parts)
-        for (const Pair& pair : part)
-            ++ends[pair[0] + 1];
-    for (std::size_t b = 0; b < boxes; ++b)
-        ends[b + 1] += ends[b];
-    std::vector<Pair> pairs(ends.back());
-    for (const std::vector<Pair>& part : parts)
-        for (const Pair& pair : part)
-            pairs[ends[pair[0]]++] = pair;
-    for_each_index(boxes, [&](std::size_t b) {
-        const auto begin = pairs.begin() + std::ptrdiff_t(b == 0 ? 0 : ends[b - 1]);
-        std::sort(begin, pairs.begin() + std::ptrdiff_t(ends[b]),
-                  [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
-    });
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    return pairs;
 }
 
 } // namespace
@@ -113,7 +90,11 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes, const KeepPai
     if (!ok)
         throw std::runtime_error("Embree could not collide the bounding boxes");
 
-    return in_order(collector.by_thread, boxes.size());
+    auto pairs = deal_out<Pair>(
+        collector.by_thread, boxes.size(), [](const Pair& pair) { return pair[0]; },
+        [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
 }
 
 } // namespace vdb_shell

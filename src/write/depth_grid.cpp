@@ -2,14 +2,14 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include "core/deal_out.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -253,6 +253,31 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
                 jobs.push_back({x, y, index});
 }
 
+std::vector<Job> in_order(const std::vector<std::vector<Job>>& parts)
+{
+    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+    std::int64_t x_low = kNone, y_low = kNone, x_high = -x_low, y_high = -y_low;
+    for (const std::vector<Job>& part : parts)
+        for (const Job& job : part) {
+            x_low = std::min<std::int64_t>(x_low, job.x),
+            x_high = std::max<std::int64_t>(x_high, job.x);
+            y_low = std::min<std::int64_t>(y_low, job.y),
+            y_high = std::max<std::int64_t>(y_high, job.y);
+        }
+    if (x_low > x_high)
+        return {};
+    // Columns by number, many far apart sharing one.
+    constexpr std::int64_t kMostKeys = 1 << 16;
+    const std::int64_t width = y_high - y_low + 1, columns = (x_high - x_low + 1) * width;
+    const std::int64_t columns_to_a_key = 1 + columns / kMostKeys;
+    return deal_out<Job>(
+        parts, std::size_t(columns / columns_to_a_key + 1),
+        [&](const Job& job) {
+            return ((job.x - x_low) * width + (job.y - y_low)) / columns_to_a_key;
+        },
+        std::less<>());
+}
+
 std::vector<Job> make_jobs(const std::vector<IndexTet>& tets)
 {
     constexpr std::size_t kTetsInPart = 256;
@@ -265,11 +290,7 @@ std::vector<Job> make_jobs(const std::vector<IndexTet>& tets)
                 add_jobs(tets[t], std::uint32_t(t), parts[i]);
         },
         1);
-    std::vector<Job> jobs;
-    for (const std::vector<Job>& part : parts)
-        jobs.insert(jobs.end(), part.begin(), part.end());
-    tbb::parallel_sort(jobs.begin(), jobs.end());
-    return jobs;
+    return in_order(parts);
 }
 
 /// Where each column's jobs begin, and the end of all.
