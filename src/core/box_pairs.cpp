@@ -93,7 +93,8 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes, const KeepPai
     auto pairs = deal_out<Pair>(
         collector.by_thread, boxes.size(), [](const Pair& pair) { return pair[0]; },
         [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    const auto same = [](const Pair& x, const Pair& y) { return x[0] == y[0] && x[1] == y[1]; };
+    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
     return pairs;
 }
 

@@ -171,7 +171,7 @@ void fill_leaf(Leaf& leaf, const IndexTet& tet, const TetInColumn& part)
         const int begin = std::max(line.first - z, 0), end = std::min(line.last - z + 1, kLeafSize);
         if (begin >= end)
             continue;
-        float* const values = leaf.buffer().data() + line.row * kLeafSize + begin;
+        float* const values = leaf.buffer().data() + std::ptrdiff_t(line.row) * kLeafSize + begin;
         const int rows = end - begin;
         for (int k = 0; k < rows; ++k) {
             double depth = tet.depth.value + (line.depth + along_z[begin + k]);
