@@ -41,7 +41,7 @@ FloatGrid::Ptr named(FloatGrid::Ptr grid, const char* name)
 /// tiles, several branches, values that do not compress.
 FloatGrid::Ptr grid_of_odd_leaves()
 {
-    const auto grid = named(FloatGrid::create(2.5f), "odd");
+    auto grid = named(FloatGrid::create(2.5f), "odd");
     const float inactive[][3] = {{2.5f, 2.5f, 2.5f},  {-2.5f, -2.5f, -2.5f}, {7.0f, 7.0f, 7.0f},
                                  {2.5f, -2.5f, 2.5f}, {2.5f, 7.0f, 2.5f},    {7.0f, 9.0f, 7.0f},
                                  {7.0f, 8.0f, 9.0f}};
