@@ -64,6 +64,7 @@ void HalfSpaces::add(const Vec3d& point, const Vec3d& outward, double size, doub
     // times 2^-53 * size, and that of a distance times it as much times the span. Four digits more:
     constexpr double kSlack = 1e-12;
     planes_[count_++] = {point, outward, kSlack * size * span};
+    height_slack_ = kSlack * span;
 }
 
 HalfSpaces HalfSpaces::of_tet(const std::array<Vec3s, 4>& corners, int sign, double span)

@@ -6,6 +6,7 @@
 
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -62,14 +63,24 @@ public:
     static HalfSpaces of_tet(const std::array<openvdb::Vec3s, 4>& corners, int sign, double span);
     static HalfSpaces of_triangle(const std::array<openvdb::Vec3s, 3>& corners, double span);
 
-    bool may_meet(const openvdb::Vec3d& centre, const openvdb::Vec3d& half_size) const
+    /// The heights at which the column [low, high], of x and y, may meet: shortens [bottom, top];
+    /// false when there are none. Both ends count by themselves: a box that holds them both, in
+    /// whatever order, meets each half-space for all that is known.
+    bool clip_column(const std::array<double, 2>& low, const std::array<double, 2>& high,
+                     double& bottom, double& top) const
     {
         for (std::size_t i = 0; i < count_; ++i) {
             const Plane& plane = planes_[i];
             const openvdb::Vec3d& n = plane.outward;
-            const double reach = std::abs(n[0]) * half_size[0] + std::abs(n[1]) * half_size[1] +
-                                 std::abs(n[2]) * half_size[2] + plane.slack;
-            if (n.dot(centre - plane.point) > reach)
+            // The column's deepest place in the half-space at the height of the plane's point.
+            const double depth = n[0] * ((n[0] > 0 ? low[0] : high[0]) - plane.point[0]) +
+                                 n[1] * ((n[1] > 0 ? low[1] : high[1]) - plane.point[1]) -
+                                 plane.slack;
+            if (n[2] > 0)
+                top = std::min(top, plane.point[2] - depth / n[2] + height_slack_);
+            else if (n[2] < 0)
+                bottom = std::max(bottom, plane.point[2] - depth / n[2] - height_slack_);
+            else if (depth > 0)
                 return false;
         }
         return true;
@@ -84,38 +95,29 @@ private:
 
     std::array<Plane, 5> planes_;
     std::size_t count_ = 0;
+    double height_slack_ = 0; ///< the same for a height
 };
 
-/// visit(cell index) for each cell of the range that `shape` may meet, by halving the range.
+/// visit(first, last) for each run of cells, one above the other, of the range that `shape` may
+/// meet.
 template <typename Visit>
-void visit_cells(const CellGrid& grid, const CellRange& range, const HalfSpaces& shape,
-                 const Visit& visit)
+void visit_runs(const CellGrid& grid, const CellRange& range, const HalfSpaces& shape,
+                const Visit& visit)
 {
-    openvdb::Vec3d centre, half_size;
-    std::size_t longest = 0;
-    std::uint32_t longest_extent = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<int>(axis);
-        const double low = grid.planes[axis][range.first[axis]];
-        const double high = grid.planes[axis][range.last[axis] + 1];
-        centre[a] = 0.5 * (low + high);
-        half_size[a] = 0.5 * (high - low);
-        if (range.last[axis] - range.first[axis] > longest_extent) {
-            longest = axis;
-            longest_extent = range.last[axis] - range.first[axis];
+    const std::vector<float>&x = grid.planes[0], &y = grid.planes[1], &z = grid.planes[2];
+    for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
+        for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j) {
+            double bottom = z[range.first[2]], top = z[range.last[2] + 1];
+            if (!shape.clip_column({x[i], y[j]}, {x[i + 1], y[j + 1]}, bottom, top))
+                continue;
+            std::uint32_t first = range.first[2], last = range.last[2];
+            while (first <= last && z[first + 1] < bottom)
+                ++first;
+            while (first < last && z[last] > top)
+                --last;
+            if (first <= last && z[last] <= top)
+                visit(grid.cell(i, j, first), grid.cell(i, j, last));
         }
-    }
-    if (!shape.may_meet(centre, half_size))
-        return;
-    if (longest_extent == 0) {
-        visit(grid.cell(range.first[0], range.first[1], range.first[2]));
-        return;
-    }
-    CellRange lower = range, upper = range;
-    lower.last[longest] = range.first[longest] + longest_extent / 2;
-    upper.first[longest] = lower.last[longest] + 1;
-    visit_cells(grid, lower, shape, visit);
-    visit_cells(grid, upper, shape, visit);
 }
 
 } // namespace vdb_shell

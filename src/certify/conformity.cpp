@@ -2,11 +2,11 @@
 #include "vdb_shell/certify/conformity.h"
 
 #include "certify/tet_faces.h"
-
-#include <tbb/parallel_sort.h>
+#include "core/deal_out.h"
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -159,7 +159,9 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
         for (std::size_t corner = 0; corner < 4; ++corner)
             sides.push_back(side_of(tet_face(mesh.tets[i], corner), i, false));
     append_surface_sides(free, mesh, sides, findings);
-    tbb::parallel_sort(sides.begin(), sides.end());
+    const auto smallest_corner = [](const FaceSide& side) { return side.corners[0]; };
+    sides = deal_out<FaceSide>(std::array{std::move(sides)}, mesh.points.size(), smallest_corner,
+                               std::less<>());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
             ++last;

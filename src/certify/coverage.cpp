@@ -57,16 +57,16 @@ FloatBox box_of(const std::array<Vec3s, 4>& p)
             maxComponent(maxComponent(p[0], p[1]), maxComponent(p[2], p[3]))};
 }
 
-/// visit(cell) for all cells that the tet may meet; none for a flat tet.
+/// visit(first, last) for all runs of cells that the tet may meet; none for a flat tet.
 template <typename Visit>
-void visit_cells_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
+void visit_runs_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
 {
     if (scene.sign[tet] == 0)
         return;
     const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
     const FloatBox box = box_of(corners);
-    visit_cells(scene.grid, scene.grid.overlapped(box.low, box.high),
-                HalfSpaces::of_tet(corners, scene.sign[tet], scene.span), visit);
+    visit_runs(scene.grid, scene.grid.overlapped(box.low, box.high),
+               HalfSpaces::of_tet(corners, scene.sign[tet], scene.span), visit);
 }
 
 bool strictly_inside(const std::array<Vec3s, 4>& corners, int sign, const Vec3s& point)
@@ -110,8 +110,9 @@ Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t
     scene.solid = classify_cells(scene.grid, surface);
     std::vector<std::atomic<bool>> met_by_tet(scene.grid.cells());
     for_each_index(tets.tets.size(), [&](std::size_t i) {
-        visit_cells_of_tet(scene, i, [&](std::uint32_t cell) {
-            met_by_tet[cell].store(true, std::memory_order_relaxed);
+        visit_runs_of_tet(scene, i, [&](std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t cell = first; cell <= last; ++cell)
+                met_by_tet[cell].store(true, std::memory_order_relaxed);
         });
     });
     for (std::uint32_t cell = 0; cell < scene.grid.cells(); ++cell)
@@ -192,8 +193,8 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
     for_each_index(scene.tets.tets.size(), [&](std::size_t tet) {
         const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
         const FloatBox box = box_of(corners);
-        visit_cells_of_tet(scene, tet, [&](std::uint32_t cell) {
-            for (std::uint32_t i = sorted.offset[cell]; i < sorted.offset[cell + 1]; ++i) {
+        visit_runs_of_tet(scene, tet, [&](std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t i = sorted.offset[first]; i < sorted.offset[last + 1]; ++i) {
                 std::atomic<std::uint32_t>& count = hits[sorted.point[i]];
                 if (count.load(std::memory_order_relaxed) >= sorted.enough[i])
                     continue;

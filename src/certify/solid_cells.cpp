@@ -29,8 +29,11 @@ std::vector<std::vector<std::uint32_t>> cells_by_triangle(const CellGrid& grid,
         using openvdb::math::minComponent;
         const CellRange range = grid.overlapped(minComponent(minComponent(p[0], p[1]), p[2]),
                                                 maxComponent(maxComponent(p[0], p[1]), p[2]));
-        visit_cells(grid, range, HalfSpaces::of_triangle(p, span),
-                    [&](std::uint32_t cell) { cells[t].push_back(cell); });
+        visit_runs(grid, range, HalfSpaces::of_triangle(p, span),
+                   [&](std::uint32_t first, std::uint32_t last) {
+                       for (std::uint32_t cell = first; cell <= last; ++cell)
+                           cells[t].push_back(cell);
+                   });
     });
     return cells;
 }

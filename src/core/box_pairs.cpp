@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/box_pairs.h"
 
+#include "core/deal_out.h"
 #include "core/parallel.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -90,11 +90,11 @@ std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes, const KeepPai
     if (!ok)
         throw std::runtime_error("Embree could not collide the bounding boxes");
 
-    std::vector<Pair> pairs;
-    for (const std::vector<Pair>& part : collector.by_thread)
-        pairs.insert(pairs.end(), part.begin(), part.end());
-    tbb::parallel_sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    auto pairs = deal_out<Pair>(
+        collector.by_thread, boxes.size(), [](const Pair& pair) { return pair[0]; },
+        [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
+    const auto same = [](const Pair& x, const Pair& y) { return x[0] == y[0] && x[1] == y[1]; };
+    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
     return pairs;
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/topology.h"
 
-#include <tbb/parallel_sort.h>
+#include "core/deal_out.h"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -38,10 +40,15 @@ std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangl
                 {{std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(t), side, a < b});
         }
     }
-    tbb::parallel_sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
-        return std::tie(x.edge, x.triangle, x.side) < std::tie(y.edge, y.triangle, y.side);
-    });
-    return uses;
+    std::uint32_t vertices = 0;
+    for (const EdgeUse& use : uses)
+        vertices = std::max(vertices, use.edge[1] + 1);
+    return deal_out<EdgeUse>(
+        std::array{std::move(uses)}, vertices, [](const EdgeUse& use) { return use.edge[0]; },
+        [](const EdgeUse& x, const EdgeUse& y) {
+            return std::tie(x.edge[1], x.triangle, x.side) <
+                   std::tie(y.edge[1], y.triangle, y.side);
+        });
 }
 
 } // namespace vdb_shell

@@ -2,14 +2,14 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include "core/deal_out.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
-
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -79,58 +79,127 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     return tet;
 }
 
-/// Which voxels of the column over (x, y) are inside; false when none is.
-bool column_interval(const IndexTet& tet, int x, int y, int& first, int& last)
+/// Which voxels of each of eight lines along z are inside, `first` above `last` where none is.
+struct LineEnds {
+    std::array<int, kLeafSize> first, last;
+};
+
+/// The lines over x and y, y + 1 and so on: eight at once, as the processor does several together.
+LineEnds line_ends(const IndexTet& tet, int x, int y, int count)
 {
-    double low = tet.low.z(), high = tet.high.z();
-    const double dx = x - tet.origin[0], dy = y - tet.origin[1];
+    std::array<double, kLeafSize> low, high, dy;
+    for (int k = 0; k < count; ++k) {
+        low[k] = tet.low.z();
+        high[k] = tet.high.z();
+        dy[k] = y + k - tet.origin[1];
+    }
+    const double dx = x - tet.origin[0], z = tet.origin[2];
     for (const Affine& weight : tet.barycentric) {
-        const double at_origin =
-            weight.value + weight.slope[0] * dx + weight.slope[1] * dy + kSlack;
+        const double at_x = weight.value + weight.slope[0] * dx, of_y = weight.slope[1];
         const double slope = weight.slope[2];
         if (slope > 0.0)
-            low = std::max(low, tet.origin[2] - at_origin / slope);
+            for (int k = 0; k < count; ++k) {
+                const double bound = z - (at_x + of_y * dy[k] + kSlack) / slope;
+                low[k] = low[k] < bound ? bound : low[k];
+            }
         else if (slope < 0.0)
-            high = std::min(high, tet.origin[2] - at_origin / slope);
-        else if (at_origin < 0.0)
-            return false;
+            for (int k = 0; k < count; ++k) {
+                const double bound = z - (at_x + of_y * dy[k] + kSlack) / slope;
+                high[k] = bound < high[k] ? bound : high[k];
+            }
+        else
+            for (int k = 0; k < count; ++k)
+                high[k] = at_x + of_y * dy[k] + kSlack < 0.0 ? low[k] - 1.0 : high[k];
     }
-    if (!(low <= high))
-        return false;
-    first = int(std::ceil(low));
-    last = int(std::floor(high));
-    return first <= last;
+    // Bounds outside of the tet's box stay next to it, where they are integers that exist.
+    const double least = tet.low.z() - 1.0, most = tet.high.z() + 1.0;
+    LineEnds ends;
+    for (int k = 0; k < count; ++k) {
+        const double up = low[k] < most ? low[k] : most, down = high[k] > least ? high[k] : least;
+        const int floor_of_up = int(up), ceiling_of_down = int(down);
+        ends.first[k] = floor_of_up + (floor_of_up < up ? 1 : 0);
+        ends.last[k] = ceiling_of_down - (ceiling_of_down > down ? 1 : 0);
+    }
+    return ends;
 }
 
 /// A column of leaves under construction, by the z of their origins.
 using LeafColumn = std::map<int, std::unique_ptr<Leaf>>;
 
-void fill_voxel(LeafColumn& column, const IndexTet& tet, const Coord& at)
+/// The part of a tet over one column of leaves.
+struct TetInColumn {
+    struct Line {
+        int row, first, last; ///< x and y as a number of eight times eight, voxels inside
+        double depth;         ///< slope of depth times way from the tet's origin, of x and y
+    };
+    std::array<Line, std::size_t(kLeafSize* kLeafSize)> lines;
+    std::size_t count = 0;
+    int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
+};
+
+void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
 {
-    const int z = at.z() & ~(kLeafSize - 1);
-    std::unique_ptr<Leaf>& leaf = column[z];
-    if (!leaf)
-        leaf = std::make_unique<Leaf>(at, 0.0f, false);
-    const openvdb::Index offset = Leaf::coordToOffset(at);
-    // Tets come in ascending order: the smallest index has been here first.
-    if (leaf->isValueOn(offset))
-        return;
-    const double depth = tet.depth.value + tet.depth.slope.dot(at.asVec3d() - tet.origin);
-    leaf->setValueOn(offset, float(std::clamp(depth, 0.0, 1.0)));
+    const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
+    const int y_begin = std::max(tet.low.y(), leaf_y);
+    const int y_end = std::min(tet.high.y(), leaf_y + kLeafSize - 1);
+    for (int x = std::max(tet.low.x(), leaf_x); x <= x_end; ++x) {
+        const LineEnds ends = line_ends(tet, x, y_begin, y_end - y_begin + 1);
+        for (int y = y_begin; y <= y_end; ++y) {
+            const int k = y - y_begin;
+            if (ends.first[k] > ends.last[k])
+                continue;
+            const double depth =
+                tet.depth.slope[0] * (x - tet.origin[0]) + tet.depth.slope[1] * (y - tet.origin[1]);
+            part.lines[part.count++] = {(x - leaf_x) * kLeafSize + y - leaf_y, ends.first[k],
+                                        ends.last[k], depth};
+            part.low = std::min(part.low, ends.first[k]);
+            part.high = std::max(part.high, ends.last[k]);
+        }
+    }
+}
+
+/// Overwrites what is there: to be called with the tets in descending order, so that the smallest
+/// index stays.
+void fill_leaf(Leaf& leaf, const IndexTet& tet, const TetInColumn& part)
+{
+    const int z = leaf.origin().z();
+    std::array<double, kLeafSize> along_z;
+    for (int k = 0; k < kLeafSize; ++k)
+        along_z[k] = tet.depth.slope[2] * (z + k - tet.origin[2]);
+    for (std::size_t i = 0; i < part.count; ++i) {
+        const TetInColumn::Line& line = part.lines[i];
+        const int begin = std::max(line.first - z, 0), end = std::min(line.last - z + 1, kLeafSize);
+        if (begin >= end)
+            continue;
+        float* const values = leaf.buffer().data() + std::ptrdiff_t(line.row) * kLeafSize + begin;
+        const int rows = end - begin;
+        for (int k = 0; k < rows; ++k) {
+            double depth = tet.depth.value + (line.depth + along_z[begin + k]);
+            depth = depth < 0.0 ? 0.0 : depth;
+            values[k] = float(depth > 1.0 ? 1.0 : depth);
+        }
+        auto& bits = leaf.getValueMask().getWord<std::uint8_t>(openvdb::Index(line.row));
+        bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
+    }
 }
 
 void fill_column(LeafColumn& column, const IndexTet& tet, int leaf_x, int leaf_y)
 {
-    const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
-    const int y_end = std::min(tet.high.y(), leaf_y + kLeafSize - 1);
-    for (int x = std::max(tet.low.x(), leaf_x); x <= x_end; ++x)
-        for (int y = std::max(tet.low.y(), leaf_y); y <= y_end; ++y) {
-            int first = 0, last = -1;
-            if (!column_interval(tet, x, y, first, last))
-                continue;
-            for (int z = first; z <= last; ++z)
-                fill_voxel(column, tet, Coord(x, y, z));
-        }
+    TetInColumn part;
+    find_lines(tet, leaf_x, leaf_y, part);
+    if (part.count == 0)
+        return;
+    for (int z = part.low & ~(kLeafSize - 1); z <= part.high; z += kLeafSize) {
+        const bool any = std::any_of(
+            part.lines.begin(), part.lines.begin() + std::ptrdiff_t(part.count),
+            [&](const auto& line) { return line.first < z + kLeafSize && line.last >= z; });
+        if (!any)
+            continue;
+        std::unique_ptr<Leaf>& leaf = column[z];
+        if (!leaf)
+            leaf = std::make_unique<Leaf>(Coord(leaf_x, leaf_y, z), 0.0f, false);
+        fill_leaf(*leaf, tet, part);
+    }
 }
 
 /// One tet in one column of leaves; sorted by column, then tet.
@@ -144,20 +213,84 @@ struct Job {
     }
 };
 
+/// Whether a line of the column of leaves may meet the tet: each half-space is asked for the
+/// heights that it leaves the column, at its best place.
+bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
+{
+    // Far above the rounding error of heights and weights.
+    constexpr double kHeightSlack = 1e-6, kRounding = 1e-13;
+    const double x_low = std::max(tet.low.x(), leaf_x) - tet.origin[0];
+    const double x_high = std::min(tet.high.x(), leaf_x + kLeafSize - 1) - tet.origin[0];
+    const double y_low = std::max(tet.low.y(), leaf_y) - tet.origin[1];
+    const double y_high = std::min(tet.high.y(), leaf_y + kLeafSize - 1) - tet.origin[1];
+    const double size = (tet.high - tet.low).asVec3d().length() + 1.0;
+    double low = tet.low.z() - tet.origin[2], high = tet.high.z() - tet.origin[2];
+    for (const Affine& weight : tet.barycentric) {
+        const Vec3d& slope = weight.slope;
+        const double slack =
+            2 * kSlack +
+            kRounding * size * (std::abs(slope[0]) + std::abs(slope[1]) + std::abs(slope[2]));
+        const double best = weight.value + slope[0] * (slope[0] > 0.0 ? x_high : x_low) +
+                            slope[1] * (slope[1] > 0.0 ? y_high : y_low) + slack;
+        if (slope[2] > 0.0)
+            low = std::max(low, -best / slope[2] - kHeightSlack);
+        else if (slope[2] < 0.0)
+            high = std::min(high, -best / slope[2] + kHeightSlack);
+        else if (best < 0.0)
+            return false;
+    }
+    return low <= high;
+}
+
+void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
+{
+    if (tet.flat || tet.low.x() > tet.high.x() || tet.low.y() > tet.high.y() ||
+        tet.low.z() > tet.high.z())
+        return;
+    for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
+        for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
+            if (may_meet(tet, x * kLeafSize, y * kLeafSize))
+                jobs.push_back({x, y, index});
+}
+
+std::vector<Job> in_order(const std::vector<std::vector<Job>>& parts)
+{
+    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+    std::int64_t x_low = kNone, y_low = kNone, x_high = -x_low, y_high = -y_low;
+    for (const std::vector<Job>& part : parts)
+        for (const Job& job : part) {
+            x_low = std::min<std::int64_t>(x_low, job.x),
+            x_high = std::max<std::int64_t>(x_high, job.x);
+            y_low = std::min<std::int64_t>(y_low, job.y),
+            y_high = std::max<std::int64_t>(y_high, job.y);
+        }
+    if (x_low > x_high)
+        return {};
+    // Columns by number, many far apart sharing one.
+    constexpr std::int64_t kMostKeys = 1 << 16;
+    const std::int64_t width = y_high - y_low + 1, columns = (x_high - x_low + 1) * width;
+    const std::int64_t columns_to_a_key = 1 + columns / kMostKeys;
+    return deal_out<Job>(
+        parts, std::size_t(columns / columns_to_a_key + 1),
+        [&](const Job& job) {
+            return ((job.x - x_low) * width + (job.y - y_low)) / columns_to_a_key;
+        },
+        std::less<>());
+}
+
 std::vector<Job> make_jobs(const std::vector<IndexTet>& tets)
 {
-    std::vector<Job> jobs;
-    for (std::size_t t = 0; t < tets.size(); ++t) {
-        const IndexTet& tet = tets[t];
-        if (tet.flat || tet.low.z() > tet.high.z())
-            continue;
-        for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
-            for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
-                if (tet.low.x() <= tet.high.x() && tet.low.y() <= tet.high.y())
-                    jobs.push_back({x, y, std::uint32_t(t)});
-    }
-    tbb::parallel_sort(jobs.begin(), jobs.end());
-    return jobs;
+    constexpr std::size_t kTetsInPart = 256;
+    std::vector<std::vector<Job>> parts((tets.size() + kTetsInPart - 1) / kTetsInPart);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t i) {
+            const std::size_t end = std::min((i + 1) * kTetsInPart, tets.size());
+            for (std::size_t t = i * kTetsInPart; t < end; ++t)
+                add_jobs(tets[t], std::uint32_t(t), parts[i]);
+        },
+        1);
+    return in_order(parts);
 }
 
 /// Where each column's jobs begin, and the end of all.
@@ -221,7 +354,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
             end - begin,
             [&](std::size_t i) {
                 const std::size_t column = begin + i;
-                for (std::size_t j = starts[column]; j < starts[column + 1]; ++j)
+                for (std::size_t j = starts[column + 1]; j-- > starts[column];)
                     fill_column(filled[column], placed[jobs[j].tet], jobs[j].x * kLeafSize,
                                 jobs[j].y * kLeafSize);
             },

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "write/point_grids.h"
+#include "write/vdb_archive.h"
 #include "write/vdb_header.h"
 #include "write/vdb_metadata.h"
 
@@ -69,16 +70,6 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, boo
     if (half)
         require_half_range(*copy);
     return copy;
-}
-
-void write_grids(const fs::path& path, const openvdb::GridPtrVec& grids,
-                 const openvdb::MetaMap& metadata)
-{
-    openvdb::io::File file(path.string());
-    // What Houdini writes.
-    file.setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
-    file.write(grids, metadata);
-    file.close();
 }
 
 /// Opens a file whose outer structure has been checked.
@@ -178,11 +169,11 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     write_atomically(path, [&](const fs::path& temporary) {
         if (!beside)
             volumes.insert(volumes.end(), points.begin(), points.end());
-        write_grids(temporary, volumes, metadata);
+        write_vdb_archive(temporary, volumes, metadata);
         // Inside the other, so that neither file is renamed before both are on disk.
         if (beside)
             write_atomically(points_file_of(path), [&](const fs::path& temporary_points) {
-                write_grids(temporary_points, points, metadata);
+                write_vdb_archive(temporary_points, points, metadata);
             });
     });
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/deal_out.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using Item = std::array<std::uint32_t, 2>;
+
+std::vector<Item> mixed_items(std::size_t count, std::uint32_t keys)
+{
+    std::vector<Item> items;
+    for (std::uint32_t i = 0; i < count; ++i)
+        items.push_back({i * 7919U % keys, i * 104729U % 1009U});
+    return items;
+}
+
+std::vector<Item> dealt(const std::vector<std::vector<Item>>& parts, std::size_t keys)
+{
+    return deal_out<Item>(
+        parts, keys, [](const Item& item) { return item[0]; }, std::less<>());
+}
+
+TEST(DealOut, Sorts)
+{
+    for (const std::uint32_t keys : {1U, 2U, 100U, 5000U}) {
+        std::vector<Item> items = mixed_items(3000, keys);
+        const std::vector<Item> found = dealt({items}, keys);
+        std::sort(items.begin(), items.end());
+        EXPECT_EQ(found, items) << keys;
+    }
+}
+
+TEST(DealOut, DoesNotDependOnTheParts)
+{
+    const std::vector<Item> items = mixed_items(1000, 37);
+    const std::vector<Item> whole = dealt({items}, 37);
+    const auto middle = items.begin() + 321;
+    EXPECT_EQ(dealt({{middle, items.end()}, {}, {items.begin(), middle}}, 37), whole);
+}
+
+TEST(DealOut, OfNothingIsNothing)
+{
+    EXPECT_TRUE(dealt({}, 0).empty());
+    EXPECT_TRUE(dealt({{}, {}}, 5).empty());
+}
+
+} // namespace
+} // namespace vdb_shell
