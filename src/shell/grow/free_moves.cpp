@@ -80,10 +80,10 @@ void wall_bounds(const GrowState& s, const Walls& w, int v, Bounds& bounds)
 {
     const double range = kSoftRange * s.reach[v];
     const std::size_t first = bounds.size();
-    all_walls_of(w, v, [&](const Wall& wall) {
-        const double value = wall.value(s.b[v]);
+    all_walls_of(w, v, [&](const Wall& wall, double sign) {
+        const double value = sign * wall.value(s.b[v]);
         if (value < range)
-            bounds.add_unit(wall.n, value);
+            bounds.add_unit(wall.n * static_cast<float>(sign), value);
         return true;
     });
     const auto count = static_cast<float>(bounds.size() - first);

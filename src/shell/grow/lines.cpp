@@ -31,8 +31,8 @@ bool awake(const GrowState& s, const Lines& lines, int v)
 double room_to_walls(const Walls& w, int v, const Vec3d& b, const Vec3d& x)
 {
     double room = 2;
-    all_walls_of(w, v, [&](const Wall& wall) {
-        const double here = wall.value(b), there = wall.value(x);
+    all_walls_of(w, v, [&](const Wall& wall, double sign) {
+        const double here = sign * wall.value(b), there = sign * wall.value(x);
         if (there < here)
             room = std::min(room, here / (here - there));
         return true;

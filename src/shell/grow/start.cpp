@@ -72,8 +72,9 @@ void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool 
             for (std::size_t group = begin; group < end; ++group) {
                 s.inner_tree.for_each_overlap_of(
                     group, s.inner_tree, near, asked, [&](int f, int g) {
-                        // Each pair once where both are asked about.
-                        if (f == g || (asked(g) && g < f) || !of(f).meets_inner(g))
+                        // Each pair once where both are asked about, and only if it could mark one.
+                        if (f == g || (asked(g) && g < f) || (bad[f] && bad[g]) ||
+                            !of(f).meets_inner(g))
                             return;
                         mark(bad[f]);
                         mark(bad[g]);

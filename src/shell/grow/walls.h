@@ -30,8 +30,7 @@ struct Walls {
 template <class Visit> bool all_walls_of(const Walls& w, int v, Visit&& visit)
 {
     for (std::size_t i = w.first[v]; i < w.first[v + 1]; ++i) {
-        const Wall& wall = w.wall[w.side[i] / 2];
-        if (!visit(w.side[i] % 2 == 0 ? wall : Wall{-wall.n, -wall.d}))
+        if (!visit(w.wall[w.side[i] / 2], w.side[i] % 2 == 0 ? 1.0 : -1.0))
             return false;
     }
     return true;
@@ -48,7 +47,8 @@ void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w)
 /// On the right side of all its walls, for certain.
 inline bool between_walls(const Walls& w, int v, const Vec3d& x)
 {
-    return all_walls_of(w, v, [&](const Wall& wall) { return wall.value(x) > w.slack; });
+    return all_walls_of(
+        w, v, [&](const Wall& wall, double sign) { return sign * wall.value(x) > w.slack; });
 }
 
 } // namespace vdb_shell::growth
