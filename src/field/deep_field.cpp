@@ -3,6 +3,8 @@
 
 #include "field/nearest_on_triangle.h"
 
+#include <cmath>
+
 namespace vdb_shell
 {
 
@@ -11,26 +13,20 @@ using openvdb::Vec3d;
 namespace
 {
 
-// What a distance may be too long by, voxels: central differences then err by a hundredth.
-constexpr float kValueTolerance = 0.01F;
+// What a probed distance may be too long by, voxels.
 constexpr float kProbeTolerance = 0.05F;
 
 } // namespace
 
-float DeepField::value(const openvdb::Coord& at) const
+float DeepField::value(const openvdb::Coord& at, TriangleTree::Seed& seed) const
 {
-    const Vec3d world = voxel_ * at.asVec3d();
-    return -static_cast<float>((world - nearest_point(world, kValueTolerance)).length());
+    const float squared = tree_.nearest(voxel_ * at.asVec3d(), 0.0F, seed).squared;
+    return -static_cast<float>(voxel_) * std::sqrt(squared);
 }
 
-Vec3d DeepField::nearest_point(const Vec3d& world) const
+Vec3d DeepField::nearest_point(const Vec3d& world, TriangleTree::Seed& seed) const
 {
-    return nearest_point(world, kProbeTolerance);
-}
-
-Vec3d DeepField::nearest_point(const Vec3d& world, float tolerance_voxels) const
-{
-    const openvdb::Vec3I& t = mesh_.triangles[tree_.nearest(world, tolerance_voxels)];
+    const openvdb::Vec3I& t = mesh_.triangles[tree_.nearest(world, kProbeTolerance, seed).triangle];
     return nearest_on_triangle(
                {Vec3d(mesh_.points[t[0]]), Vec3d(mesh_.points[t[1]]), Vec3d(mesh_.points[t[2]])},
                world)

@@ -22,13 +22,11 @@ public:
     double voxel() const { return voxel_; }
 
     /// Value of a voxel inside; a pure function of mesh and voxel.
-    float value(const openvdb::Coord& at) const;
+    float value(const openvdb::Coord& at, TriangleTree::Seed& seed) const;
     /// The point of the surface nearest to a place, to a twentieth of a voxel in distance.
-    openvdb::Vec3d nearest_point(const openvdb::Vec3d& world) const;
+    openvdb::Vec3d nearest_point(const openvdb::Vec3d& world, TriangleTree::Seed& seed) const;
 
 private:
-    openvdb::Vec3d nearest_point(const openvdb::Vec3d& world, float tolerance_voxels) const;
-
     const TriangleMesh& mesh_;
     const openvdb::FloatGrid& band_;
     double voxel_;
@@ -52,7 +50,7 @@ public:
             return false;
         if (accessor_.probeValue(at, value))
             return true;
-        value = field_.value(at);
+        value = field_.value(at, seed_);
         accessor_.setValue(at, value);
         return true;
     }
@@ -62,6 +60,7 @@ private:
     openvdb::FloatGrid::ConstAccessor band_;
     openvdb::FloatGrid::Ptr known_;
     openvdb::FloatGrid::Accessor accessor_;
+    TriangleTree::Seed seed_ = TriangleTree::kNoSeed;
 };
 
 using DeepSampler = StencilSampler<DeepVoxels>;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field/triangle_tree.h"
 
+#include "core/parallel.h"
+
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace vdb_shell
@@ -14,16 +19,233 @@ using openvdb::Vec3f;
 namespace
 {
 
+using Wide = TriangleTree::Wide;
+constexpr std::size_t kWidth = TriangleTree::kWidth;
+constexpr std::uint32_t kLeafBit = 1U << 31;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::size_t kWidth = 4;
+// Below it a range is not worth another thread.
+constexpr std::size_t kWorthAThread = 4096;
+// By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
+// triangle seem nearer than its box.
+constexpr float kBoxSlack = 2e-6F;
 
-Four smaller(const Four& a, const Four& b)
+__attribute__((always_inline)) inline Wide smaller(const Wide& a, const Wide& b)
 {
     return a < b ? a : b;
 }
-Four larger(const Four& a, const Four& b)
+__attribute__((always_inline)) inline Wide larger(const Wide& a, const Wide& b)
 {
     return a > b ? a : b;
+}
+
+/// A bit of each byte whose lane is true.
+template <typename Mask>
+__attribute__((always_inline)) inline unsigned lanes_of(const Mask& mask)
+{
+    using Bits __attribute__((vector_size(4 * kWidth))) = std::int32_t;
+    Bits bits = mask & Bits{1, 2, 4, 8, 16, 32, 64, 128};
+    bits |= __builtin_shuffle(bits, Bits{4, 5, 6, 7, 0, 1, 2, 3});
+    bits |= __builtin_shuffle(bits, Bits{2, 3, 0, 1, 6, 7, 4, 5});
+    bits |= __builtin_shuffle(bits, Bits{1, 0, 3, 2, 5, 4, 7, 6});
+    return static_cast<unsigned>(bits[0]);
+}
+
+struct Item {
+    Vec3f centre;
+    std::uint32_t triangle;
+};
+
+/// A box in a frame of its own.
+struct TurnedBox {
+    std::array<Vec3f, 3> axis;
+    Vec3f low, high;
+};
+
+/// The tree's triangles in the order of its leaves.
+class Ordered
+{
+public:
+    Ordered(const TriangleMesh& mesh, const Vec3d& middle, double unit)
+        : mesh_(mesh), points_(mesh.points.size()), items_(mesh.triangles.size())
+    {
+        for_each_index(points_.size(), [&](std::size_t v) {
+            points_[v] = Vec3f((Vec3d(mesh.points[v]) - middle) / unit);
+        });
+        for_each_index(items_.size(), [&](std::size_t t) {
+            const openvdb::Vec3I& c = mesh.triangles[t];
+            items_[t] = {points_[c[0]] + points_[c[1]] + points_[c[2]], std::uint32_t(t)};
+        });
+        while (leaves_ * kWidth < items_.size())
+            leaves_ *= 2;
+        halve(0, leaves_);
+    }
+
+    std::size_t leaves() const { return leaves_; }
+    std::size_t begin(std::size_t leaf) const { return items_.size() * leaf / leaves_; }
+    std::uint32_t triangle(std::size_t item) const { return items_[item].triangle; }
+    std::array<Vec3f, 3> corners(std::size_t item) const
+    {
+        const openvdb::Vec3I& t = mesh_.triangles[items_[item].triangle];
+        return {points_[t[0]], points_[t[1]], points_[t[2]]};
+    }
+    TurnedBox box(std::size_t first_leaf, std::size_t last_leaf, float slack) const;
+
+private:
+    void halve(std::size_t first, std::size_t last)
+    {
+        if (last - first < 2)
+            return;
+        const std::size_t mid = (first + last) / 2;
+        const auto at = [&](std::size_t leaf) {
+            return items_.begin() + std::ptrdiff_t(begin(leaf));
+        };
+        Vec3f low(kInfinity), high(-kInfinity);
+        std::for_each(at(first), at(last), [&](const Item& item) {
+            low = openvdb::math::minComponent(low, item.centre);
+            high = openvdb::math::maxComponent(high, item.centre);
+        });
+        const int axis = static_cast<int>(openvdb::math::MaxIndex(high - low));
+        std::nth_element(at(first), at(mid), at(last), [axis](const Item& a, const Item& b) {
+            const float x = a.centre[axis], y = b.centre[axis];
+            return x != y ? x < y : a.triangle < b.triangle;
+        });
+        const auto left = [&] { halve(first, mid); };
+        const auto right = [&] { halve(mid, last); };
+        if (begin(last) - begin(first) > kWorthAThread) {
+            tbb::parallel_invoke(left, right);
+        } else {
+            left();
+            right();
+        }
+    }
+
+    const TriangleMesh& mesh_;
+    std::vector<Vec3f> points_;
+    std::vector<Item> items_;
+    std::size_t leaves_ = 1;
+};
+
+/// Along the sum of the triangles' normals, and in the plane across it along and across the
+/// longest spread of their corners.
+std::array<Vec3f, 3> frame_of(const Ordered& ordered, std::size_t begin, std::size_t end)
+{
+    Vec3d normal(0.0), centre(0.0);
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto [a, b, c] = ordered.corners(i);
+        normal += Vec3d(b - a).cross(Vec3d(c - a));
+        centre += Vec3d(a) + Vec3d(b) + Vec3d(c);
+    }
+    if (!normal.normalize())
+        normal = Vec3d(0, 0, 1);
+    centre /= 3.0 * static_cast<double>(end - begin);
+    Vec3d other(0.0);
+    other[static_cast<int>(openvdb::math::MinIndex(openvdb::math::Abs(normal)))] = 1;
+    const Vec3d x = normal.cross(other).unit(), y = normal.cross(x);
+    double xx = 0, xy = 0, yy = 0;
+    for (std::size_t i = begin; i < end; ++i)
+        for (const Vec3f& corner : ordered.corners(i)) {
+            const Vec3d off = Vec3d(corner) - centre;
+            const double u = off.dot(x), v = off.dot(y);
+            xx += u * u, xy += u * v, yy += v * v;
+        }
+    const double half = 0.5 * (xx - yy), root = std::sqrt(half * half + xy * xy);
+    Vec3d along = half > 0 ? (half + root) * x + xy * y : xy * x + (root - half) * y;
+    if (!along.normalize())
+        along = x;
+    return {Vec3f(along), Vec3f(normal.cross(along)), Vec3f(normal)};
+}
+
+TurnedBox Ordered::box(std::size_t first_leaf, std::size_t last_leaf, float slack) const
+{
+    const std::size_t first = begin(first_leaf), last = begin(last_leaf);
+    TurnedBox box{frame_of(*this, first, last), Vec3f(kInfinity), Vec3f(-kInfinity)};
+    for (std::size_t i = first; i < last; ++i)
+        for (const Vec3f& corner : corners(i)) {
+            const Vec3f place(box.axis[0].dot(corner), box.axis[1].dot(corner),
+                              box.axis[2].dot(corner));
+            box.low = openvdb::math::minComponent(box.low, place);
+            box.high = openvdb::math::maxComponent(box.high, place);
+        }
+    box.low -= Vec3f(slack);
+    box.high += Vec3f(slack);
+    return box;
+}
+
+TriangleTree::Block make_block(const Ordered& ordered, std::size_t leaf)
+{
+    const std::size_t begin = ordered.begin(leaf), end = ordered.begin(leaf + 1);
+    TriangleTree::Block block;
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        // The last one fills the places that are left.
+        const std::size_t item = std::min(begin + i, end - 1);
+        const std::array<Vec3f, 3> corner = ordered.corners(item);
+        const Vec3d a(corner[0]), b(corner[1]), c(corner[2]);
+        Vec3d n = (b - a).cross(c - a);
+        const bool flat = !(n.lengthSqr() > 0);
+        n = flat ? Vec3d(0.0) : n / n.length();
+        block.bias[i] = flat ? 1.0F : 0.0F;
+        block.triangle[i] = ordered.triangle(item);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3d e = Vec3d(corner[(k + 1) % 3]) - Vec3d(corner[k]), m = e.cross(n);
+            const double squared = e.lengthSqr();
+            block.inverse[k][i] = squared > 0 ? static_cast<float>(1 / squared) : 0.0F;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                block.corner[k][axis][i] = corner[k][int(axis)];
+                block.beyond[k][axis][i] = static_cast<float>(m[int(axis)]);
+            }
+            block.normal[k][i] = static_cast<float>(n[int(k)]);
+        }
+    }
+    return block;
+}
+
+/// `leaves` successive leaves to a child.
+TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std::size_t leaves,
+                             std::size_t children, float slack)
+{
+    TriangleTree::Node node{};
+    for (std::size_t i = 0; i < kWidth; ++i) {
+        TurnedBox box{{Vec3f(0), Vec3f(0), Vec3f(0)}, Vec3f(kInfinity), Vec3f(kInfinity)};
+        if (i < children)
+            box = ordered.box(first_leaf + i * leaves, first_leaf + (i + 1) * leaves, slack);
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                node.axis[k][axis][i] = box.axis[k][int(axis)];
+            node.low[k][i] = box.low[int(k)];
+            node.high[k][i] = box.high[int(k)];
+        }
+    }
+    return node;
+}
+
+__attribute__((always_inline)) inline Wide box_distances(const TriangleTree::Node& node, const std::array<Wide, 3>& p)
+{
+    Wide squared{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Wide x = node.axis[k][0] * p[0] + node.axis[k][1] * p[1] + node.axis[k][2] * p[2];
+        const Wide off = larger(larger(node.low[k] - x, x - node.high[k]), Wide{});
+        squared += off * off;
+    }
+    return squared;
+}
+
+__attribute__((always_inline)) inline Wide distances(const TriangleTree::Block& t, const std::array<Wide, 3>& p)
+{
+    const Wide zero{}, one = zero + 1.0F;
+    Wide nearest = zero + kInfinity, outside = t.bias;
+    std::array<Wide, 3> off{p[0] - t.corner[0][0], p[1] - t.corner[0][1], p[2] - t.corner[0][2]};
+    const Wide height = off[0] * t.normal[0] + off[1] * t.normal[1] + off[2] * t.normal[2];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto &from = t.corner[k], &to = t.corner[(k + 1) % 3], &m = t.beyond[k];
+        const std::array<Wide, 3> e{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+        const Wide reach = off[0] * e[0] + off[1] * e[1] + off[2] * e[2];
+        const Wide along = smaller(larger(reach * t.inverse[k], zero), one);
+        const Wide x = off[0] - along * e[0], y = off[1] - along * e[1], z = off[2] - along * e[2];
+        nearest = smaller(nearest, x * x + y * y + z * z);
+        outside = larger(outside, off[0] * m[0] + off[1] * m[1] + off[2] * m[2]);
+        off = {off[0] - e[0], off[1] - e[1], off[2] - e[2]};
+    }
+    return outside > zero ? nearest : height * height;
 }
 
 } // namespace
@@ -32,175 +254,91 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit) : unit_(unit)
 {
     const Bounds bounds = bounds_of(mesh.points);
     middle_ = 0.5 * (bounds.low + bounds.high);
-    std::vector<Item> items(mesh.triangles.size());
-    for (std::size_t t = 0; t < items.size(); ++t) {
-        Item& item = items[t];
-        item.triangle = static_cast<std::uint32_t>(t);
-        const std::array<Vec3d, 3> c = corners(mesh, item.triangle);
-        item.low = item.high = Vec3f(c[0]);
-        for (std::size_t k = 1; k < 3; ++k) {
-            item.low = openvdb::math::minComponent(item.low, Vec3f(c[k]));
-            item.high = openvdb::math::maxComponent(item.high, Vec3f(c[k]));
-        }
+    const float slack = kBoxSlack * static_cast<float>(diagonal_of(bounds) / unit);
+    const Ordered ordered(mesh, middle_, unit);
+    blocks_.resize(ordered.leaves());
+    for_each_index(blocks_.size(), [&](std::size_t i) { blocks_[i] = make_block(ordered, i); });
+    if (ordered.leaves() == 1) {
+        root_ = kLeafBit;
+        return;
     }
-    blocks_.reserve(items.size() / 3 + 1);
-    nodes_.reserve(items.size() / 8 + 1);
-    root_ = build(mesh, items, 0, items.size());
-}
-
-std::array<Vec3d, 3> TriangleTree::corners(const TriangleMesh& mesh, std::uint32_t triangle) const
-{
-    std::array<Vec3d, 3> c;
-    for (std::size_t k = 0; k < 3; ++k)
-        c[k] = (Vec3d(mesh.points[mesh.triangles[triangle][int(k)]]) - middle_) / unit_;
-    return c;
-}
-
-std::uint32_t TriangleTree::add_block(const TriangleMesh& mesh, const std::vector<Item>& items,
-                                      std::size_t begin, std::size_t end)
-{
-    Block block;
-    for (std::size_t i = 0; i < kWidth; ++i) {
-        // The last one fills the places that are left.
-        const std::uint32_t triangle = items[std::min(begin + i, end - 1)].triangle;
-        const PreparedTriangle t = prepare_triangle(corners(mesh, triangle));
-        for (std::size_t k = 0; k < 3; ++k) {
-            const PreparedTriangle::Side& from = t.side[k];
-            Block::Side& to = block.side[k];
-            to.x[i] = from.x, to.y[i] = from.y, to.z[i] = from.z;
-            to.ex[i] = from.ex, to.ey[i] = from.ey, to.ez[i] = from.ez;
-            to.inverse[i] = from.inverse;
-            to.mx[i] = from.mx, to.my[i] = from.my, to.mz[i] = from.mz;
-        }
-        block.nx[i] = t.nx, block.ny[i] = t.ny, block.nz[i] = t.nz;
-        block.bias[i] = t.bias;
-        block.triangle[i] = triangle;
+    // The nodes of a level lie together, the root first, and have as many leaves each.
+    std::vector<std::size_t> below{ordered.leaves()};
+    while (below.back() > kWidth)
+        below.push_back(below.back() / kWidth);
+    std::reverse(below.begin(), below.end());
+    std::size_t count = 1;
+    for (const std::size_t children : below) {
+        const std::size_t start = nodes_.size(), leaves = ordered.leaves() / children;
+        nodes_.resize(start + count);
+        const std::size_t next = children < ordered.leaves() ? nodes_.size() : kLeafBit;
+        const std::size_t each = children / count;
+        for_each_index(
+            count,
+            [&](std::size_t i) {
+                Node& node = nodes_[start + i];
+                node = make_node(ordered, i * each * leaves, leaves, each, slack);
+                node.first_child = static_cast<std::uint32_t>(next + i * each);
+            },
+            1);
+        count = children;
     }
-    blocks_.push_back(block);
-    return static_cast<std::uint32_t>(blocks_.size() - 1) | kLeafBit;
 }
 
-std::uint32_t TriangleTree::build(const TriangleMesh& mesh, std::vector<Item>& items,
-                                  std::size_t begin, std::size_t end)
-{
-    if (end - begin <= kWidth)
-        return add_block(mesh, items, begin, end);
-    const auto split = [&](std::size_t first, std::size_t last) {
-        if (last - first <= kWidth)
-            return last;
-        Vec3f low(kInfinity), high(-kInfinity);
-        for (std::size_t i = first; i < last; ++i) {
-            const Vec3f centre = items[i].low + items[i].high;
-            low = openvdb::math::minComponent(low, centre);
-            high = openvdb::math::maxComponent(high, centre);
-        }
-        const int axis = static_cast<int>(openvdb::math::MaxIndex(high - low));
-        // Whole blocks on the left.
-        const std::size_t middle = first + ((last - first) / 2 + kWidth - 1) / kWidth * kWidth;
-        const auto at = [&](std::size_t i) { return items.begin() + std::ptrdiff_t(i); };
-        std::nth_element(at(first), at(middle), at(last), [&](const Item& a, const Item& b) {
-            const float x = a.low[axis] + a.high[axis], y = b.low[axis] + b.high[axis];
-            return x != y ? x < y : a.triangle < b.triangle;
-        });
-        return middle;
-    };
-    const std::size_t half = split(begin, end);
-    const std::array<std::size_t, kWidth + 1> cut{begin, split(begin, half), half, split(half, end),
-                                                  end};
-    const auto id = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Node node;
-    for (std::size_t k = 0; k < kWidth; ++k) {
-        Vec3f low(kInfinity), high(kInfinity);
-        node.child[k] = kNone;
-        if (cut[k] < cut[k + 1]) {
-            high = Vec3f(-kInfinity);
-            for (std::size_t i = cut[k]; i < cut[k + 1]; ++i) {
-                low = openvdb::math::minComponent(low, items[i].low);
-                high = openvdb::math::maxComponent(high, items[i].high);
-            }
-            node.child[k] = build(mesh, items, cut[k], cut[k + 1]);
-        }
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            node.low[axis][k] = low[int(axis)];
-            node.high[axis][k] = high[int(axis)];
-        }
-    }
-    nodes_[id] = node;
-    return id;
-}
-
-template <typename N>
-inline Four TriangleTree::box_distances(const N& node, const std::array<Four, 3>& point)
-{
-    Four squared{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Four below = node.low[axis] - point[axis], above = point[axis] - node.high[axis];
-        const Four off = larger(larger(below, above), Four{});
-        squared += off * off;
-    }
-    return squared;
-}
-
-template <typename B> inline Four TriangleTree::distances(const B& t, const std::array<Four, 3>& p)
-{
-    const Four zero{}, one = zero + 1.0F;
-    Four nearest = zero + kInfinity, outside = t.bias, height = zero;
-    for (const auto& s : t.side) {
-        const Four x = p[0] - s.x, y = p[1] - s.y, z = p[2] - s.z;
-        const Four along = smaller(larger((x * s.ex + y * s.ey + z * s.ez) * s.inverse, zero), one);
-        const Four dx = x - along * s.ex, dy = y - along * s.ey, dz = z - along * s.ez;
-        nearest = smaller(nearest, dx * dx + dy * dy + dz * dz);
-        outside = larger(outside, x * s.mx + y * s.my + z * s.mz);
-        height = x * t.nx + y * t.ny + z * t.nz;
-    }
-    return outside > zero ? nearest : height * height;
-}
-
-std::uint32_t TriangleTree::nearest(const Vec3d& point, float tolerance) const
+__attribute__((target_clones("avx2","default"))) TriangleTree::Found
+TriangleTree::nearest(const Vec3d& point, float tolerance, Seed& seed) const
 {
     const Vec3f p((point - middle_) / unit_);
-    const std::array<Four, 3> four{Four{} + p[0], Four{} + p[1], Four{} + p[2]};
+    const std::array<Wide, 3> wide{Wide{} + p[0], Wide{} + p[1], Wide{} + p[2]};
     struct Entry {
         float squared;
         std::uint32_t id;
     };
-    // Three siblings are left behind at each level, and there are at most 16 levels.
-    std::array<Entry, 64> stack;
+    // All but one of the siblings are left behind at each level, and there are at most 16 levels.
+    std::array<Entry, 16 * kWidth> stack;
     std::size_t top = 0;
     stack[top++] = {0.0F, root_};
-    float best = kInfinity, limit = kInfinity;
-    std::uint32_t triangle = 0;
+    const std::uint32_t done = seed;
+    if (seed != kNoSeed)
+        stack[top++] = {0.0F, seed};
+    float limit = std::numeric_limits<float>::max();
+    Found found{0, kInfinity};
     while (top > 0) {
         const Entry entry = stack[--top];
         if (entry.squared > limit)
             continue;
         if (entry.id & kLeafBit) {
+            if (entry.id == done && found.squared < kInfinity)
+                continue;
             const Block& block = blocks_[entry.id & ~kLeafBit];
-            const Four d = distances(block, four);
-            for (std::size_t i = 0; i < kWidth; ++i)
-                if (d[i] < best) {
-                    best = d[i];
-                    triangle = block.triangle[i];
-                    const float nearer = std::max(std::sqrt(best) - tolerance, 0.0F);
-                    limit = nearer * nearer;
-                }
+            const Wide d = distances(block, wide);
+            unsigned lanes = lanes_of(d < found.squared);
+            if (lanes == 0)
+                continue;
+            for (; lanes != 0; lanes &= lanes - 1) {
+                const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
+                if (d[i] < found.squared)
+                    found = {block.triangle[i], d[i]};
+            }
+            seed = entry.id;
+            const float nearer = std::max(std::sqrt(found.squared) - tolerance, 0.0F);
+            limit = tolerance > 0 ? nearer * nearer : found.squared;
             continue;
         }
         const Node& node = nodes_[entry.id];
-        const Four d = box_distances(node, four);
+        const Wide d = box_distances(node, wide);
         // Nearest on top.
         const std::size_t bottom = top;
-        for (std::size_t i = 0; i < kWidth; ++i) {
-            if (!(d[i] <= limit) || node.child[i] == kNone)
-                continue;
+        for (unsigned lanes = lanes_of(d <= limit); lanes != 0; lanes &= lanes - 1) {
+            const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
+            const Entry child{d[i], node.first_child + std::uint32_t(i)};
             std::size_t place = top++;
-            for (; place > bottom && stack[place - 1].squared < d[i]; --place)
+            for (; place > bottom && stack[place - 1].squared < child.squared; --place)
                 stack[place] = stack[place - 1];
-            stack[place] = {d[i], node.child[i]};
+            stack[place] = child;
         }
     }
-    return triangle;
+    return found;
 }
 
 } // namespace vdb_shell

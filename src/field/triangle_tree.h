@@ -1,65 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "field/eight_distances.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace vdb_shell
 {
 
-/// Finds the triangle nearest to a point, in floats, four boxes or triangles at a time. A tree of
-/// our own: a query may stop short of the very nearest, so its answer depends on the tree's shape,
-/// which for the same bits on any number of threads must not depend on how a library builds it.
+/// Finds the triangle nearest to a point, in floats, several boxes or triangles at a time. A tree
+/// of our own: a query may stop short of the very nearest, so its answer depends on the tree's
+/// shape, which for the same bits on any number of threads must not depend on how a library builds
+/// it. Boxes are turned with the surface: from deep inside, boxes along the axes around pieces of a
+/// slanted wall seem nearer than the wall by as much as they are thick, and then all those within
+/// many voxels of the foot have to be looked into.
 class TriangleTree
 {
 public:
     /// Lengths inside the tree are in units of `unit`, relative to the middle of the mesh.
     TriangleTree(const TriangleMesh& mesh, double unit);
 
-    /// A triangle no farther than `tolerance` (in units) more than the nearest: without some
-    /// tolerance the middle of a sphere would have to look at all triangles.
-    std::uint32_t nearest(const openvdb::Vec3d& point, float tolerance) const;
+    /// Where the last query ended: the next one nearby begins there.
+    using Seed = std::uint32_t;
+    static constexpr Seed kNoSeed = ~0U;
+
+    struct Found {
+        std::uint32_t triangle;
+        float squared; ///< of its distance
+    };
+    /// A triangle no farther than `tolerance` (in units) more than the nearest. Without tolerance
+    /// the distance does not depend on the seed, to the last bit.
+    Found nearest(const openvdb::Vec3d& point, float tolerance, Seed& seed) const;
+
+    static constexpr std::size_t kWidth = 8;
+    using Wide __attribute__((vector_size(4 * kWidth))) = float;
+
+    /// Boxes of as many children, each in a frame of its own; a child that is not there has an
+    /// infinite box. Children have successive numbers.
+    struct alignas(4 * kWidth) Node {
+        std::array<std::array<Wide, 3>, 3> axis;
+        std::array<Wide, 3> low, high;
+        std::uint32_t first_child; ///< from kLeafBit on a block
+    };
+    /// Prepared triangles, by component: corners, outward normals of their sides in the plane,
+    /// inverse squares of the sides' lengths.
+    struct alignas(4 * kWidth) Block {
+        std::array<std::array<Wide, 3>, 3> corner, beyond;
+        std::array<Wide, 3> inverse, normal;
+        Wide bias; ///< 1 for a triangle without a normal: no point projects into it
+        std::array<std::uint32_t, kWidth> triangle;
+    };
 
 private:
-    /// Boxes of four children, by axis. A child is a node, or from kLeafBit on a block of four
-    /// triangles.
-    struct Node {
-        std::array<Four, 3> low, high;
-        std::array<std::uint32_t, 4> child;
-    };
-    /// Four prepared triangles, by component.
-    struct Block {
-        struct Side {
-            Four x, y, z, ex, ey, ez, inverse, mx, my, mz;
-        };
-        std::array<Side, 3> side;
-        Four nx, ny, nz, bias;
-        std::array<std::uint32_t, 4> triangle;
-    };
-    struct Item {
-        openvdb::Vec3f low, high;
-        std::uint32_t triangle;
-    };
-    static constexpr std::uint32_t kLeafBit = 1U << 31, kNone = ~0U;
-
-    std::uint32_t build(const TriangleMesh& mesh, std::vector<Item>& items, std::size_t begin,
-                        std::size_t end);
-    std::uint32_t add_block(const TriangleMesh& mesh, const std::vector<Item>& items,
-                            std::size_t begin, std::size_t end);
-    // Templates, for they are inlined only when they are not exported.
-    template <typename N>
-    static Four box_distances(const N& node, const std::array<Four, 3>& point);
-    template <typename B> static Four distances(const B& block, const std::array<Four, 3>& point);
-    std::array<openvdb::Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle) const;
-
     openvdb::Vec3d middle_;
     double unit_;
     std::vector<Node> nodes_;
     std::vector<Block> blocks_;
-    std::uint32_t root_ = kNone;
+    std::uint32_t root_ = 0;
 };
 
 } // namespace vdb_shell

@@ -118,7 +118,17 @@ public:
     }
 
     /// Beyond this length the test no longer changes.
-    double settled() const { return rules_.reference + rules_.period; }
+    double settled() const
+    {
+        switch (rules_.test) {
+        case StopTest::relative_normal:
+            return rules_.reference + rules_.period;
+        case StopTest::own_sheet:
+            return rules_.reference;
+        default:
+            return 0;
+        }
+    }
 
     /// The slope towards -inward over which the test holds, whatever else, once it has settled;
     /// over 1 where a slope cannot tell.

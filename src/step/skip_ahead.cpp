@@ -14,6 +14,8 @@ constexpr double kBackVoxels = 3.0;
 // other instead.
 constexpr double kLinkVoxels = 4.0;
 constexpr int kMostLinks = 8;
+// Lines that begin with less of a stride than this look more often than it saves.
+constexpr double kFirstStrideVoxels = 4.0;
 // The search ends when it knows the place this well.
 constexpr double kNearVoxels = 0.5;
 // Interpolation across a sheet makes a distance shorter by less than this.
@@ -37,20 +39,20 @@ SkipAhead::SkipAhead(const DeepField& field, double deepest)
 {
 }
 
-SkipAhead::Probe SkipAhead::probe(const Line& line, double length) const
+SkipAhead::Probe SkipAhead::probe(const Line& line, double length, TriangleTree::Seed& seed) const
 {
     const openvdb::Vec3d at = line.start + length * line.inward;
-    const openvdb::Vec3d off = at - field_.nearest_point(at);
+    const openvdb::Vec3d off = at - field_.nearest_point(at, seed);
     const double distance = off.length();
     return {distance, distance > 0 ? off.dot(line.inward) / distance : 0.0};
 }
 
-bool SkipAhead::chain_holds(const Line& line, double low, double high, double slope) const
+bool SkipAhead::chain_holds(const Line& line, double low, double high, double slope, TriangleTree::Seed& seed) const
 {
     const double cotangent = slope / std::sqrt(1 - slope * slope);
     double at = high, gap = 0, above = 0;
     for (int link = 0; link < kMostLinks; ++link) {
-        const Probe p = probe(line, at);
+        const Probe p = probe(line, at, seed);
         if (p.slope < slope)
             return false;
         // From a sampled gap: the mean slope over it, and room enough that the line has not left
@@ -76,7 +78,7 @@ template <typename Holds>
 double SkipAhead::search(const Line& line, double from, const Holds& holds) const
 {
     const double voxel = field_.voxel(), end = std::min(line.max_length, deepest_);
-    double known = from, stride = from;
+    double known = from, stride = std::max(from, kFirstStrideVoxels * voxel);
     for (bool growing = true; stride >= kNearVoxels * voxel && known < end;) {
         const double next = std::min(known + stride, end);
         const bool good = holds(known, next);
@@ -90,17 +92,19 @@ double SkipAhead::search(const Line& line, double from, const Holds& holds) cons
 double SkipAhead::holds_up_to(const Line& line, const MarchRules& rules, const RunningTest& test,
                               double from) const
 {
+    // Of this line alone, so that lengths do not depend on which thread steps which lines.
+    TriangleTree::Seed seed = TriangleTree::kNoSeed;
     // Length less distance never falls along a line, for distances grow by no more than lengths.
     const double limit = rules.distance_threshold - kBlurVoxels * field_.voxel();
     if (rules.test == StopTest::distance)
         return search(line, from, [&](double, double high) {
-            return high - probe(line, high).distance < limit;
+            return high - probe(line, high, seed).distance < limit;
         });
     const double slope = std::max(kLeastSlope, safe_slope(test.slope_wanted()));
     if (slope >= 1)
         return from;
     return search(line, from,
-                  [&](double low, double high) { return chain_holds(line, low, high, slope); });
+                  [&](double low, double high) { return chain_holds(line, low, high, slope, seed); });
 }
 
 } // namespace vdb_shell

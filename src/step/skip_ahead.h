@@ -31,8 +31,9 @@ private:
     struct Probe {
         double distance, slope;
     };
-    Probe probe(const Line& line, double length) const;
-    bool chain_holds(const Line& line, double low, double high, double slope) const;
+    Probe probe(const Line& line, double length, TriangleTree::Seed& seed) const;
+    bool chain_holds(const Line& line, double low, double high, double slope,
+                     TriangleTree::Seed& seed) const;
     template <typename Holds>
     double search(const Line& line, double from, const Holds& holds) const;
 
