@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/lanes.h"
+
 #include <openvdb/Types.h>
 
 #include <array>
-#include <cstddef>
-#include <cstdint>
 
-// Distances from eight points to a triangle at once, in floats. They choose the nearest triangle;
-// the distance that is stored is then computed in doubles.
+// Distances from eight points to a triangle at once, in floats, relative to a place nearby.
 
 namespace vdb_shell
 {
 
-inline constexpr std::size_t kLanes = 8;
-
-/// GCC's and Clang's vectors: loops over arrays were left scalar by the compiler, at a quarter of
-/// the speed.
-using Four __attribute__((vector_size(16))) = float;
-using FourIndices __attribute__((vector_size(16))) = std::int32_t;
-template <typename Vector> using Pair = std::array<Vector, 2>;
-
 struct EightPoints {
-    Pair<Four> x, y, z;
+    Lanes x, y, z;
 };
 
 /// A triangle made ready: corners, edges, the edges' normals in its plane (outward) and its own.
@@ -61,31 +52,25 @@ inline PreparedTriangle prepare_triangle(const std::array<openvdb::Vec3d, 3>& co
     return t;
 }
 
-/// Squared distances of four of the points.
-inline Four four_distances(const PreparedTriangle& t, const Four& px, const Four& py,
-                           const Four& pz)
+/// Squared distances of the points. `height` is over the triangle's plane, positive along its
+/// normal, for points that project into the triangle; 0 for others.
+VDB_SHELL_LANES_PART void eight_distances(const PreparedTriangle& t, const EightPoints& p,
+                                          Lanes& squared, Lanes& height)
 {
-    const Four zero{}, one = zero + 1.0F;
-    Four nearest = zero + 3e38F, outside = zero + t.bias, height = zero;
+    const Lanes zero{}, one = zero + 1.0F;
+    Lanes nearest = zero + 3e38F, outside = zero + t.bias, over = zero;
     for (const PreparedTriangle::Side& s : t.side) {
-        const Four x = px - s.x, y = py - s.y, z = pz - s.z;
-        Four along = (x * s.ex + y * s.ey + z * s.ez) * s.inverse;
-        along = along > zero ? along : zero;
-        along = along < one ? along : one;
-        const Four dx = x - along * s.ex, dy = y - along * s.ey, dz = z - along * s.ez;
-        const Four d = dx * dx + dy * dy + dz * dz;
-        const Four beyond = x * s.mx + y * s.my + z * s.mz;
-        nearest = d < nearest ? d : nearest;
-        outside = beyond > outside ? beyond : outside;
-        height = x * t.nx + y * t.ny + z * t.nz;
+        const Lanes x = p.x - s.x, y = p.y - s.y, z = p.z - s.z;
+        Lanes along = (x * s.ex + y * s.ey + z * s.ez) * s.inverse;
+        raise_to(along, zero);
+        lower_to(along, one);
+        const Lanes dx = x - along * s.ex, dy = y - along * s.ey, dz = z - along * s.ez;
+        lower_to(nearest, dx * dx + dy * dy + dz * dz);
+        raise_to(outside, x * s.mx + y * s.my + z * s.mz);
+        over = x * t.nx + y * t.ny + z * t.nz;
     }
-    return outside > zero ? nearest : height * height;
-}
-
-/// Squared distances of the points.
-inline Pair<Four> eight_distances(const PreparedTriangle& t, const EightPoints& p)
-{
-    return {four_distances(t, p.x[0], p.y[0], p.z[0]), four_distances(t, p.x[1], p.y[1], p.z[1])};
+    squared = outside > zero ? nearest : over * over;
+    height = outside > zero ? zero : over;
 }
 
 } // namespace vdb_shell

@@ -12,6 +12,8 @@
 #include <tbb/parallel_sort.h>
 
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -32,11 +34,28 @@ constexpr double kSlackVoxels = 1e-3;
 
 /// A triangle that comes near a leaf.
 struct LeafTriangle {
-    std::array<std::int32_t, 3> leaf;
+    std::uint64_t place; ///< of the leaf, 21 bits for each axis
     std::uint32_t triangle;
+
+    static constexpr int kBits = 21, kOffset = 1 << (kBits - 1);
+    LeafTriangle() = default;
+    LeafTriangle(const Coord& leaf, std::uint32_t of) : place(0), triangle(of)
+    {
+        for (int axis = 0; axis < 3; ++axis)
+            place = place << kBits | static_cast<std::uint64_t>(leaf[axis] + kOffset);
+    }
+    /// The leaf's first voxel.
+    Coord leaf() const
+    {
+        Coord first;
+        for (int axis = 0; axis < 3; ++axis)
+            first[axis] =
+                8 * (static_cast<int>(place >> (2 - axis) * kBits & (2 * kOffset - 1)) - kOffset);
+        return first;
+    }
     bool operator<(const LeafTriangle& o) const
     {
-        return leaf != o.leaf ? leaf < o.leaf : triangle < o.triangle;
+        return place != o.place ? place < o.place : triangle < o.triangle;
     }
 };
 
@@ -91,7 +110,7 @@ void for_each_leaf_near(const std::array<Vec3d, 3>& corner, double reach, const 
         for (int y = low[1]; y <= high[1]; ++y)
             for (int z = low[2]; z <= high[2]; ++z)
                 if (filter.meets(8.0 * Vec3d(x, y, z) + Vec3d(kHalfLeaf)))
-                    visit(std::array<std::int32_t, 3>{x, y, z});
+                    visit(Coord(x, y, z));
 }
 
 std::array<Vec3d, 3> index_corners(const SignedDistance& surface, std::uint32_t t, double voxel)
@@ -108,29 +127,49 @@ std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::siz
     std::vector<std::size_t> start(count + 1, 0);
     for_each_index(count, [&](std::size_t t) {
         for_each_leaf_near(index_corners(surface, std::uint32_t(t), voxel), reach,
-                           [&](const auto&) { ++start[t + 1]; });
+                           [&](const Coord&) { ++start[t + 1]; });
     });
     std::partial_sum(start.begin(), start.end(), start.begin());
     std::vector<LeafTriangle> pairs(start.back());
     for_each_index(count, [&](std::size_t t) {
         std::size_t next = start[t];
-        for_each_leaf_near(index_corners(surface, std::uint32_t(t), voxel), reach,
-                           [&](const auto& leaf) {
-                               pairs[next++] = {leaf, std::uint32_t(t)};
-                           });
+        for_each_leaf_near(
+            index_corners(surface, std::uint32_t(t), voxel), reach,
+            [&](const Coord& leaf) { pairs[next++] = LeafTriangle(leaf, std::uint32_t(t)); });
     });
     tbb::parallel_sort(pairs.begin(), pairs.end());
     return pairs;
 }
 
-/// The eight points at +-half around a middle.
-void eight_around(const std::array<float, 3>& middle, float half, EightPoints& p)
+/// The nearest of some triangles to each of eight points.
+struct EightNearest {
+    Lanes squared, height; ///< as of eight_distances
+    LaneIndices triangle;
+};
+
+/// `list` picks from the triangles; `squared`, where wanted, gets the distances to each of it.
+VDB_SHELL_LANES_FUNCTION void nearest_of(const std::vector<PreparedTriangle>& triangles,
+                                         const std::vector<std::uint32_t>& list,
+                                         const EightPoints& points, float* squared,
+                                         EightNearest& nearest)
 {
-    for (std::size_t i = 0; i < kLanes; ++i) {
-        p.x[i / 4][i % 4] = middle[0] + (i & 4 ? half : -half);
-        p.y[i / 4][i % 4] = middle[1] + (i & 2 ? half : -half);
-        p.z[i / 4][i % 4] = middle[2] + (i & 1 ? half : -half);
+    Lanes least = Lanes{} + std::numeric_limits<float>::max(), height{};
+    LaneIndices triangle{};
+    for (const std::uint32_t t : list) {
+        Lanes d, over;
+        eight_distances(triangles[t], points, d, over);
+        if (squared) {
+            std::memcpy(squared, &d, sizeof d);
+            squared += kLanes;
+        }
+        const LaneIndices here = LaneIndices{} + static_cast<std::int32_t>(t);
+        triangle = d < least ? here : triangle;
+        height = d < least ? over : height;
+        lower_to(least, d);
     }
+    nearest.squared = least;
+    nearest.height = height;
+    nearest.triangle = triangle;
 }
 
 /// The triangles that matter to a block of voxels, thinned out from leaf to half to quarter.
@@ -145,7 +184,7 @@ public:
     /// Null when no voxel lies within reach.
     std::unique_ptr<Leaf> operator()(const LeafTriangle* first, const LeafTriangle* last)
     {
-        origin_ = {8 * first->leaf[0], 8 * first->leaf[1], 8 * first->leaf[2]};
+        origin_ = first->leaf();
         const Vec3d middle = origin_.asVec3d() + Vec3d(kHalfLeaf);
         prepared_.clear();
         for (const LeafTriangle* pair = first; pair != last; ++pair) {
@@ -158,69 +197,71 @@ public:
         std::iota(lists_[0].begin(), lists_[0].end(), 0U);
         leaf_.reset();
         pairs_ = first;
-        descend(0, {0, 0, 0}, 2.0F);
+        descend(0, Coord(0));
         return std::move(leaf_);
     }
 
 private:
-    /// Blocks of 8, 4 and 2 voxels a side; `half` is from the block's middle to that of its
-    /// eighths.
-    void descend(std::size_t level, const std::array<float, 3>& middle, float half)
+    /// Blocks of 8, 4 and 2 voxels a side, from their least corner in the leaf.
+    void descend(std::size_t level, const Coord& corner)
     {
+        const int eighth = 4 >> level; // voxels a side
         EightPoints points;
-        eight_around(middle, half, points);
-        const std::vector<std::uint32_t>& list = lists_[level];
-        distances_[level].resize(list.size());
-        Pair<Four> least;
-        least.fill(Four{} + std::numeric_limits<float>::max());
-        Pair<FourIndices> nearest{};
-        for (std::size_t n = 0; n < list.size(); ++n) {
-            const Pair<Four> d = eight_distances(prepared_[list[n]], points);
-            distances_[level][n] = d;
-            const FourIndices here = FourIndices{} + static_cast<std::int32_t>(list[n]);
-            for (std::size_t h = 0; h < 2; ++h) {
-                nearest[h] = d[h] < least[h] ? here : nearest[h];
-                least[h] = d[h] < least[h] ? d[h] : least[h];
-            }
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const Coord least = corner_of_eighth(corner, eighth, i);
+            const float to_middle = 0.5F * static_cast<float>(eighth - 1) - float(kHalfLeaf);
+            points.x[i] = static_cast<float>(least[0]) + to_middle;
+            points.y[i] = static_cast<float>(least[1]) + to_middle;
+            points.z[i] = static_cast<float>(least[2]) + to_middle;
         }
+        const std::vector<std::uint32_t>& list = lists_[level];
+        std::vector<float>& squared = squared_[level];
+        EightNearest nearest;
         if (level == 2) {
-            store(points, least, nearest);
+            nearest_of(prepared_, list, points, nullptr, nearest);
+            store(corner, nearest);
             return;
         }
+        squared.resize(list.size() * kLanes);
+        nearest_of(prepared_, list, points, squared.data(), nearest);
         // From an eighth's middle to its farthest voxel centre.
-        const float radius = std::sqrt(3.0F) * (half - 0.5F);
+        const float radius = std::sqrt(3.0F) * 0.5F * static_cast<float>(eighth - 1);
         for (std::size_t i = 0; i < kLanes; ++i) {
-            const float closest = std::sqrt(least[i / 4][i % 4]);
+            const float closest = std::sqrt(nearest.squared[i]);
             if (closest > reach_ + radius)
                 continue;
             const float limit =
                 std::min(closest + 2 * radius, reach_ + radius) + static_cast<float>(kSlackVoxels);
             lists_[level + 1].clear();
             for (std::size_t n = 0; n < list.size(); ++n)
-                if (distances_[level][n][i / 4][i % 4] <= limit * limit)
+                if (squared[n * kLanes + i] <= limit * limit)
                     lists_[level + 1].push_back(list[n]);
-            descend(level + 1,
-                    {points.x[i / 4][i % 4], points.y[i / 4][i % 4], points.z[i / 4][i % 4]},
-                    half / 2);
+            descend(level + 1, corner_of_eighth(corner, eighth, i));
         }
     }
 
-    void store(const EightPoints& points, const Pair<Four>& least, const Pair<FourIndices>& nearest)
+    static Coord corner_of_eighth(const Coord& corner, int eighth, std::size_t i)
+    {
+        return corner.offsetBy(i & 4 ? eighth : 0, i & 2 ? eighth : 0, i & 1 ? eighth : 0);
+    }
+
+    void store(const Coord& corner, const EightNearest& nearest)
     {
         for (std::size_t i = 0; i < kLanes; ++i) {
-            if (least[i / 4][i % 4] > reach_ * reach_)
+            if (nearest.squared[i] > reach_ * reach_)
                 continue;
-            const auto in_leaf = [](float x) { return static_cast<int>(std::lround(x + 3.5F)); };
-            const Coord at =
-                origin_.offsetBy(in_leaf(points.x[i / 4][i % 4]), in_leaf(points.y[i / 4][i % 4]),
-                                 in_leaf(points.z[i / 4][i % 4]));
-            const double d =
-                surface_.at(voxel_ * at.asVec3d(), pairs_[nearest[i / 4][i % 4]].triangle);
+            const Coord in_leaf = corner_of_eighth(corner, 1, i);
+            double d = nearest.height[i] * voxel_;
+            // At sides and corners, and too near to the plane for floats to tell the side of it.
+            if (std::abs(nearest.height[i]) < kSlackVoxels) {
+                const auto pair = static_cast<std::size_t>(nearest.triangle[i]);
+                d = surface_.at(voxel_ * (origin_ + in_leaf).asVec3d(), pairs_[pair].triangle);
+            }
             if (!(std::abs(d) < (reach_ - kSlackVoxels) * voxel_))
                 continue;
             if (!leaf_)
                 leaf_ = std::make_unique<Leaf>(origin_, 0.0F, false);
-            leaf_->setValueOn(Leaf::coordToOffset(at), static_cast<float>(d));
+            leaf_->setValueOn(Leaf::coordToOffset(in_leaf), static_cast<float>(d));
         }
     }
 
@@ -232,7 +273,7 @@ private:
     std::unique_ptr<Leaf> leaf_;
     std::vector<PreparedTriangle> prepared_;
     std::array<std::vector<std::uint32_t>, 3> lists_;
-    std::array<std::vector<Pair<Four>>, 3> distances_;
+    std::array<std::vector<float>, 2> squared_;
 };
 
 void fill_leaves(openvdb::FloatTree& tree, const SignedDistance& surface, double voxel,
@@ -240,7 +281,7 @@ void fill_leaves(openvdb::FloatTree& tree, const SignedDistance& surface, double
 {
     std::vector<std::size_t> starts;
     for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (i == 0 || pairs[i].leaf != pairs[i - 1].leaf)
+        if (i == 0 || pairs[i].place != pairs[i - 1].place)
             starts.push_back(i);
     std::vector<std::unique_ptr<Leaf>> leaves(starts.size());
     starts.push_back(pairs.size());

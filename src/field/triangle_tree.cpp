@@ -19,8 +19,6 @@ using openvdb::Vec3f;
 namespace
 {
 
-using Wide = TriangleTree::Wide;
-constexpr std::size_t kWidth = TriangleTree::kWidth;
 constexpr std::uint32_t kLeafBit = 1U << 31;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Below it a range is not worth another thread.
@@ -28,27 +26,6 @@ constexpr std::size_t kWorthAThread = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
 // triangle seem nearer than its box.
 constexpr float kBoxSlack = 2e-6F;
-
-__attribute__((always_inline)) inline Wide smaller(const Wide& a, const Wide& b)
-{
-    return a < b ? a : b;
-}
-__attribute__((always_inline)) inline Wide larger(const Wide& a, const Wide& b)
-{
-    return a > b ? a : b;
-}
-
-/// A bit of each byte whose lane is true.
-template <typename Mask>
-__attribute__((always_inline)) inline unsigned lanes_of(const Mask& mask)
-{
-    using Bits __attribute__((vector_size(4 * kWidth))) = std::int32_t;
-    Bits bits = mask & Bits{1, 2, 4, 8, 16, 32, 64, 128};
-    bits |= __builtin_shuffle(bits, Bits{4, 5, 6, 7, 0, 1, 2, 3});
-    bits |= __builtin_shuffle(bits, Bits{2, 3, 0, 1, 6, 7, 4, 5});
-    bits |= __builtin_shuffle(bits, Bits{1, 0, 3, 2, 5, 4, 7, 6});
-    return static_cast<unsigned>(bits[0]);
-}
 
 struct Item {
     Vec3f centre;
@@ -75,7 +52,7 @@ public:
             const openvdb::Vec3I& c = mesh.triangles[t];
             items_[t] = {points_[c[0]] + points_[c[1]] + points_[c[2]], std::uint32_t(t)};
         });
-        while (leaves_ * kWidth < items_.size())
+        while (leaves_ * kLanes < items_.size())
             leaves_ *= 2;
         halve(0, leaves_);
     }
@@ -175,7 +152,7 @@ TriangleTree::Block make_block(const Ordered& ordered, std::size_t leaf)
 {
     const std::size_t begin = ordered.begin(leaf), end = ordered.begin(leaf + 1);
     TriangleTree::Block block;
-    for (std::size_t i = 0; i < kWidth; ++i) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
         // The last one fills the places that are left.
         const std::size_t item = std::min(begin + i, end - 1);
         const std::array<Vec3f, 3> corner = ordered.corners(item);
@@ -204,7 +181,7 @@ TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std
                              std::size_t children, float slack)
 {
     TriangleTree::Node node{};
-    for (std::size_t i = 0; i < kWidth; ++i) {
+    for (std::size_t i = 0; i < kLanes; ++i) {
         TurnedBox box{{Vec3f(0), Vec3f(0), Vec3f(0)}, Vec3f(kInfinity), Vec3f(kInfinity)};
         if (i < children)
             box = ordered.box(first_leaf + i * leaves, first_leaf + (i + 1) * leaves, slack);
@@ -218,34 +195,39 @@ TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std
     return node;
 }
 
-__attribute__((always_inline)) inline Wide box_distances(const TriangleTree::Node& node, const std::array<Wide, 3>& p)
+using Point = std::array<Lanes, 3>;
+
+VDB_SHELL_LANES_PART void box_distances(const TriangleTree::Node& node, const Point& p,
+                                        Lanes& squared)
 {
-    Wide squared{};
+    squared = Lanes{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Wide x = node.axis[k][0] * p[0] + node.axis[k][1] * p[1] + node.axis[k][2] * p[2];
-        const Wide off = larger(larger(node.low[k] - x, x - node.high[k]), Wide{});
+        const Lanes x = node.axis[k][0] * p[0] + node.axis[k][1] * p[1] + node.axis[k][2] * p[2];
+        Lanes off = node.low[k] - x;
+        raise_to(off, x - node.high[k]);
+        raise_to(off, Lanes{});
         squared += off * off;
     }
-    return squared;
 }
 
-__attribute__((always_inline)) inline Wide distances(const TriangleTree::Block& t, const std::array<Wide, 3>& p)
+VDB_SHELL_LANES_PART void distances(const TriangleTree::Block& t, const Point& p, Lanes& squared)
 {
-    const Wide zero{}, one = zero + 1.0F;
-    Wide nearest = zero + kInfinity, outside = t.bias;
-    std::array<Wide, 3> off{p[0] - t.corner[0][0], p[1] - t.corner[0][1], p[2] - t.corner[0][2]};
-    const Wide height = off[0] * t.normal[0] + off[1] * t.normal[1] + off[2] * t.normal[2];
+    const Lanes zero{}, one = zero + 1.0F;
+    Lanes nearest = zero + kInfinity, outside = t.bias;
+    Lanes x = p[0] - t.corner[0][0], y = p[1] - t.corner[0][1], z = p[2] - t.corner[0][2];
+    const Lanes height = x * t.normal[0] + y * t.normal[1] + z * t.normal[2];
     for (std::size_t k = 0; k < 3; ++k) {
         const auto &from = t.corner[k], &to = t.corner[(k + 1) % 3], &m = t.beyond[k];
-        const std::array<Wide, 3> e{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-        const Wide reach = off[0] * e[0] + off[1] * e[1] + off[2] * e[2];
-        const Wide along = smaller(larger(reach * t.inverse[k], zero), one);
-        const Wide x = off[0] - along * e[0], y = off[1] - along * e[1], z = off[2] - along * e[2];
-        nearest = smaller(nearest, x * x + y * y + z * z);
-        outside = larger(outside, off[0] * m[0] + off[1] * m[1] + off[2] * m[2]);
-        off = {off[0] - e[0], off[1] - e[1], off[2] - e[2]};
+        const Lanes ex = to[0] - from[0], ey = to[1] - from[1], ez = to[2] - from[2];
+        Lanes along = (x * ex + y * ey + z * ez) * t.inverse[k];
+        raise_to(along, zero);
+        lower_to(along, one);
+        const Lanes dx = x - along * ex, dy = y - along * ey, dz = z - along * ez;
+        lower_to(nearest, dx * dx + dy * dy + dz * dz);
+        raise_to(outside, x * m[0] + y * m[1] + z * m[2]);
+        x -= ex, y -= ey, z -= ez;
     }
-    return outside > zero ? nearest : height * height;
+    squared = outside > zero ? nearest : height * height;
 }
 
 } // namespace
@@ -264,8 +246,8 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit) : unit_(unit)
     }
     // The nodes of a level lie together, the root first, and have as many leaves each.
     std::vector<std::size_t> below{ordered.leaves()};
-    while (below.back() > kWidth)
-        below.push_back(below.back() / kWidth);
+    while (below.back() > kLanes)
+        below.push_back(below.back() / kLanes);
     std::reverse(below.begin(), below.end());
     std::size_t count = 1;
     for (const std::size_t children : below) {
@@ -285,17 +267,17 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit) : unit_(unit)
     }
 }
 
-__attribute__((target_clones("avx2","default"))) TriangleTree::Found
+VDB_SHELL_LANES_FUNCTION TriangleTree::Found
 TriangleTree::nearest(const Vec3d& point, float tolerance, Seed& seed) const
 {
     const Vec3f p((point - middle_) / unit_);
-    const std::array<Wide, 3> wide{Wide{} + p[0], Wide{} + p[1], Wide{} + p[2]};
+    const Point lanes_point{Lanes{} + p[0], Lanes{} + p[1], Lanes{} + p[2]};
     struct Entry {
         float squared;
         std::uint32_t id;
     };
     // All but one of the siblings are left behind at each level, and there are at most 16 levels.
-    std::array<Entry, 16 * kWidth> stack;
+    std::array<Entry, 16 * kLanes> stack;
     std::size_t top = 0;
     stack[top++] = {0.0F, root_};
     const std::uint32_t done = seed;
@@ -311,12 +293,13 @@ TriangleTree::nearest(const Vec3d& point, float tolerance, Seed& seed) const
             if (entry.id == done && found.squared < kInfinity)
                 continue;
             const Block& block = blocks_[entry.id & ~kLeafBit];
-            const Wide d = distances(block, wide);
-            unsigned lanes = lanes_of(d < found.squared);
-            if (lanes == 0)
+            Lanes d;
+            distances(block, lanes_point, d);
+            unsigned bits = bits_of(d < found.squared);
+            if (bits == 0)
                 continue;
-            for (; lanes != 0; lanes &= lanes - 1) {
-                const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
+            for (; bits != 0; bits &= bits - 1) {
+                const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
                 if (d[i] < found.squared)
                     found = {block.triangle[i], d[i]};
             }
@@ -326,11 +309,12 @@ TriangleTree::nearest(const Vec3d& point, float tolerance, Seed& seed) const
             continue;
         }
         const Node& node = nodes_[entry.id];
-        const Wide d = box_distances(node, wide);
+        Lanes d;
+        box_distances(node, lanes_point, d);
         // Nearest on top.
         const std::size_t bottom = top;
-        for (unsigned lanes = lanes_of(d <= limit); lanes != 0; lanes &= lanes - 1) {
-            const auto i = static_cast<std::size_t>(__builtin_ctz(lanes));
+        for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1) {
+            const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
             const Entry child{d[i], node.first_child + std::uint32_t(i)};
             std::size_t place = top++;
             for (; place > bottom && stack[place - 1].squared < child.squared; --place)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/lanes.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <array>
@@ -10,7 +11,7 @@
 namespace vdb_shell
 {
 
-/// Finds the triangle nearest to a point, in floats, several boxes or triangles at a time. A tree
+/// Finds the triangle nearest to a point, in floats, eight boxes or triangles at a time. A tree
 /// of our own: a query may stop short of the very nearest, so its answer depends on the tree's
 /// shape, which for the same bits on any number of threads must not depend on how a library builds
 /// it. Boxes are turned with the surface: from deep inside, boxes along the axes around pieces of a
@@ -34,23 +35,20 @@ public:
     /// the distance does not depend on the seed, to the last bit.
     Found nearest(const openvdb::Vec3d& point, float tolerance, Seed& seed) const;
 
-    static constexpr std::size_t kWidth = 8;
-    using Wide __attribute__((vector_size(4 * kWidth))) = float;
-
-    /// Boxes of as many children, each in a frame of its own; a child that is not there has an
+    /// Boxes of eight children, each in a frame of its own; a child that is not there has an
     /// infinite box. Children have successive numbers.
-    struct alignas(4 * kWidth) Node {
-        std::array<std::array<Wide, 3>, 3> axis;
-        std::array<Wide, 3> low, high;
+    struct alignas(kLanesAlignment) Node {
+        std::array<std::array<Lanes, 3>, 3> axis;
+        std::array<Lanes, 3> low, high;
         std::uint32_t first_child; ///< from kLeafBit on a block
     };
     /// Prepared triangles, by component: corners, outward normals of their sides in the plane,
     /// inverse squares of the sides' lengths.
-    struct alignas(4 * kWidth) Block {
-        std::array<std::array<Wide, 3>, 3> corner, beyond;
-        std::array<Wide, 3> inverse, normal;
-        Wide bias; ///< 1 for a triangle without a normal: no point projects into it
-        std::array<std::uint32_t, kWidth> triangle;
+    struct alignas(kLanesAlignment) Block {
+        std::array<std::array<Lanes, 3>, 3> corner, beyond;
+        std::array<Lanes, 3> inverse, normal;
+        Lanes bias; ///< 1 for a triangle without a normal: no point projects into it
+        std::array<std::uint32_t, kLanes> triangle;
     };
 
 private:

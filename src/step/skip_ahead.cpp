@@ -47,7 +47,8 @@ SkipAhead::Probe SkipAhead::probe(const Line& line, double length, TriangleTree:
     return {distance, distance > 0 ? off.dot(line.inward) / distance : 0.0};
 }
 
-bool SkipAhead::chain_holds(const Line& line, double low, double high, double slope, TriangleTree::Seed& seed) const
+bool SkipAhead::chain_holds(const Line& line, double low, double high, double slope,
+                            TriangleTree::Seed& seed) const
 {
     const double cotangent = slope / std::sqrt(1 - slope * slope);
     double at = high, gap = 0, above = 0;
@@ -103,8 +104,9 @@ double SkipAhead::holds_up_to(const Line& line, const MarchRules& rules, const R
     const double slope = std::max(kLeastSlope, safe_slope(test.slope_wanted()));
     if (slope >= 1)
         return from;
-    return search(line, from,
-                  [&](double low, double high) { return chain_holds(line, low, high, slope, seed); });
+    return search(line, from, [&](double low, double high) {
+        return chain_holds(line, low, high, slope, seed);
+    });
 }
 
 } // namespace vdb_shell
