@@ -22,7 +22,10 @@ public:
     double voxel() const { return voxel_; }
 
     /// Value of a voxel inside; a pure function of mesh and voxel.
-    float value(const openvdb::Coord& at, TriangleTree::Seed& seed) const;
+    /// `base` is the least corner of the cell in whose stencil the voxel is, and `nearby` is kept
+    /// from one voxel to the next.
+    float value(const openvdb::Coord& at, const openvdb::Coord& base,
+                TriangleTree::Nearby& nearby) const;
     /// The point of the surface nearest to a place, to a twentieth of a voxel in distance.
     openvdb::Vec3d nearest_point(const openvdb::Vec3d& world, TriangleTree::Seed& seed) const;
 
@@ -42,6 +45,8 @@ public:
           known_(openvdb::FloatGrid::create()), accessor_(known_->getAccessor())
     {
     }
+    /// The voxels asked for next are those around this one.
+    void about(const openvdb::Coord& base) { base_ = base; }
     bool probe(const openvdb::Coord& at, float& value)
     {
         if (band_.probeValue(at, value))
@@ -50,7 +55,7 @@ public:
             return false;
         if (accessor_.probeValue(at, value))
             return true;
-        value = field_.value(at, seed_);
+        value = field_.value(at, base_, nearby_);
         accessor_.setValue(at, value);
         return true;
     }
@@ -60,7 +65,8 @@ private:
     openvdb::FloatGrid::ConstAccessor band_;
     openvdb::FloatGrid::Ptr known_;
     openvdb::FloatGrid::Accessor accessor_;
-    TriangleTree::Seed seed_ = TriangleTree::kNoSeed;
+    openvdb::Coord base_;
+    TriangleTree::Nearby nearby_;
 };
 
 using DeepSampler = StencilSampler<DeepVoxels>;

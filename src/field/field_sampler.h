@@ -22,6 +22,7 @@ class GridVoxels
 {
 public:
     explicit GridVoxels(const openvdb::FloatGrid& grid) : accessor_(grid.getConstAccessor()) {}
+    void about(const openvdb::Coord&) const {}
     bool probe(const openvdb::Coord& at, float& value) const
     {
         return accessor_.probeValue(at, value);
@@ -32,10 +33,10 @@ private:
 };
 
 /// Reads a level set at world points; Voxels has bool probe(Coord, float&), true where the voxel is
-/// active. The gradient is OpenTissue's: central differences at the
-/// eight voxels around the point, interpolated trilinearly, left at the length that comes out (half
-/// the stencil's slope across a medial sheet; method of the paper's authors). One object per
-/// thread.
+/// active, and about(Coord), told the cell before its stencil is probed. The gradient is
+/// OpenTissue's: central differences at the eight voxels around the point, interpolated
+/// trilinearly, left at the length that comes out (half the stencil's slope across a medial sheet;
+/// method of the paper's authors). One object per thread.
 template <typename Voxels> class StencilSampler
 {
 public:
@@ -81,6 +82,7 @@ private:
     void fetch(const openvdb::Coord& base)
     {
         base_ = base;
+        voxels_.about(base);
         fetched_ = in_band_ = true;
         for (int i = -1; i <= 2; ++i)
             for (int j = -1; j <= 2; ++j)

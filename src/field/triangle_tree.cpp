@@ -21,6 +21,8 @@ namespace
 
 constexpr std::uint32_t kLeafBit = 1U << 31;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// Queries that begin with many boxes take longer over these than over the levels above.
+constexpr std::size_t kMostPicked = 48;
 // Below it a range is not worth another thread.
 constexpr std::size_t kWorthAThread = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
@@ -197,8 +199,8 @@ TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std
 
 using Point = std::array<Lanes, 3>;
 
-VDB_SHELL_LANES_PART void box_distances(const TriangleTree::Node& node, const Point& p,
-                                        Lanes& squared)
+template <typename Boxes>
+VDB_SHELL_LANES_PART void box_distances(const Boxes& node, const Point& p, Lanes& squared)
 {
     squared = Lanes{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -267,62 +269,163 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit) : unit_(unit)
     }
 }
 
-VDB_SHELL_LANES_FUNCTION TriangleTree::Found
-TriangleTree::nearest(const Vec3d& point, float tolerance, Seed& seed) const
-{
-    const Vec3f p((point - middle_) / unit_);
-    const Point lanes_point{Lanes{} + p[0], Lanes{} + p[1], Lanes{} + p[2]};
+/// A query under way.
+struct TriangleTree::Search {
     struct Entry {
         float squared;
         std::uint32_t id;
     };
-    // All but one of the siblings are left behind at each level, and there are at most 16 levels.
-    std::array<Entry, 16 * kLanes> stack;
-    std::size_t top = 0;
-    stack[top++] = {0.0F, root_};
-    const std::uint32_t done = seed;
-    if (seed != kNoSeed)
-        stack[top++] = {0.0F, seed};
+    // No list of members in braces: that would clear the stack for every query.
+    VDB_SHELL_LANES_PART Search(const TriangleTree& tree, const Vec3d& at, float spare, Seed& last)
+        : nodes(tree.nodes_), blocks(tree.blocks_), tolerance(spare), seed(last)
+    {
+        const Vec3f p((at - tree.middle_) / tree.unit_);
+        point = {Lanes{} + p[0], Lanes{} + p[1], Lanes{} + p[2]};
+    }
+    const std::vector<Node>& nodes;
+    const std::vector<Block>& blocks;
+    Point point;
+    float tolerance;
+    Seed& seed;
+    Seed done = kNoSeed; ///< the block looked into first
     float limit = std::numeric_limits<float>::max();
     Found found{0, kInfinity};
-    while (top > 0) {
-        const Entry entry = stack[--top];
-        if (entry.squared > limit)
-            continue;
-        if (entry.id & kLeafBit) {
-            if (entry.id == done && found.squared < kInfinity)
-                continue;
-            const Block& block = blocks_[entry.id & ~kLeafBit];
-            Lanes d;
-            distances(block, lanes_point, d);
-            unsigned bits = bits_of(d < found.squared);
-            if (bits == 0)
-                continue;
-            for (; bits != 0; bits &= bits - 1) {
-                const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
-                if (d[i] < found.squared)
-                    found = {block.triangle[i], d[i]};
-            }
-            seed = entry.id;
-            const float nearer = std::max(std::sqrt(found.squared) - tolerance, 0.0F);
-            limit = tolerance > 0 ? nearer * nearer : found.squared;
-            continue;
-        }
-        const Node& node = nodes_[entry.id];
+    // What is picked, and at each of at most 12 levels all but one of the siblings.
+    std::array<Entry, kMostPicked + 12 * kLanes> stack;
+    std::size_t top = 0;
+
+    VDB_SHELL_LANES_PART void look_into(std::uint32_t id)
+    {
+        const Block& block = blocks[id & ~kLeafBit];
         Lanes d;
-        box_distances(node, lanes_point, d);
-        // Nearest on top.
-        const std::size_t bottom = top;
-        for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1) {
+        distances(block, point, d);
+        unsigned bits = bits_of(d < found.squared);
+        if (bits == 0)
+            return;
+        for (; bits != 0; bits &= bits - 1) {
             const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
-            const Entry child{d[i], node.first_child + std::uint32_t(i)};
-            std::size_t place = top++;
-            for (; place > bottom && stack[place - 1].squared < child.squared; --place)
-                stack[place] = stack[place - 1];
-            stack[place] = child;
+            if (d[i] < found.squared)
+                found = {block.triangle[i], d[i]};
+        }
+        seed = id;
+        const float nearer = std::max(std::sqrt(found.squared) - tolerance, 0.0F);
+        limit = tolerance > 0 ? nearer * nearer : found.squared;
+    }
+
+    VDB_SHELL_LANES_PART void begin()
+    {
+        done = seed;
+        if (seed != kNoSeed)
+            look_into(seed);
+    }
+
+    /// Nearest on top of what is above `bottom`.
+    VDB_SHELL_LANES_PART void push(const Entry& entry, std::size_t bottom)
+    {
+        std::size_t place = top++;
+        for (; place > bottom && stack[place - 1].squared < entry.squared; --place)
+            stack[place] = stack[place - 1];
+        stack[place] = entry;
+    }
+
+    VDB_SHELL_LANES_PART void run()
+    {
+        while (top > 0) {
+            const Entry entry = stack[--top];
+            if (entry.squared > limit || entry.id == done)
+                continue;
+            if (entry.id & kLeafBit) {
+                look_into(entry.id);
+                continue;
+            }
+            const Node& node = nodes[entry.id];
+            Lanes d;
+            box_distances(node, point, d);
+            const std::size_t bottom = top;
+            for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1) {
+                const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
+                push({d[i], node.first_child + std::uint32_t(i)}, bottom);
+            }
         }
     }
-    return found;
+};
+
+VDB_SHELL_LANES_FUNCTION TriangleTree::Found TriangleTree::nearest(const Vec3d& at, float tolerance,
+                                                                   Seed& seed) const
+{
+    Search search(*this, at, tolerance, seed);
+    search.begin();
+    search.push({0.0F, root_}, 0);
+    search.run();
+    return search.found;
+}
+
+VDB_SHELL_LANES_FUNCTION float TriangleTree::squared_distance(const Vec3d& at, Nearby& nearby) const
+{
+    Search search(*this, at, 0.0F, nearby.seed);
+    search.begin();
+    for (std::size_t g = 0; g * kLanes < nearby.count; ++g) {
+        const Picked& picked = nearby.picked[g];
+        Lanes d;
+        box_distances(picked, search.point, d);
+        for (unsigned bits = bits_of(d <= search.limit); bits != 0; bits &= bits - 1) {
+            const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
+            search.push({d[i], picked.child[i]}, 0);
+        }
+    }
+    search.run();
+    return search.found.squared;
+}
+
+VDB_SHELL_LANES_FUNCTION void TriangleTree::gather(const Vec3d& centre, double radius,
+                                                   Nearby& nearby) const
+{
+    nearby.centre = centre;
+    nearby.radius = radius;
+    nearby.count = 0;
+    const auto distance = std::sqrt(nearest(centre, 0.0F, nearby.seed).squared);
+    // Rounding is far less than a hundredth of the ball.
+    const float reach = distance + 2.01F * static_cast<float>(radius / unit_);
+    const Vec3f p((centre - middle_) / unit_);
+    const Point point{Lanes{} + p[0], Lanes{} + p[1], Lanes{} + p[2]};
+    struct Place {
+        std::uint32_t node, lane;
+    };
+    // Level by level, as long as that does not give too many.
+    std::array<Place, kMostPicked> list, next;
+    std::size_t count = 0;
+    std::array<std::uint32_t, kMostPicked> ids{root_};
+    for (std::size_t parents = 1; !(ids[0] & kLeafBit);) {
+        std::size_t found = 0;
+        for (std::size_t n = 0; n < parents && found <= kMostPicked; ++n) {
+            Lanes d;
+            box_distances(nodes_[ids[n]], point, d);
+            for (unsigned bits = bits_of(d <= reach * reach); bits != 0; bits &= bits - 1, ++found)
+                if (found < kMostPicked)
+                    next[found] = {ids[n], static_cast<std::uint32_t>(__builtin_ctz(bits))};
+        }
+        if (found > kMostPicked)
+            break;
+        std::swap(list, next);
+        count = parents = found;
+        for (std::size_t n = 0; n < count; ++n)
+            ids[n] = nodes_[list[n].node].first_child + list[n].lane;
+    }
+    nearby.picked.resize((count + kLanes - 1) / kLanes);
+    nearby.count = count;
+    for (std::size_t n = 0; n < nearby.picked.size() * kLanes; ++n) {
+        Picked& to = nearby.picked[n / kLanes];
+        const std::size_t i = n % kLanes;
+        const Node* from = n < count ? &nodes_[list[n].node] : nullptr;
+        const std::size_t lane = n < count ? list[n].lane : 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                to.axis[k][axis][i] = from ? from->axis[k][axis][lane] : 0.0F;
+            to.low[k][i] = from ? from->low[k][lane] : kInfinity;
+            to.high[k][i] = from ? from->high[k][lane] : kInfinity;
+        }
+        to.child[i] = from ? from->first_child + static_cast<std::uint32_t>(lane) : 0;
+    }
 }
 
 } // namespace vdb_shell

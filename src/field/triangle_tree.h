@@ -42,6 +42,26 @@ public:
         std::array<Lanes, 3> low, high;
         std::uint32_t first_child; ///< from kLeafBit on a block
     };
+    /// Boxes picked from several nodes.
+    struct alignas(kLanesAlignment) Picked {
+        std::array<std::array<Lanes, 3>, 3> axis;
+        std::array<Lanes, 3> low, high;
+        std::array<std::uint32_t, kLanes> child;
+    };
+    /// What can be nearest to the points of a ball: many queries near each other begin here.
+    struct Nearby {
+        openvdb::Vec3d centre{0.0};
+        double radius = -1; ///< of the ball; less than 0: nothing yet
+        Seed seed = kNoSeed;
+        std::vector<Picked> picked;
+        std::size_t count = 0; ///< of what is picked
+    };
+    /// Both in world units.
+    void gather(const openvdb::Vec3d& centre, double radius, Nearby& nearby) const;
+    /// The squared distance of a point in the ball to the nearest triangle, in units: a pure
+    /// function of mesh and point.
+    float squared_distance(const openvdb::Vec3d& point, Nearby& nearby) const;
+
     /// Prepared triangles, by component: corners, outward normals of their sides in the plane,
     /// inverse squares of the sides' lengths.
     struct alignas(kLanesAlignment) Block {
@@ -52,6 +72,8 @@ public:
     };
 
 private:
+    struct Search;
+
     openvdb::Vec3d middle_;
     double unit_;
     std::vector<Node> nodes_;
