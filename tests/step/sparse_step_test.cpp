@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field/deep_field.h"
+#include "field/nearest_on_triangle.h"
 #include "step/march.h"
 #include "support/files.h"
 #include "support/shapes.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vdb_shell
 {
@@ -168,6 +170,43 @@ TEST(SparseStep, SkippingAheadChangesNothing)
             EXPECT_EQ(skipped.steps, all.steps) << int(test);
             EXPECT_EQ(skipped.reason, all.reason) << int(test);
         }
+    }
+}
+
+double distance_to_all(const TriangleMesh& mesh, const Vec3d& point)
+{
+    double least = std::numeric_limits<double>::max();
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        const std::array<Vec3d, 3> corners{Vec3d(mesh.points[t[0]]), Vec3d(mesh.points[t[1]]),
+                                           Vec3d(mesh.points[t[2]])};
+        least = std::min(least, (nearest_on_triangle(corners, point).point - point).length());
+    }
+    return least;
+}
+
+TEST(SparseStep, DeepVoxelsAreTheDistanceWhateverWasAskedBefore)
+{
+    for (const TriangleMesh& mesh : {test::icosphere(0.4, 4), test::torus(1, 0.4, 90, 31),
+                                     test::turned(test::gridded_box(Vec3d(0), Vec3d(1, 1, 0.5), 9),
+                                                  Vec3d(1, 2, 3).unit(), 0.7)}) {
+        const Stage stage = stage_of(mesh, 64);
+        const DeepField deep(stage.mesh, *stage.band);
+        std::vector<openvdb::Coord> voxels;
+        for (openvdb::Coord at(-40); at[0] < 40; at[0] += 3)
+            for (at[1] = -40; at[1] < 40; at[1] += 5)
+                for (at[2] = -40; at[2] < 40; at[2] += 4)
+                    voxels.push_back(at);
+        TriangleTree::Nearby nearby;
+        std::vector<float> forwards, backwards;
+        for (const openvdb::Coord& at : voxels)
+            forwards.push_back(deep.value(at, at.offsetBy(-1, 0, 0), nearby));
+        for (std::size_t i = voxels.size(); i-- > 0;)
+            backwards.push_back(deep.value(voxels[i], voxels[i].offsetBy(0, 1, 0), nearby));
+        std::reverse(backwards.begin(), backwards.end());
+        EXPECT_EQ(forwards, backwards);
+        for (std::size_t i = 0; i < voxels.size(); i += 7)
+            EXPECT_NEAR(-forwards[i], distance_to_all(mesh, stage.voxel * voxels[i].asVec3d()),
+                        1e-3 * stage.voxel);
     }
 }
 
