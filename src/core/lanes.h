@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/two_targets.h"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -8,16 +10,8 @@
 // compiler, at a quarter of the speed. Products and sums are not contracted (CMakeLists.txt), so
 // the bits are the same whatever the processor has.
 
-/// For a function that works on lanes: compiled once for processors with AVX2 and once for all. Not
-/// under sanitizers, which start after the linker has chosen.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define VDB_SHELL_LANES_FUNCTION __attribute__((target_clones("avx2", "default")))
-#else
-#define VDB_SHELL_LANES_FUNCTION
-#endif
-/// For what such functions call, which has to become part of both. Takes and returns no lanes by
-/// value: how these are passed depends on the processor.
+/// For what functions of VDB_SHELL_TWO_TARGETS (core/two_targets.h) call, which has to become part
+/// of both. Takes and returns no lanes by value: how these are passed depends on the processor.
 #define VDB_SHELL_LANES_PART __attribute__((always_inline)) inline
 
 namespace vdb_shell

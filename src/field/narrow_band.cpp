@@ -148,10 +148,10 @@ struct EightNearest {
 };
 
 /// `list` picks from the triangles; `squared`, where wanted, gets the distances to each of it.
-VDB_SHELL_LANES_FUNCTION void nearest_of(const std::vector<PreparedTriangle>& triangles,
-                                         const std::vector<std::uint32_t>& list,
-                                         const EightPoints& points, float* squared,
-                                         EightNearest& nearest)
+VDB_SHELL_TWO_TARGETS void nearest_of(const std::vector<PreparedTriangle>& triangles,
+                                      const std::vector<std::uint32_t>& list,
+                                      const EightPoints& points, float* squared,
+                                      EightNearest& nearest)
 {
     Lanes least = Lanes{} + std::numeric_limits<float>::max(), height{};
     LaneIndices triangle{};

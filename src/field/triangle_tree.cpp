@@ -350,8 +350,8 @@ struct TriangleTree::Search {
     }
 };
 
-VDB_SHELL_LANES_FUNCTION TriangleTree::Found TriangleTree::nearest(const Vec3d& at, float tolerance,
-                                                                   Seed& seed) const
+VDB_SHELL_TWO_TARGETS TriangleTree::Found TriangleTree::nearest(const Vec3d& at, float tolerance,
+                                                                Seed& seed) const
 {
     Search search(*this, at, tolerance, seed);
     search.begin();
@@ -360,7 +360,7 @@ VDB_SHELL_LANES_FUNCTION TriangleTree::Found TriangleTree::nearest(const Vec3d& 
     return search.found;
 }
 
-VDB_SHELL_LANES_FUNCTION float TriangleTree::squared_distance(const Vec3d& at, Nearby& nearby) const
+VDB_SHELL_TWO_TARGETS float TriangleTree::squared_distance(const Vec3d& at, Nearby& nearby) const
 {
     Search search(*this, at, 0.0F, nearby.seed);
     search.begin();
@@ -377,8 +377,8 @@ VDB_SHELL_LANES_FUNCTION float TriangleTree::squared_distance(const Vec3d& at, N
     return search.found.squared;
 }
 
-VDB_SHELL_LANES_FUNCTION void TriangleTree::gather(const Vec3d& centre, double radius,
-                                                   Nearby& nearby) const
+VDB_SHELL_TWO_TARGETS void TriangleTree::gather(const Vec3d& centre, double radius,
+                                                Nearby& nearby) const
 {
     nearby.centre = centre;
     nearby.radius = radius;
