@@ -38,9 +38,9 @@ VDB_SHELL_LANES_PART void raise_to(Lanes& most, const Lanes& other)
 VDB_SHELL_LANES_PART unsigned bits_of(const LaneIndices& comparison)
 {
     LaneIndices bits = comparison & LaneIndices{1, 2, 4, 8, 16, 32, 64, 128};
-    bits |= __builtin_shuffle(bits, LaneIndices{4, 5, 6, 7, 0, 1, 2, 3});
-    bits |= __builtin_shuffle(bits, LaneIndices{2, 3, 0, 1, 6, 7, 4, 5});
-    bits |= __builtin_shuffle(bits, LaneIndices{1, 0, 3, 2, 5, 4, 7, 6});
+    bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
+    bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
+    bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
     return static_cast<unsigned>(bits[0]);
 }
 
