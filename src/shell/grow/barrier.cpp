@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/barrier.h"
 
-#include "core/two_targets.h"
+#include "core/lanes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,6 @@ bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
     dx[0] = (y0 - l10 * dx[1] - l20 * dx[2]) / l00;
     return true;
 }
-
-using EightFloats __attribute__((vector_size(32))) = float;
 
 /// Where x + t dx leaves the ball. Precondition: x lies in it.
 double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
@@ -108,11 +106,11 @@ void Bounds::add_unit(const Vec3s& n, double value)
 VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
 {
     // By axis; the last three lanes are not asked for.
-    std::array<EightFloats, 3> at{};
+    std::array<Lanes, 3> at{};
     for (int i = 0; i < 5; ++i)
         for (int k = 0; k < 3; ++k)
             at[k][i] = static_cast<float>((corner[i][k] - here_[k]) * scale_);
-    std::array<EightFloats, 3> p, u, w;
+    std::array<Lanes, 3> p, u, w;
     for (int k = 0; k < 3; ++k) {
         // The bases of PrismTables, in an order of their own. The nearest corner comes first, an
         // inner one if there is one, for floats are relative to the vertex.
@@ -120,9 +118,9 @@ VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
         u[k] = __builtin_shufflevector(at[k], at[k], 3, 3, 1, 1, 3, 0, 1, 1) - p[k];
         w[k] = __builtin_shufflevector(at[k], at[k], 0, 1, 2, 0, 2, 2, 2, 0) - p[k];
     }
-    const EightFloats x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
+    const Lanes x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
                       z = u[0] * w[1] - u[1] * w[0];
-    const EightFloats squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
+    const Lanes squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
     size_ += kLanes;
     Block& b = block_.emplace_back();
     for (std::size_t i = 0; i < kLanes; ++i) {
