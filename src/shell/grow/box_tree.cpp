@@ -18,7 +18,7 @@ namespace
 
 constexpr int kLeaf = 4;
 // Below this many boxes a second thread costs more than it saves.
-constexpr int kParallel = 4096;
+constexpr int kParallel = 512;
 
 /// How many nodes a tree over `count` boxes has. On each level there are two sizes at most, `size`
 /// and `size` + 1.

@@ -203,17 +203,18 @@ Slab slab_between(const Body& first, const Body& second, double enough)
     const double across_second = room_across(second.normal, p);
     if (std::max(across_first, across_second) > enough)
         return wide;
-    const Vec3d* axis = &middles;
-    double widest = squared > 0 ? room / std::sqrt(squared) : 0;
-    if (across_first > widest)
-        axis = &first.normal, widest = across_first;
-    if (across_second > widest)
-        axis = &second.normal, widest = across_second;
     const Vec3d edges = across_edges(p);
-    const double length = edges.length();
-    if (length > 0 && room_across(edges, p) > widest * length)
-        axis = &edges;
-    return slab_across(*axis, p);
+    const Slab across = slab_across(edges, p);
+    // No slab is wider than two points are apart: most pairs end here.
+    constexpr double kAll = 1 - 1e-6;
+    if (across.gap > kAll * edges.length())
+        return across;
+    const double widest = std::max({0.0, across.gap, across_first, across_second});
+    if (room > 0 && room * room > widest * widest * squared)
+        return slab_across(middles, p);
+    if (across.gap >= widest)
+        return across;
+    return slab_across(across_first >= across_second ? first.normal : second.normal, p);
 }
 
 } // namespace vdb_shell::growth

@@ -23,7 +23,7 @@ template <class Propose>
 void sweep(GrowState& s, const Walls& w, const std::vector<std::uint8_t>& still,
            const Propose& propose)
 {
-    constexpr std::size_t kGrain = 16; // a proposal costs microseconds
+    constexpr std::size_t kGrain = 6; // a proposal costs microseconds
     for (const std::vector<int>& colour : s.mesh->colour)
         for_each_index(
             colour.size(),

@@ -16,7 +16,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-constexpr std::size_t kChunk = 8; ///< groups of faces whose walls are listed together
+constexpr std::size_t kChunk = 3; ///< groups of faces whose walls are listed together
 
 /// Whose wall it is: corners 0..2 of face f lie where value > 0, those of inner face g where it is
 /// < 0.
