@@ -119,7 +119,7 @@ VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
         w[k] = __builtin_shufflevector(at[k], at[k], 0, 1, 2, 0, 2, 2, 2, 0) - p[k];
     }
     const Lanes x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
-                      z = u[0] * w[1] - u[1] * w[0];
+                z = u[0] * w[1] - u[1] * w[0];
     const Lanes squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
     size_ += kLanes;
     Block& b = block_.emplace_back();
