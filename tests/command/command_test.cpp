@@ -375,7 +375,8 @@ TEST_F(Command, WrapsAnOpenSurfaceAndBuildsFromItsOwnVdb)
     const std::string quick = " --resolution 32 --samples 0 ";
     expect_refusal("build " + open + quick, ExitCode::geometry_error, {"open.obj"});
     const Outcome wrapped =
-        run("build " + open + quick + "--wrap --wrap-resolution 24 -o " + file("a.vdb"));
+        run("build " + open + quick + "--wrap --wrap-resolution 24 --field dense -o " +
+            file("a.vdb")); // a band deep enough to be stepped through again
     EXPECT_EQ(wrapped.status, ExitCode::success) << wrapped.err;
     EXPECT_NE(wrapped.out.find("input to wrap"), std::string::npos) << wrapped.out;
 
