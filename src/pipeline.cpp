@@ -242,6 +242,7 @@ std::string options_json(const ShellOptions& options)
                     {"free_moves", options.grow.free_moves},
                     {"soft_contacts", options.grow.soft_contacts},
                     {"flips", options.grow.flips},
+                    {"coarse_from", options.grow.coarse_from},
                     {"free_rounds", options.grow.free_rounds},
                     {"min_quality", options.grow.min_quality}};
     json["refine"] = {{"rounds", options.refine.rounds},

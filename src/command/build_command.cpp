@@ -207,6 +207,10 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
     lever("--soft-contacts,!--no-soft-contacts", grow.soft_contacts,
           "Keep clear of near triangles before they touch [on]");
     lever("--flips,!--no-flips", grow.flips, "Turn diagonals for room and for quality [on]");
+    app.add_option("--coarse-from", grow.coarse_from,
+                   "Triangles from which on growth begins on a coarser surface; 0: never")
+        ->capture_default_str()
+        ->group("Growth");
     app.add_option("--free-rounds", grow.free_rounds, "Upper bound on rounds of free moves")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str()

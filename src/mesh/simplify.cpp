@@ -60,40 +60,52 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const std::vector<char>& hel
     return out;
 }
 
+using Quadric = OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>;
+using Turn = OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>;
+using Aspect = OpenMesh::Decimater::ModAspectRatioT<HalfedgeMesh>;
+
+/// What every collapse is held to; gives back the module of the quadric error.
+Quadric& add_common_modules(Decimater& decimater)
+{
+    Quadric::Handle quadric;
+    Turn::Handle turn;
+    Aspect::Handle aspect;
+    decimater.add(quadric);
+    decimater.add(turn);
+    decimater.add(aspect);
+    decimater.module(quadric).set_binary(false);
+    decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
+    decimater.module(aspect).set_aspect_ratio(kWorstAspect);
+    decimater.module(aspect).set_binary(true);
+    return decimater.module(quadric);
+}
+
 /// Of a mesh in units of the tolerance.
 void collapse_edges(HalfedgeMesh& mesh, const SimplifyLimits& limits)
 {
     Decimater decimater(mesh);
-    OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
+    Quadric& quadric = add_common_modules(decimater);
     OpenMesh::Decimater::ModHausdorffT<HalfedgeMesh>::Handle distance;
-    OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>::Handle turn;
-    OpenMesh::Decimater::ModAspectRatioT<HalfedgeMesh>::Handle aspect;
-    decimater.add(quadric);
     decimater.add(distance);
-    decimater.add(turn);
-    decimater.add(aspect);
     OpenMesh::Decimater::ModEdgeLengthT<HalfedgeMesh>::Handle length;
     decimater.add(length);
     decimater.module(length).set_edge_length(limits.longest_edge / limits.tolerance);
     decimater.module(length).set_binary(true);
     // A sum over all planes that a vertex stands for: far stricter than the distance.
     if (limits.bound_quadric)
-        decimater.module(quadric).set_max_err(1.0, false);
+        quadric.set_max_err(1.0, false);
     else
-        decimater.module(quadric).unset_max_err();
-    decimater.module(quadric).set_binary(false);
+        quadric.unset_max_err();
     decimater.module(distance).set_tolerance(1.0);
-    decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
-    decimater.module(aspect).set_aspect_ratio(kWorstAspect);
-    decimater.module(aspect).set_binary(true);
     decimater.initialize();
     decimater.decimate_to_faces(0, limits.fewest_triangles);
 }
 
 /// The faces and points that are left, with the points' own float32 coordinates.
-TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original)
+Coarsened what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original)
 {
-    TriangleMesh out;
+    Coarsened left;
+    TriangleMesh& out = left.mesh;
     std::vector<std::uint32_t> place(original.points.size());
     for (std::size_t v = 0; v < place.size(); ++v) {
         const auto handle = HalfedgeMesh::VertexHandle(static_cast<int>(v));
@@ -101,6 +113,7 @@ TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original
             continue;
         place[v] = static_cast<std::uint32_t>(out.points.size());
         out.points.push_back(original.points[v]);
+        left.from.push_back(static_cast<std::uint32_t>(v));
     }
     for (const auto face : mesh.faces()) {
         openvdb::Vec3I corners;
@@ -109,7 +122,7 @@ TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original
             corners[k++] = place[static_cast<std::size_t>(vertex.idx())];
         out.triangles.push_back(corners);
     }
-    return out;
+    return left;
 }
 
 /// Boxes around all triangles that spoil the surface; empty when it is sound.
@@ -164,7 +177,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
         // In units of the tolerance the decimater's own small constants are small.
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
         collapse_edges(halfedges, limits);
-        TriangleMesh left = what_is_left(halfedges, mesh);
+        TriangleMesh left = what_is_left(halfedges, mesh).mesh;
         const std::vector<Box> places = spoiled_places(left);
         if (places.empty())
             return is_sound(left) ? Simplified{std::move(left), repeat} : Simplified{mesh, repeat};
@@ -172,6 +185,18 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
         hold_points_near(places, static_cast<float>(2.0 * repeat * tolerance), mesh, held);
     }
     return {mesh, kMaxRepeats};
+}
+
+Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles)
+{
+    const double size = diagonal_of(bounds_of(mesh.points));
+    const std::vector<char> none(mesh.points.size());
+    HalfedgeMesh halfedges = to_halfedges(mesh, none, size > 0 ? size : 1.0);
+    Decimater decimater(halfedges);
+    add_common_modules(decimater).unset_max_err();
+    decimater.initialize();
+    decimater.decimate_to_faces(0, triangles);
+    return what_is_left(halfedges, mesh);
 }
 
 } // namespace vdb_shell

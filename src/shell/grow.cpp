@@ -2,6 +2,8 @@
 #include "vdb_shell/shell/grow.h"
 
 #include "core/stage_progress.h"
+#include "mesh/simplify.h"
+#include "shell/grow/coarse_start.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/directions.h"
 #include "shell/grow/free_moves.h"
@@ -34,6 +36,10 @@ constexpr double kLeastLineGain = 3e-3;
 // fifth of a point of fill less, than what the thickest shell is given.
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
+// Triangles of a surface over those of the coarse one that growth begins on, and the barrier's
+// weight at which that ends and the other goes on: before the inner surface collapses.
+constexpr std::size_t kCoarser = 8;
+constexpr double kRoughUntil = 0.1, kRoughSoftness = 0.2;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -83,24 +89,64 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
     s.pinned = long_pinned;
 }
 
-/// The pillars up to `inner` as lines. Vertices that have none keep their direction, for growth may
-/// release them.
-struct Pillars {
-    Directions lines;
-    std::vector<double> length;
-};
-
-Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& inner,
-                   Directions lines)
+bool worth_coarse_start(const TriangleMesh& mesh, const GrowState& s, const GrowOptions& options)
 {
-    Pillars pillars{std::move(lines), std::vector<double>(inner.size())};
-    for (std::size_t v = 0; v < inner.size(); ++v) {
-        const openvdb::Vec3d arm = openvdb::Vec3d(inner[v]) - openvdb::Vec3d(mesh.points[v]);
-        pillars.length[v] = arm.length();
-        if (pillars.length[v] > 0)
-            pillars.lines.inward[v] = arm / pillars.length[v];
+    return options.coarse_from > 0 && mesh.triangles.size() >= options.coarse_from && s.bounded &&
+           options.top_down && options.free_moves;
+}
+
+bool start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
+                  const LineLengths& start, const GrowOptions& options,
+                  const StageProgress& progress);
+
+/// Inner points of a coarse surface's shell that growth has not finished.
+std::vector<openvdb::Vec3d> rough_inner(const Coarsened& coarse, const LineLengths& start,
+                                        const std::vector<double>& cap, const GrowOptions& options,
+                                        const StageProgress& progress)
+{
+    const TriangleMesh& mesh = coarse.mesh;
+    Directions directions;
+    for (const openvdb::Vec3d& normal : pseudo_normals(mesh)) {
+        directions.inward.push_back(-normal);
     }
-    return pillars;
+    directions.visibility = visibility_of(mesh, pseudo_normals(mesh));
+    const Directions lines = prepare(mesh, std::move(directions), options);
+    LineLengths lengths;
+    std::vector<double> caps;
+    for (const std::uint32_t v : coarse.from) {
+        lengths.length.push_back(start.length[v]);
+        caps.push_back(cap[v]);
+    }
+    const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
+    GrowState s = growth::make_state(connectivity, mesh.points, caps);
+    start_growth(s, mesh, lines, lengths, options, progress);
+    GrowReport ignored;
+    growth::move_freely(
+        s, lines.visibility, options,
+        {options.free_rounds, growth::kTwelveSoftness, kCool, kLeastGain, kRoughUntil}, progress,
+        ignored);
+    return s.b;
+}
+
+/// Sets the state to a shell that growth can go on from; true where that is one of a coarser
+/// surface's growth.
+bool start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
+                  const LineLengths& start, const GrowOptions& options,
+                  const StageProgress& progress)
+{
+    if (worth_coarse_start(mesh, s, options)) {
+        const Coarsened coarse = coarsen(mesh, mesh.triangles.size() / kCoarser);
+        if (coarse.mesh.triangles.size() <= mesh.triangles.size() / 2) {
+            const std::vector<openvdb::Vec3d> inner =
+                rough_inner(coarse, start, s.cap, options, progress);
+            growth::Pillars pillars = growth::pillars_in(coarse.mesh, inner, mesh, lines);
+            growth::settle_start(s, pillars.lines, std::move(pillars.length), progress, 0,
+                                 growth::kShrinkLittle);
+            return true;
+        }
+    }
+    settle(s, lines, start, options, progress);
+    return false;
 }
 
 bool worth_lengthening(const GrowState& s)
@@ -109,8 +155,9 @@ bool worth_lengthening(const GrowState& s)
     return !s.bounded || fill > growth::kNearlyFull || fill < kThin;
 }
 
-void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOptions& options,
-                        const StageProgress& progress, GrowReport& report)
+void move_off_the_lines(GrowState& s, const Directions& directions, double softness,
+                        const GrowOptions& options, const StageProgress& progress,
+                        GrowReport& report)
 {
     const bool thickest = options.method == Method::thickest;
     const int twelve_rounds =
@@ -118,8 +165,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const GrowOp
     const double cool = thickest ? kCoolSlowly : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
     growth::move_freely(s, directions.visibility, options,
-                        {twelve_rounds, growth::kTwelveSoftness, cool, least_gain}, progress,
-                        report);
+                        {twelve_rounds, softness, cool, least_gain}, progress, report);
     if (!thickest)
         return;
     s.twelve = false;
@@ -200,13 +246,13 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     Directions lines = prepare(mesh, directions, options);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
-
+    bool rough = false;
     if (from) {
-        Pillars pillars = pillars_to(mesh, from->inner, std::move(lines));
+        growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
         lines = std::move(pillars.lines);
         growth::settle_start(s, lines, pillars.length, progress, from->settled);
     } else {
-        settle(s, lines, start, options, progress);
+        rough = start_growth(s, mesh, lines, start, options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     if (options.grow_lines && (!options.free_moves || worth_lengthening(s)))
@@ -214,7 +260,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                                progress);
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)
-        move_off_the_lines(s, lines, options, progress, result.report);
+        move_off_the_lines(s, lines, rough ? kRoughSoftness : growth::kTwelveSoftness, options,
+                           progress, result.report);
     const std::size_t ripples =
         choose_diagonals(s, shell_of(mesh, s), options, split, result.report);
     if (options.min_quality > 0)

@@ -34,7 +34,10 @@ struct GrowOptions {
     bool soft_contacts = true; ///< free moves keep clear of near triangles before they touch
     bool flips = true;         ///< choose diagonals again while moving (thickest) and for
                                ///< quality at the end
-    int free_rounds = 40;      ///< upper bound on rounds of free moves, under each prism test
+    /// From so many triangles on, growth begins on a surface of an eighth of them (which may again
+    /// be too many) and goes on from its shell: sooner, and thicker. 0: never.
+    std::size_t coarse_from = 50000;
+    int free_rounds = 40; ///< upper bound on rounds of free moves, under each prism test
     /// Bound that the mean ratio of every tet should reach (certify/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.

@@ -16,7 +16,6 @@ namespace
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kThinShare = 0.02;
-constexpr double kShrink = 0.65;
 // After that many times a vertex that yields first is no better than the others.
 constexpr int kYields = 4;
 
@@ -137,7 +136,8 @@ std::vector<std::uint8_t> corners_to_shrink(const GrowState& s,
 /// Shrinks the pillars of violating prisms; marks the faces that this changes. False when there is
 /// nothing left to shrink.
 bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& h,
-                   std::vector<std::uint8_t>& yields, std::vector<std::uint8_t>& changed)
+                   std::vector<std::uint8_t>& yields, std::vector<std::uint8_t>& changed,
+                   double shrink)
 {
     const double floor = 2 * s.rounding; // shorter pillars are lost in the rounding
     std::vector<std::uint8_t> touched = corners_to_shrink(s, bad, yields);
@@ -147,7 +147,7 @@ bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vect
         if (!touched[v])
             continue;
         any = true;
-        h[v] *= kShrink;
+        h[v] *= shrink;
         yields[v] -= yields[v] > 0;
         if (h[v] < floor)
             s.pinned[v] = 1;
@@ -190,7 +190,7 @@ std::vector<double> thin_heights(const GrowState& s)
 }
 
 void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress, std::size_t first_yielding)
+                  const StageProgress& progress, std::size_t first_yielding, double shrink)
 {
     for (int v = 0; v < s.mesh->vertices; ++v) {
         const bool stranded = star(*s.mesh, v).size() == 0;
@@ -205,7 +205,7 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
     bool first = true;
     // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
     // crosses itself: with all its vertices pinned.
-    while (shrink_around(s, violating_faces(s, changed, first), h, yields, changed)) {
+    while (shrink_around(s, violating_faces(s, changed, first), h, yields, changed, shrink)) {
         progress.stop_if_interrupted(0);
         place(s, directions, h);
         first = false;
