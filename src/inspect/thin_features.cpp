@@ -39,7 +39,7 @@ std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double 
         for (int corner = 0; corner < 3; ++corner)
             boxes[t].add(Vec3d(mesh.points[mesh.triangles[t][corner]]));
     growth::BoxTree tree;
-    tree.build(std::move(boxes));
+    tree.build(boxes);
     std::vector<char> thin(mesh.triangles.size());
     for_each_index(thin.size(), [&](std::size_t t) {
         const Ray ray = inward_from(mesh, mesh.triangles[t]);

@@ -33,7 +33,7 @@ growth::BoxTree tree_of(const TriangleMesh& mesh, std::size_t begin)
     for (std::size_t t = begin; t < mesh.triangles.size(); ++t)
         boxes.push_back(box_of(mesh, mesh.triangles[t]));
     growth::BoxTree tree;
-    tree.build(std::move(boxes));
+    tree.build(boxes);
     return tree;
 }
 
