@@ -106,10 +106,10 @@ std::vector<openvdb::Vec3d> rough_inner(const Coarsened& coarse, const LineLengt
 {
     const TriangleMesh& mesh = coarse.mesh;
     Directions directions;
-    for (const openvdb::Vec3d& normal : pseudo_normals(mesh)) {
-        directions.inward.push_back(-normal);
-    }
-    directions.visibility = visibility_of(mesh, pseudo_normals(mesh));
+    directions.inward = pseudo_normals(mesh);
+    directions.visibility = visibility_of(mesh, directions.inward);
+    for (openvdb::Vec3d& d : directions.inward)
+        d = -d;
     const Directions lines = prepare(mesh, std::move(directions), options);
     LineLengths lengths;
     std::vector<double> caps;

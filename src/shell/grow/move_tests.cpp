@@ -65,19 +65,6 @@ bool kin_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int
     return true;
 }
 
-bool touches_inner(const GrowState& s, int v, const MovedTriangle& moved, const Vec3d& x, int g)
-{
-    const bool both = s.mesh->incident_to(g, v);
-    // Two triangles of the star are asked once, from the smaller index.
-    if (both ? g < moved.face : !moved.box.overlaps(s.inner_box[g]))
-        return false;
-    Corners other = inner_corners(s, g);
-    for (int k = 0; both && k < 3; ++k)
-        if (s.mesh->corner(g, k) == v)
-            other[k] = x;
-    return improper_contact(moved.corners, moved.ids, other, inner_ids(s, g));
-}
-
 /// The corners of an inner triangle with b_v = x.
 Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
 {
@@ -86,6 +73,15 @@ Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
         if (s.mesh->corner(f, k) == v)
             corners[k] = x;
     return corners;
+}
+
+bool touches_inner(const GrowState& s, int v, const MovedTriangle& moved, const Vec3d& x, int g)
+{
+    const bool both = s.mesh->incident_to(g, v);
+    // Two triangles of the star are asked once, from the smaller index.
+    if (both ? g < moved.face : !moved.box.overlaps(s.inner_box[g]))
+        return false;
+    return improper_contact(moved.corners, moved.ids, corners_with(s, g, v, x), inner_ids(s, g));
 }
 
 bool pair_meets(const GrowState& s, int v, const Vec3d& x, int f, int g)
