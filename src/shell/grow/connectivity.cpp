@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/connectivity.h"
 
+#include "core/parallel.h"
 #include "mesh/topology.h"
 #include "shell/grow/plane_sides.h"
 
@@ -93,64 +94,94 @@ void colour_vertices(Connectivity& c)
     }
 }
 
-int place_of(const std::vector<int>& list, int entry)
-{
-    return static_cast<int>(std::find(list.begin(), list.end(), entry) - list.begin());
-}
+/// The lists of some vertices, one after another, with what each adds.
+struct KinLists {
+    struct Count {
+        int ring = 0, face = 0;
+        std::size_t pair = 0;
+    };
+    std::vector<int> ring, face;
+    std::vector<KinPair> pair;
+    std::vector<Count> count;
+};
 
-/// The pairs of one vertex, with `ring` and `face` filled in; false where they are too many.
-bool list_kin(const Connectivity& c, int v, std::vector<int>& ring, std::vector<int>& face,
-              std::vector<KinPair>& pairs)
+/// Appends the lists of one vertex, or nothing where they are too long.
+void list_kin(const Connectivity& c, int v, KinLists& out)
 {
+    const std::size_t first_ring = out.ring.size(), first_face = out.face.size(),
+                      first_pair = out.pair.size();
+    std::vector<int>&ring = out.ring, &face = out.face;
     for (const FaceCorner& at : star(c, v))
         face.push_back(at.face);
-    const std::size_t moved = face.size();
+    const std::size_t moved = face.size() - first_face;
+    const auto beside = std::ptrdiff_t(face.size());
     for (const int u : neighbours(c, v))
         for (const FaceCorner& at : star(c, u)) {
             if (!c.incident_to(at.face, v) &&
-                std::find(face.begin() + std::ptrdiff_t(moved), face.end(), at.face) == face.end())
+                std::find(face.begin() + beside, face.end(), at.face) == face.end())
                 face.push_back(at.face);
             for (int k = 0; k < 3; ++k)
                 if (c.corner(at.face, k) != v)
                     ring.push_back(c.corner(at.face, k));
         }
-    sort_unique(ring);
-    if (ring.size() > PlaneSides::kMostPoints || moved > PlaneSides::kMostPlanes ||
-        face.size() > 255)
-        return false;
+    const auto ring_begin = ring.begin() + std::ptrdiff_t(first_ring);
+    std::sort(ring_begin, ring.end());
+    ring.erase(std::unique(ring_begin, ring.end()), ring.end());
+    const std::size_t rings = ring.size() - first_ring, faces = face.size() - first_face;
+    if (rings > PlaneSides::kMostPoints || moved > PlaneSides::kMostPlanes || faces > 255) {
+        ring.resize(first_ring);
+        face.resize(first_face);
+        out.count.emplace_back();
+        return;
+    }
+    const auto place_of = [&](int u) {
+        return static_cast<std::uint8_t>(std::lower_bound(ring_begin, ring.end(), u) - ring_begin);
+    };
     for (std::size_t m = 0; m < moved; ++m)
-        for (std::size_t o = m + 1; o < face.size(); ++o) {
-            if (!c.share_a_corner(face[m], face[o]))
-                continue;
-            std::vector<std::uint8_t> own;
-            for (int k = 0; k < 3; ++k)
-                if (!c.incident_to(face[m], c.corner(face[o], k)))
-                    own.push_back(static_cast<std::uint8_t>(place_of(ring, c.corner(face[o], k))));
-            if (!own.empty())
-                pairs.push_back({static_cast<std::uint8_t>(m), static_cast<std::uint8_t>(o),
-                                 own.front(), own.back()});
+        for (std::size_t o = m + 1; o < faces; ++o) {
+            const int f = face[first_face + m], g = face[first_face + o];
+            int first = -1, last = -1, own = 0;
+            for (int k = 0; k < 3; ++k) {
+                const int u = c.corner(g, k);
+                if (c.incident_to(f, u))
+                    continue;
+                first = first < 0 ? u : first;
+                last = u;
+                ++own;
+            }
+            if (own > 0 && own < 3)
+                out.pair.push_back({static_cast<std::uint8_t>(m), static_cast<std::uint8_t>(o),
+                                    place_of(first), place_of(last)});
         }
-    return true;
+    out.count.push_back(
+        {static_cast<int>(rings), static_cast<int>(faces), out.pair.size() - first_pair});
 }
 
 void build_kin(Connectivity& c)
 {
+    constexpr std::size_t kChunk = 512;
+    const auto vertices = static_cast<std::size_t>(c.vertices);
+    std::vector<KinLists> chunks((vertices + kChunk - 1) / kChunk);
+    for_each_index(
+        chunks.size(),
+        [&](std::size_t i) {
+            for (std::size_t v = i * kChunk; v < std::min(vertices, (i + 1) * kChunk); ++v)
+                list_kin(c, static_cast<int>(v), chunks[i]);
+        },
+        1);
     Kin& kin = c.kin;
     kin.first_ring.assign(1, 0);
     kin.first_face.assign(1, 0);
     kin.first_pair.assign(1, 0);
-    std::vector<int> ring, face;
-    std::vector<KinPair> pairs;
-    for (int v = 0; v < c.vertices; ++v) {
-        ring.clear(), face.clear(), pairs.clear();
-        if (list_kin(c, v, ring, face, pairs)) {
-            kin.ring.insert(kin.ring.end(), ring.begin(), ring.end());
-            kin.face.insert(kin.face.end(), face.begin(), face.end());
-            kin.pair.insert(kin.pair.end(), pairs.begin(), pairs.end());
+    for (const KinLists& chunk : chunks) {
+        kin.ring.insert(kin.ring.end(), chunk.ring.begin(), chunk.ring.end());
+        kin.face.insert(kin.face.end(), chunk.face.begin(), chunk.face.end());
+        kin.pair.insert(kin.pair.end(), chunk.pair.begin(), chunk.pair.end());
+        for (const KinLists::Count& count : chunk.count) {
+            kin.first_ring.push_back(kin.first_ring.back() + count.ring);
+            kin.first_face.push_back(kin.first_face.back() + count.face);
+            kin.first_pair.push_back(kin.first_pair.back() + count.pair);
         }
-        kin.first_ring.push_back(static_cast<int>(kin.ring.size()));
-        kin.first_face.push_back(static_cast<int>(kin.face.size()));
-        kin.first_pair.push_back(kin.pair.size());
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/diagonals.h"
 
+#include "core/parallel.h"
 #include "shell/grow/move_tests.h"
 
 #include <algorithm>
@@ -58,23 +59,52 @@ double log_room(const GrowState& s, int f, int order)
     return sum;
 }
 
-/// Mean ratio 12 (3V)^(2/3) / (sum of squared edges) of the worst tet of a split; -1 if inverted.
-double worst_mean_ratio(const GrowState& s, int f, int order)
+/// Mean ratio 12 (3V)^(2/3) / (sum of squared edges) of a tet; -1 if inverted.
+double mean_ratio_of(const TetCorners& p)
 {
-    double worst = 1;
-    for (const OrientedTet& tet : tables().three[order]) {
-        if (dropped(s, f, tet.pillar))
-            continue;
-        const TetCorners p = tet_corners(s, f, tet);
-        const double v = volume6_of(p);
-        if (v <= 0)
-            return -1;
-        double edges = 0;
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < i; ++j)
-                edges += (p[i] - p[j]).lengthSqr();
-        worst = std::min(worst, 12 * std::cbrt(v * v / 4) / edges);
-    }
+    const double v = volume6_of(p);
+    if (v <= 0)
+        return -1;
+    double edges = 0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < i; ++j)
+            edges += (p[i] - p[j]).lengthSqr();
+    return 12 * std::cbrt(v * v / 4) / edges;
+}
+
+/// Which of the twelve tets the three of each split are.
+std::array<std::array<int, 3>, 6> places_in_twelve()
+{
+    const auto same = [](const OrientedTet& s, const OrientedTet& t) {
+        return std::is_permutation(s.corner.begin(), s.corner.end(), t.corner.begin());
+    };
+    std::array<std::array<int, 3>, 6> place{};
+    for (std::size_t order = 0; order < 6; ++order)
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t k = 0; k < 12; ++k)
+                if (same(tables().three[order][i], tables().twelve[k]))
+                    place[order][i] = static_cast<int>(k);
+    return place;
+}
+
+/// By face and order, the mean ratio of the worst tet.
+std::vector<std::array<double, 6>> worst_mean_ratios(const GrowState& s)
+{
+    const auto place = places_in_twelve();
+    std::vector<std::array<double, 6>> worst(s.mesh->faces.size());
+    for_each_index(worst.size(), [&](std::size_t i) {
+        const int f = static_cast<int>(i);
+        std::array<double, 12> ratio{};
+        for (std::size_t k = 0; k < 12; ++k)
+            ratio[k] = mean_ratio_of(tet_corners(s, f, tables().twelve[k]));
+        for (std::size_t order = 0; order < 6; ++order) {
+            worst[i][order] = 1;
+            for (std::size_t t = 0; t < 3; ++t)
+                if (!dropped(s, f, tables().three[order][t].pillar))
+                    worst[i][order] =
+                        std::min(worst[i][order], ratio[static_cast<std::size_t>(place[order][t])]);
+        }
+    });
     return worst;
 }
 
@@ -145,10 +175,11 @@ std::size_t flip_for_room(GrowState& s)
 std::size_t flip_for_quality(GrowState& s)
 {
     constexpr double kMargin = 1e-12;
+    const std::vector<std::array<double, 6>> worst = worst_mean_ratios(s);
     std::size_t total = 0;
     for (int pass = 0; pass < kQualityPasses; ++pass) {
         const std::size_t flips = flip_pass(
-            s, [&](int f, int order) { return worst_mean_ratio(s, f, order); },
+            s, [&](int f, int order) { return worst[std::size_t(f)][std::size_t(order)]; },
             [](double f, double g) { return std::min(f, g); }, kMargin);
         total += flips;
         if (flips == 0)

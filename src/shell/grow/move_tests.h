@@ -50,6 +50,7 @@ public:
     InnerTriangle(const GrowState& s, const FaceCorner& at, const Vec3d& x);
 
     int face() const { return face_; }
+    const Corners& corners() const { return corners_; }
     /// Improper contact with inner triangle g, or with what it is when its corners are c. Exact.
     bool meets_inner(int g) const { return meets_inner(g, inner_corners(s_, g)); }
     bool meets_inner(int g, const Corners& c) const;

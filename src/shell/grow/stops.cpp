@@ -2,7 +2,6 @@
 #include "shell/grow/stops.h"
 
 #include "core/parallel.h"
-#include "shell/grow/candidates.h"
 #include "shell/grow/move_tests.h"
 
 #include <algorithm>
@@ -17,6 +16,38 @@ constexpr double kProbe = 1e-3; ///< share of the diagonal
 constexpr double kAtCap =
     1e-6; ///< relative; the rounding of the coordinates stops short of the cap
 
+enum class Meets { nothing, inner, outer };
+
+/// What the triangles around v meet first, with b_v = x.
+Meets meets_at(const GrowState& s, int v, const Vec3d& x)
+{
+    const Slice<FaceCorner> fan = star(*s.mesh, v);
+    for (const FaceCorner& at : fan) {
+        const InnerTriangle moved(s, at, x);
+        const Box box = box_of(moved.corners());
+        bool inner = false, outer = false;
+        const auto corners_now = [&](int g) {
+            Corners c = inner_corners(s, g);
+            for (int k = 0; k < 3; ++k)
+                if (s.mesh->corner(g, k) == v)
+                    c[k] = x;
+            return c;
+        };
+        for (const FaceCorner& other : fan)
+            inner = inner || (other.face > at.face &&
+                              moved.meets_inner(other.face, corners_now(other.face)));
+        s.inner_tree.for_each_overlap(box, [&](int g) {
+            inner = inner || (!s.mesh->incident_to(g, v) && moved.meets_inner(g));
+        });
+        if (inner)
+            return Meets::inner;
+        s.outer_tree.for_each_overlap(box, [&](int g) { outer = outer || moved.meets_outer(g); });
+        if (outer)
+            return Meets::outer;
+    }
+    return Meets::nothing;
+}
+
 StopReason reason_at(const GrowState& s, int v, double step)
 {
     if (s.pinned[v])
@@ -28,10 +59,15 @@ StopReason reason_at(const GrowState& s, int v, double step)
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
-    int blocker = 0;
-    if (star_clear_at(s, v, x, &blocker))
-        return StopReason::none;
-    return blocker < s.mesh->face_count() ? StopReason::inner_contact : StopReason::outer_contact;
+    switch (meets_at(s, v, x)) {
+    case Meets::inner:
+        return StopReason::inner_contact;
+    case Meets::outer:
+        return StopReason::outer_contact;
+    case Meets::nothing:
+        break;
+    }
+    return StopReason::none;
 }
 
 } // namespace
@@ -39,8 +75,11 @@ StopReason reason_at(const GrowState& s, int v, double step)
 std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = kProbe * s.diagonal;
-    s.reach.assign(s.b.size(), 1.01 * step + s.rounding);
-    rebuild_candidates(s);
+    std::vector<Box> boxes(s.mesh->faces.size());
+    for_each_index(boxes.size(), [&](std::size_t f) {
+        boxes[f] = box_of(inner_corners(s, static_cast<int>(f)));
+    });
+    s.inner_tree.build(boxes);
     std::vector<StopReason> stop(s.b.size());
     for_each_index(stop.size(),
                    [&](std::size_t v) { stop[v] = reason_at(s, static_cast<int>(v), step); });
