@@ -102,10 +102,9 @@ void collapse_edges(HalfedgeMesh& mesh, const SimplifyLimits& limits)
 }
 
 /// The faces and points that are left, with the points' own float32 coordinates.
-Coarsened what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original)
+TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original)
 {
-    Coarsened left;
-    TriangleMesh& out = left.mesh;
+    TriangleMesh out;
     std::vector<std::uint32_t> place(original.points.size());
     for (std::size_t v = 0; v < place.size(); ++v) {
         const auto handle = HalfedgeMesh::VertexHandle(static_cast<int>(v));
@@ -113,7 +112,6 @@ Coarsened what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original)
             continue;
         place[v] = static_cast<std::uint32_t>(out.points.size());
         out.points.push_back(original.points[v]);
-        left.from.push_back(static_cast<std::uint32_t>(v));
     }
     for (const auto face : mesh.faces()) {
         openvdb::Vec3I corners;
@@ -122,7 +120,7 @@ Coarsened what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original)
             corners[k++] = place[static_cast<std::size_t>(vertex.idx())];
         out.triangles.push_back(corners);
     }
-    return left;
+    return out;
 }
 
 /// Boxes around all triangles that spoil the surface; empty when it is sound.
@@ -177,7 +175,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
         // In units of the tolerance the decimater's own small constants are small.
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
         collapse_edges(halfedges, limits);
-        TriangleMesh left = what_is_left(halfedges, mesh).mesh;
+        TriangleMesh left = what_is_left(halfedges, mesh);
         const std::vector<Box> places = spoiled_places(left);
         if (places.empty())
             return is_sound(left) ? Simplified{std::move(left), repeat} : Simplified{mesh, repeat};
@@ -185,18 +183,6 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
         hold_points_near(places, static_cast<float>(2.0 * repeat * tolerance), mesh, held);
     }
     return {mesh, kMaxRepeats};
-}
-
-Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles)
-{
-    const double size = diagonal_of(bounds_of(mesh.points));
-    const std::vector<char> none(mesh.points.size());
-    HalfedgeMesh halfedges = to_halfedges(mesh, none, size > 0 ? size : 1.0);
-    Decimater decimater(halfedges);
-    add_common_modules(decimater).unset_max_err();
-    decimater.initialize();
-    decimater.decimate_to_faces(0, triangles);
-    return what_is_left(halfedges, mesh);
 }
 
 } // namespace vdb_shell

@@ -5,8 +5,6 @@
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <cstddef>
-#include <cstdint>
-#include <vector>
 
 namespace vdb_shell
 {
@@ -32,16 +30,5 @@ struct Simplified {
 /// embedded.
 Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
                     Interrupter* interrupter);
-
-/// Fewer triangles of roughly the same shape.
-struct Coarsened {
-    TriangleMesh mesh;
-    std::vector<std::uint32_t> from; ///< for each point, which of the input's it is
-};
-
-/// Edge collapses in the order of their quadric error until `triangles` are left or none is left
-/// that turns no normal far and makes no sliver; nothing bounds the distance. Closed and manifold
-/// like the input, but it may cross itself: for those who only want a hint, sooner.
-Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles);
 
 } // namespace vdb_shell

@@ -2,7 +2,7 @@
 #include "vdb_shell/shell/grow.h"
 
 #include "core/stage_progress.h"
-#include "mesh/simplify.h"
+#include "mesh/coarsen.h"
 #include "shell/grow/coarse_start.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/directions.h"
@@ -37,9 +37,13 @@ constexpr double kLeastLineGain = 3e-3;
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 // Triangles of a surface over those of the coarse one that growth begins on, and the barrier's
-// weight at which that ends and the other goes on: before the inner surface collapses.
-constexpr std::size_t kCoarser = 8;
-constexpr double kRoughUntil = 0.1, kRoughSoftness = 0.2;
+// weight at which that ends and the other goes on.
+constexpr std::size_t kCoarser = 8, kFewestCoarse = 800;
+constexpr double kRoughUntil = 0.005;
+// After it: first weight over what is left to fill, and how the certified shell goes on. Most is
+// done; a round that wins less than kEnoughGain is the last.
+constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
+constexpr double kEnoughGain = 2e-3;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -95,9 +99,18 @@ bool worth_coarse_start(const TriangleMesh& mesh, const GrowState& s, const Grow
            options.top_down && options.free_moves;
 }
 
-bool start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
-                  const LineLengths& start, const GrowOptions& options,
-                  const StageProgress& progress);
+/// How growth starts: from lines, or from the shell of a coarser surface, nearly done.
+enum class Start { lines, carried };
+
+double first_softness(const GrowState& s, Start start)
+{
+    return start == Start::carried ? kCarriedSoftness * (1 - growth::fill_of(s))
+                                   : growth::kTwelveSoftness;
+}
+
+Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
+                   const LineLengths& start, const GrowOptions& options,
+                   const StageProgress& progress);
 
 /// Inner points of a coarse surface's shell that growth has not finished.
 std::vector<openvdb::Vec3d> rough_inner(const Coarsened& coarse, const LineLengths& start,
@@ -119,34 +132,38 @@ std::vector<openvdb::Vec3d> rough_inner(const Coarsened& coarse, const LineLengt
     }
     const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
     GrowState s = growth::make_state(connectivity, mesh.points, caps);
-    start_growth(s, mesh, lines, lengths, options, progress);
+    const Start started = start_growth(s, mesh, lines, lengths, options, progress);
     GrowReport ignored;
     growth::move_freely(
         s, lines.visibility, options,
-        {options.free_rounds, growth::kTwelveSoftness, kCool, kLeastGain, kRoughUntil}, progress,
+        {options.free_rounds, first_softness(s, started), kCool, kLeastGain, kRoughUntil}, progress,
         ignored);
     return s.b;
 }
 
-/// Sets the state to a shell that growth can go on from; true where that is one of a coarser
-/// surface's growth.
-bool start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
-                  const LineLengths& start, const GrowOptions& options,
-                  const StageProgress& progress)
+/// Sets the state to a shell that growth can go on from.
+Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
+                   const LineLengths& start, const GrowOptions& options,
+                   const StageProgress& progress)
 {
     if (worth_coarse_start(mesh, s, options)) {
-        const Coarsened coarse = coarsen(mesh, mesh.triangles.size() / kCoarser);
+        // A round solid, to which a coarser surface has nothing to add.
+        if (growth::settle_start(s, lines, first_lengths(s, lines, start), progress, 0,
+                                 growth::kNearlyFull) &&
+            pins(s) == 0)
+            return Start::lines;
+        const Coarsened coarse =
+            coarsen(mesh, std::max(mesh.triangles.size() / kCoarser, kFewestCoarse));
         if (coarse.mesh.triangles.size() <= mesh.triangles.size() / 2) {
             const std::vector<openvdb::Vec3d> inner =
                 rough_inner(coarse, start, s.cap, options, progress);
-            growth::Pillars pillars = growth::pillars_in(coarse.mesh, inner, mesh, lines);
-            growth::settle_start(s, pillars.lines, std::move(pillars.length), progress, 0,
-                                 growth::kShrinkLittle);
-            return true;
+            const growth::Pillars pillars = growth::pillars_in(coarse.mesh, inner, mesh, lines);
+            growth::settle_carried(s, pillars.lines, pillars.length, progress);
+            return Start::carried;
         }
     }
     settle(s, lines, start, options, progress);
-    return false;
+    return Start::lines;
 }
 
 bool worth_lengthening(const GrowState& s)
@@ -155,17 +172,19 @@ bool worth_lengthening(const GrowState& s)
     return !s.bounded || fill > growth::kNearlyFull || fill < kThin;
 }
 
-void move_off_the_lines(GrowState& s, const Directions& directions, double softness,
+void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
                         const GrowOptions& options, const StageProgress& progress,
                         GrowReport& report)
 {
-    const bool thickest = options.method == Method::thickest;
+    const bool thickest = options.method == Method::thickest, carried = start == Start::carried;
     const int twelve_rounds =
         thickest ? std::min(kTwelveRoundsFirst, options.free_rounds) : options.free_rounds;
-    const double cool = thickest ? kCoolSlowly : kCool;
+    const double cool = thickest ? kCoolSlowly : carried ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
+    const double enough = carried && !thickest ? kEnoughGain : -1;
     growth::move_freely(s, directions.visibility, options,
-                        {twelve_rounds, softness, cool, least_gain}, progress, report);
+                        {twelve_rounds, first_softness(s, start), cool, least_gain, 0, enough},
+                        progress, report);
     if (!thickest)
         return;
     s.twelve = false;
@@ -246,22 +265,23 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     Directions lines = prepare(mesh, directions, options);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
-    bool rough = false;
+    Start started = Start::lines;
     if (from) {
         growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
         lines = std::move(pillars.lines);
         growth::settle_start(s, lines, pillars.length, progress, from->settled);
     } else {
-        rough = start_growth(s, mesh, lines, start, options, progress);
+        started = start_growth(s, mesh, lines, start, options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
-    if (options.grow_lines && (!options.free_moves || worth_lengthening(s)))
+    // A carried shell has left the lines.
+    if (options.grow_lines && started == Start::lines &&
+        (!options.free_moves || worth_lengthening(s)))
         growth::lengthen_lines(s, lines, options.free_moves && s.bounded ? kLeastLineGain : -1.0,
                                progress);
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)
-        move_off_the_lines(s, lines, rough ? kRoughSoftness : growth::kTwelveSoftness, options,
-                           progress, result.report);
+        move_off_the_lines(s, lines, started, options, progress, result.report);
     const std::size_t ripples =
         choose_diagonals(s, shell_of(mesh, s), options, split, result.report);
     if (options.min_quality > 0)

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/coarse_start.h"
 
-#include "mesh/simplify.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
-#include "vdb_shell/certify/certificate.h"
-#include "vdb_shell/mesh/check_mesh.h"
 
 #include <tbb/global_control.h>
 
@@ -22,21 +19,6 @@ double fill_of(const PrismShell& shell)
 {
     return 1 - signed_volume(shell.inner, shell.triangles) /
                    signed_volume(shell.outer, shell.triangles);
-}
-
-TEST(CoarseStart, ACoarseSurfaceIsClosedAndHasPointsOfTheFineOne)
-{
-    const TriangleMesh fine = test::torus(2.0, 0.8, 48, 24);
-    const Coarsened coarse = coarsen(fine, 300);
-    EXPECT_LE(coarse.mesh.triangles.size(), 310U);
-    EXPECT_GE(coarse.mesh.triangles.size(), 250U);
-    const MeshCheck check = check_mesh(coarse.mesh);
-    EXPECT_TRUE(check.closed() && check.manifold());
-    ASSERT_EQ(coarse.from.size(), coarse.mesh.points.size());
-    for (std::size_t v = 0; v < coarse.from.size(); ++v)
-        EXPECT_EQ(coarse.mesh.points[v], fine.points[coarse.from[v]]);
-    const double volume = signed_volume(fine.points, fine.triangles);
-    EXPECT_NEAR(signed_volume(coarse.mesh.points, coarse.mesh.triangles), volume, 0.05 * volume);
 }
 
 TEST(CoarseStart, PillarsEndWhereThoseOfTheCoarseShellDo)
@@ -81,27 +63,44 @@ class GrownFromCoarse : public testing::TestWithParam<Method>
 {
 };
 
-// Twice over: the coarse surface is above the limit too.
 TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThreads)
 {
     GrowOptions options;
     options.method = GetParam();
-    for (const TriangleMesh& mesh : {test::trefoil(180, 16), test::bumpy_sphere()}) {
-        options.coarse_from = 0;
-        const GrowResult without = test::grown(mesh, options);
-        options.coarse_from = mesh.triangles.size() / 10;
-        const GrowResult with = test::grown(mesh, options);
-        const PrismTest tests =
-            options.method == Method::certified ? PrismTest::twelve_tets : PrismTest::chosen_tets;
-        for (const std::string& failure : certify_shell(with.shell, with.split, tests).failures())
-            ADD_FAILURE() << failure;
-        EXPECT_NE(with.shell.inner, without.shell.inner);
-        EXPECT_GT(fill_of(with.shell), fill_of(without.shell) - 0.01);
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-        const GrowResult alone = test::grown(mesh, options);
-        EXPECT_EQ(alone.shell.inner, with.shell.inner);
-        EXPECT_EQ(alone.split.order, with.split.order);
-    }
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    options.coarse_from = 0;
+    const GrowResult without = test::grown(mesh, options);
+    options.coarse_from = mesh.triangles.size();
+    const GrowResult with = test::grown(mesh, options);
+    test::expect_certified(one_layer(with.shell, with.split), test::test_of(options.method));
+    EXPECT_NE(with.shell.inner, without.shell.inner);
+    EXPECT_GT(fill_of(with.shell), fill_of(without.shell) - 0.01);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    const GrowResult alone = test::grown(mesh, options);
+    EXPECT_EQ(alone.shell.inner, with.shell.inner);
+    EXPECT_EQ(alone.split.order, with.split.order);
+}
+
+TEST(CoarseStart, ACoarseSurfaceAboveTheLimitIsCoarsenedAgain)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    GrowOptions options;
+    options.coarse_from = mesh.triangles.size() / 8;
+    const GrowResult result = test::grown(mesh, options);
+    test::expect_certified(one_layer(result.shell, result.split), PrismTest::twelve_tets);
+    EXPECT_GT(fill_of(result.shell), 0.98);
+    options.coarse_from = mesh.triangles.size();
+    EXPECT_NE(test::grown(mesh, options).shell.inner, result.shell.inner);
+}
+
+TEST(CoarseStart, LeavesAloneWhatLinesFillNearly)
+{
+    const TriangleMesh mesh = test::torus(2.0, 0.8, 48, 24);
+    GrowOptions options;
+    options.coarse_from = 0;
+    const GrowResult without = test::grown(mesh, options);
+    options.coarse_from = 500;
+    EXPECT_EQ(test::grown(mesh, options).shell.inner, without.shell.inner);
 }
 
 TEST_P(GrownFromCoarse, KeepsToTheCap)

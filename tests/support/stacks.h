@@ -48,9 +48,9 @@ inline PrismTest test_of(Method method)
 }
 
 /// A solid without symmetry: bumps of several lengths on a sphere.
-inline TriangleMesh bumpy_sphere()
+inline TriangleMesh bumpy_sphere(int subdivisions = 3)
 {
-    TriangleMesh mesh = icosphere(1.0, 3);
+    TriangleMesh mesh = icosphere(1.0, subdivisions);
     for (openvdb::Vec3s& p : mesh.points) {
         const openvdb::Vec3d d(p);
         p = openvdb::Vec3s(d * (1 + 0.25 * std::sin(5 * d[0] + 1) * std::sin(4 * d[1]) +

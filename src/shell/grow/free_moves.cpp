@@ -214,7 +214,8 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         ++report.rounds;
         const double gain = fill_of(s) - fill;
         fill += gain;
-        if (softness < stage.until || (softness <= kLeastSoftness && gain < stage.least_gain))
+        if (softness < stage.until || gain < stage.enough ||
+            (softness <= kLeastSoftness && gain < stage.least_gain))
             break;
         softness = cooled(softness, gain, stage.cool);
     }

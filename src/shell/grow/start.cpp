@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "shell/grow/move_tests.h"
+#include "shell/grow/untangle.h"
 
 #include <algorithm>
 #include <atomic>
@@ -16,6 +17,13 @@ namespace
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kThinShare = 0.02;
+constexpr double kShrink = 0.65; ///< factor on a pillar of a prism that violates
+// The same for carried pillars, as the share that goes: it doubles each time, up to the last.
+constexpr double kFirstShare = 0.01, kLastShare = 0.7;
+// Rounds in which their inner points are untangled; what is bad after them shrinks only, so that it
+// ends.
+constexpr int kUntangledRounds = 7;
+constexpr int kFirstSweeps = 40, kSweeps = 5;
 // After that many times a vertex that yields first is no better than the others.
 constexpr int kYields = 4;
 
@@ -133,13 +141,29 @@ std::vector<std::uint8_t> corners_to_shrink(const GrowState& s,
     return touched;
 }
 
+/// Shorter ones are lost in the rounding.
+double shortest_pillar(const GrowState& s)
+{
+    return 2 * s.rounding;
+}
+
+/// Marks the faces to look at again once the vertices marked have moved.
+std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std::uint8_t>& moved)
+{
+    const Connectivity& m = *s.mesh;
+    // A witness that moves may come to lie in any prism of another component.
+    const bool all = m.components > 1;
+    std::vector<std::uint8_t> faces(m.faces.size());
+    for (int f = 0; f < m.face_count(); ++f)
+        faces[f] = all || moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)];
+    return faces;
+}
+
 /// Shrinks the pillars of violating prisms; marks the faces that this changes. False when there is
 /// nothing left to shrink.
 bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& h,
-                   std::vector<std::uint8_t>& yields, std::vector<std::uint8_t>& changed,
-                   double shrink)
+                   std::vector<std::uint8_t>& yields, std::vector<std::uint8_t>& changed)
 {
-    const double floor = 2 * s.rounding; // shorter pillars are lost in the rounding
     std::vector<std::uint8_t> touched = corners_to_shrink(s, bad, yields);
     bool any = false;
     for (int v = 0; v < s.mesh->vertices; ++v) {
@@ -147,17 +171,46 @@ bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vect
         if (!touched[v])
             continue;
         any = true;
-        h[v] *= shrink;
+        h[v] *= kShrink;
         yields[v] -= yields[v] > 0;
-        if (h[v] < floor)
+        if (h[v] < shortest_pillar(s))
             s.pinned[v] = 1;
     }
-    // A witness that moves may come to lie in any prism of another component.
-    const bool all = s.mesh->components > 1;
-    for (int f = 0; f < s.mesh->face_count(); ++f)
-        changed[f] = all || touched[s.mesh->corner(f, 0)] || touched[s.mesh->corner(f, 1)] ||
-                     touched[s.mesh->corner(f, 2)];
+    changed = faces_around(s, touched);
     return any;
+}
+
+/// Shortens the pillars of violating prisms, each by its share, and doubles that; marks in `moved`
+/// what this moves. False when there is nothing to shorten.
+bool shorten_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& share,
+                    std::vector<std::uint8_t>& moved)
+{
+    const Connectivity& m = *s.mesh;
+    std::fill(moved.begin(), moved.end(), std::uint8_t(0));
+    for (int f = 0; f < m.face_count(); ++f)
+        for (int k = 0; bad[f] && k < 3; ++k)
+            moved[m.corner(f, k)] = !s.pinned[m.corner(f, k)];
+    bool any = false;
+    for (int v = 0; v < m.vertices; ++v) {
+        if (!moved[v])
+            continue;
+        any = true;
+        const Vec3d arm = (1 - share[v]) * (s.b[v] - s.a[v]);
+        share[v] = std::min(2 * share[v], kLastShare);
+        s.b[v] = arm.length() < shortest_pillar(s) ? s.a[v] : rounded(s.a[v] + arm);
+        s.pinned[v] = s.b[v] == s.a[v];
+    }
+    return any;
+}
+
+/// Marks what is pinned from the beginning.
+void pin_what_cannot_leave(GrowState& s, const Directions& directions, const std::vector<double>& h)
+{
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        const bool stranded = star(*s.mesh, v).size() == 0;
+        s.pinned[v] = stranded || directions.visibility[v] <= 0 || h[v] <= 0 || s.cap[v] <= 0;
+        s.reach[v] = 0;
+    }
 }
 
 } // namespace
@@ -189,15 +242,12 @@ std::vector<double> thin_heights(const GrowState& s)
     return h;
 }
 
-void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress, std::size_t first_yielding, double shrink)
+bool settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
+                  const StageProgress& progress, std::size_t first_yielding, double least_fill)
 {
-    for (int v = 0; v < s.mesh->vertices; ++v) {
-        const bool stranded = star(*s.mesh, v).size() == 0;
-        s.pinned[v] = stranded || directions.visibility[v] <= 0 || h[v] <= 0 || s.cap[v] <= 0;
-        s.reach[v] = 0;
+    pin_what_cannot_leave(s, directions, h);
+    for (std::size_t v = 0; v < h.size(); ++v)
         h[v] = std::min(h[v], s.cap[v]);
-    }
     std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1), yields(h.size(), 0);
     if (first_yielding > 0)
         std::fill(yields.begin() + std::ptrdiff_t(first_yielding), yields.end(), kYields);
@@ -205,10 +255,40 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
     bool first = true;
     // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
     // crosses itself: with all its vertices pinned.
-    while (shrink_around(s, violating_faces(s, changed, first), h, yields, changed, shrink)) {
+    while (shrink_around(s, violating_faces(s, changed, first), h, yields, changed)) {
         progress.stop_if_interrupted(0);
         place(s, directions, h);
         first = false;
+        if (least_fill > 0 && fill_of(s) < least_fill)
+            return false;
+    }
+    return true;
+}
+
+void settle_carried(GrowState& s, const Directions& directions, const std::vector<double>& h,
+                    const StageProgress& progress)
+{
+    const Connectivity& m = *s.mesh;
+    pin_what_cannot_leave(s, directions, h);
+    place(s, directions, h);
+    std::vector<std::uint8_t> look(h.size(), 1), moved(h.size(), 1);
+    std::vector<double> share(h.size(), kFirstShare);
+    for (int round = 0;; ++round) {
+        progress.stop_if_interrupted(0);
+        if (round < kUntangledRounds)
+            untangle(s, round == 0 ? kFirstSweeps : kSweeps, look, moved);
+        const bool first = round == 0;
+        const std::vector<std::uint8_t> changed =
+            first ? std::vector<std::uint8_t>(m.faces.size(), 1) : faces_around(s, moved);
+        if (!shorten_around(s, violating_faces(s, changed, first), share, moved))
+            return;
+        for (int v = 0; v < m.vertices; ++v) {
+            if (!moved[v])
+                continue;
+            look[v] = 1;
+            for (const int u : neighbours(m, v))
+                look[u] = 1;
+        }
     }
 }
 

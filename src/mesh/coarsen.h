@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// Fewer triangles of roughly the same shape.
+struct Coarsened {
+    TriangleMesh mesh;
+    std::vector<std::uint32_t> from; ///< for each point, which of the input's it is, ascending
+};
+
+/// Edge collapses of least quadric error (Garland, Heckbert 1997, "Surface simplification using
+/// quadric error metrics") onto one of the edge's own ends, in rounds of many that do not touch
+/// each other, until `triangles` are left or no collapse is left that turns no normal far and makes
+/// no sliver. Nothing bounds the distance. Closed and manifold like the input, but it may cross
+/// itself: for those who only want a hint, soon. Same result for any number of threads.
+/// Precondition: closed, manifold.
+Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles);
+
+} // namespace vdb_shell
