@@ -35,21 +35,6 @@ bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
     return (s0 >= 0 && s1 >= 0 && s2 >= 0 && s3 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0 && s3 <= 0);
 }
 
-/// The moved triangle of the star that is being tested.
-struct MovedTriangle {
-    int face;
-    Corners corners;
-    CornerIds ids;
-    Box box;
-};
-
-Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
-{
-    Corners corners = inner_corners(s, at.face);
-    corners[at.local] = x;
-    return corners;
-}
-
 /// Inner triangle `moved` against those around its corner u that hold neither v nor `done`, whose
 /// triangles have been looked at; where u is pinned also against the outer ones.
 bool kin_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int u, int done)
@@ -73,15 +58,6 @@ Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
         if (s.mesh->corner(f, k) == v)
             corners[k] = x;
     return corners;
-}
-
-bool touches_inner(const GrowState& s, int v, const MovedTriangle& moved, const Vec3d& x, int g)
-{
-    const bool both = s.mesh->incident_to(g, v);
-    // Two triangles of the star are asked once, from the smaller index.
-    if (both ? g < moved.face : !moved.box.overlaps(s.inner_box[g]))
-        return false;
-    return improper_contact(moved.corners, moved.ids, corners_with(s, g, v, x), inner_ids(s, g));
 }
 
 bool pair_meets(const GrowState& s, int v, const Vec3d& x, int f, int g)
@@ -115,6 +91,13 @@ bool kin_clear_one_by_one(const GrowState& s, int v, const Vec3d& x)
 
 } // namespace
 
+Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+{
+    Corners corners = inner_corners(s, at.face);
+    corners[at.local] = x;
+    return corners;
+}
+
 bool tets_positive_at(const GrowState& s, int v, const Vec3d& x)
 {
     for (const FaceCorner& at : star(*s.mesh, v))
@@ -123,27 +106,6 @@ bool tets_positive_at(const GrowState& s, int v, const Vec3d& x)
                 orient(corner_of(s, at.face, tet.base[0]), corner_of(s, at.face, tet.base[1]),
                        corner_of(s, at.face, tet.base[2]), x) <= 0)
                 return false;
-    return true;
-}
-
-bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker)
-{
-    const auto blocked_by = [&](int id) {
-        if (blocker)
-            *blocker = id;
-        return false;
-    };
-    for (const FaceCorner& at : star(*s.mesh, v)) {
-        const Corners corners = moved_corners(s, at, x);
-        const MovedTriangle moved{at.face, corners, inner_ids(s, at.face), box_of(corners)};
-        for (const int g : s.near_inner[at.face])
-            if (touches_inner(s, v, moved, x, g))
-                return blocked_by(g);
-        for (const int g : s.near_outer[at.face])
-            if (moved.box.overlaps(s.outer_box[g]) &&
-                improper_contact(moved.corners, moved.ids, outer_corners(s, g), outer_ids(s, g)))
-                return blocked_by(s.mesh->face_count() + g);
-    }
     return true;
 }
 

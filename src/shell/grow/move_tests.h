@@ -17,9 +17,8 @@ inline Slice<TetFromInner> chosen_tets_with_inner(const GrowState& s, int f, int
 /// Would the tets of the prisms around v be positive with b_v = x? Exact.
 bool tets_positive_at(const GrowState& s, int v, const Vec3d& x);
 
-/// Would the inner triangles around v be free of improper contact with b_v = x? Exact. On failure
-/// the blocking triangle (inner: f, outer: F+f) is told through `blocker`.
-bool star_clear_at(const GrowState& s, int v, const Vec3d& x, int* blocker = nullptr);
+/// The corners of an inner triangle when its corner `at` is at x.
+Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x);
 
 /// |x - a_v| <= cap_v, exactly.
 bool within_cap(const GrowState& s, int v, const Vec3d& x);

@@ -26,16 +26,9 @@ Meets meets_at(const GrowState& s, int v, const Vec3d& x)
         const InnerTriangle moved(s, at, x);
         const Box box = box_of(moved.corners());
         bool inner = false, outer = false;
-        const auto corners_now = [&](int g) {
-            Corners c = inner_corners(s, g);
-            for (int k = 0; k < 3; ++k)
-                if (s.mesh->corner(g, k) == v)
-                    c[k] = x;
-            return c;
-        };
         for (const FaceCorner& other : fan)
             inner = inner || (other.face > at.face &&
-                              moved.meets_inner(other.face, corners_now(other.face)));
+                              moved.meets_inner(other.face, moved_corners(s, other, x)));
         s.inner_tree.for_each_overlap(box, [&](int g) {
             inner = inner || (!s.mesh->incident_to(g, v) && moved.meets_inner(g));
         });
