@@ -24,6 +24,7 @@ namespace
 {
 
 using growth::GrowState;
+using openvdb::Vec3d;
 
 // Rounds under the twelve-tet test before the three-tet ones: enough to spread the vertices.
 constexpr int kTwelveRoundsFirst = 25;
@@ -67,6 +68,16 @@ std::vector<double> first_lengths(const GrowState& s, const Directions& directio
     return lengths;
 }
 
+/// Makes the pillars the lines.
+void aim_at_inner_points(const GrowState& s, Directions& lines)
+{
+    for (std::size_t v = 0; v < s.b.size(); ++v) {
+        const Vec3d arm = s.b[v] - s.a[v];
+        if (arm != Vec3d(0.0))
+            lines.inward[v] = arm.unit();
+    }
+}
+
 std::ptrdiff_t pins(const GrowState& s)
 {
     return std::count(s.pinned.begin(), s.pinned.end(), 1);
@@ -83,7 +94,7 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
         if (pins(s) == 0)
             return;
     }
-    const std::vector<openvdb::Vec3d> long_b = std::exchange(s.b, s.a);
+    const std::vector<Vec3d> long_b = std::exchange(s.b, s.a);
     const std::vector<std::uint8_t> long_pinned = s.pinned;
     const std::ptrdiff_t long_pins = pins(s);
     growth::settle_start(s, directions, thin, progress);
@@ -113,15 +124,15 @@ Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lin
                    const StageProgress& progress);
 
 /// Inner points of a coarse surface's shell that growth has not finished.
-std::vector<openvdb::Vec3d> rough_inner(const Coarsened& coarse, const LineLengths& start,
-                                        const std::vector<double>& cap, const GrowOptions& options,
-                                        const StageProgress& progress)
+std::vector<Vec3d> rough_inner(const Coarsened& coarse, const LineLengths& start,
+                               const std::vector<double>& cap, const GrowOptions& options,
+                               const StageProgress& progress)
 {
     const TriangleMesh& mesh = coarse.mesh;
     Directions directions;
     directions.inward = pseudo_normals(mesh);
     directions.visibility = visibility_of(mesh, directions.inward);
-    for (openvdb::Vec3d& d : directions.inward)
+    for (Vec3d& d : directions.inward)
         d = -d;
     const Directions lines = prepare(mesh, std::move(directions), options);
     LineLengths lengths;
@@ -148,15 +159,14 @@ Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lin
 {
     if (worth_coarse_start(mesh, s, options)) {
         // A round solid, to which a coarser surface has nothing to add.
-        if (growth::settle_start(s, lines, first_lengths(s, lines, start), progress, 0,
+        if (growth::settle_start(s, lines, first_lengths(s, lines, start), progress,
                                  growth::kNearlyFull) &&
             pins(s) == 0)
             return Start::lines;
         const Coarsened coarse =
             coarsen(mesh, std::max(mesh.triangles.size() / kCoarser, kFewestCoarse));
         if (coarse.mesh.triangles.size() <= mesh.triangles.size() / 2) {
-            const std::vector<openvdb::Vec3d> inner =
-                rough_inner(coarse, start, s.cap, options, progress);
+            const std::vector<Vec3d> inner = rough_inner(coarse, start, s.cap, options, progress);
             const growth::Pillars pillars = growth::pillars_in(coarse.mesh, inner, mesh, lines);
             growth::settle_carried(s, pillars.lines, pillars.length, progress);
             return Start::carried;
@@ -269,7 +279,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     if (from) {
         growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
         lines = std::move(pillars.lines);
-        growth::settle_start(s, lines, pillars.length, progress, from->settled);
+        growth::settle_carried(s, lines, pillars.length, progress);
+        aim_at_inner_points(s, lines);
     } else {
         started = start_growth(s, mesh, lines, start, options, progress);
     }

@@ -57,9 +57,6 @@ struct GrowReport {
 /// A shell to grow on from in place of lines: that of a coarser surface on the refined one.
 struct GrowStart {
     std::vector<openvdb::Vec3s> inner; ///< one per vertex; the vertex itself where it is pinned
-    /// The vertices before this one stood in a valid shell; where a prism is not valid with the
-    /// others, it is the others that give way first.
-    std::size_t settled = 0;
 };
 
 struct GrowResult {
@@ -83,8 +80,8 @@ struct GrowResult {
 /// triangles; one entry per vertex in all lists; cap not negative, and finite where that side has
 /// no bound (a reversed surface: shell/sides.h); method not raw. On a surface that crosses itself
 /// the result is some shell; only a certificate tells. With `from`, growth starts there instead of
-/// with the lines, after shortening what is not valid in it. Throws InvalidOption when free_rounds
-/// is negative or min_quality out of range, Cancelled.
+/// with the lines, after moving, or else shortening, what is not valid in it. Throws InvalidOption
+/// when free_rounds is negative or min_quality out of range, Cancelled.
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& start, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,

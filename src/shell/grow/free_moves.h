@@ -24,8 +24,9 @@ struct FreeStage {
     double cool;       ///< factor on it per round: the slower, the thicker and the longer
     double least_gain; ///< share of the solid that a round must win to go on, at the end
     double until = 0;  ///< ends as soon as the weight is below, units of softness
-    double enough =
-        0; ///< share of the solid: ends with a round that wins less, whatever the weight
+    /// Share of the solid: ends with a round that wins less, whatever the weight. Below 0 not even
+    /// a loss ends it: early on that is the barrier undoing jams.
+    double enough = -1;
 };
 
 /// Inner vertices leave their lines: each minimises the inner volume with an interior barrier on

@@ -24,8 +24,6 @@ constexpr double kFirstShare = 0.01, kLastShare = 0.7;
 // ends.
 constexpr int kUntangledRounds = 7;
 constexpr int kFirstSweeps = 40, kSweeps = 5;
-// After that many times a vertex that yields first is no better than the others.
-constexpr int kYields = 4;
 
 double smallest_altitude(const Corners& c)
 {
@@ -122,23 +120,16 @@ double ray_hit(const Vec3d& p, const Vec3d& d, const Corners& c)
     return u < 0 || v < 0 || u + v > 1 || t <= 0 ? kInfinity : t;
 }
 
-/// The corners of violating prisms: those that yield first where there are any.
-std::vector<std::uint8_t> corners_to_shrink(const GrowState& s,
-                                            const std::vector<std::uint8_t>& bad,
-                                            const std::vector<std::uint8_t>& yields)
+/// Marks the corners of violating prisms that are not pinned.
+std::vector<std::uint8_t> corners_of(const GrowState& s, const std::vector<std::uint8_t>& bad)
 {
-    std::vector<std::uint8_t> touched(s.b.size(), 0);
-    for (int f = 0; f < s.mesh->face_count(); ++f) {
-        const auto may_yield = [&](int k) {
+    std::vector<std::uint8_t> corners(s.b.size(), 0);
+    for (int f = 0; f < s.mesh->face_count(); ++f)
+        for (int k = 0; bad[f] && k < 3; ++k) {
             const int v = s.mesh->corner(f, k);
-            return yields[v] > 0 && !s.pinned[v];
-        };
-        const bool any = may_yield(0) || may_yield(1) || may_yield(2);
-        for (int k = 0; bad[f] && k < 3; ++k)
-            if (!any || may_yield(k))
-                touched[s.mesh->corner(f, k)] = 1;
-    }
-    return touched;
+            corners[v] = !s.pinned[v];
+        }
+    return corners;
 }
 
 /// Shorter ones are lost in the rounding.
@@ -162,21 +153,19 @@ std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std
 /// Shrinks the pillars of violating prisms; marks the faces that this changes. False when there is
 /// nothing left to shrink.
 bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& h,
-                   std::vector<std::uint8_t>& yields, std::vector<std::uint8_t>& changed)
+                   std::vector<std::uint8_t>& changed)
 {
-    std::vector<std::uint8_t> touched = corners_to_shrink(s, bad, yields);
+    const std::vector<std::uint8_t> shrunk = corners_of(s, bad);
     bool any = false;
     for (int v = 0; v < s.mesh->vertices; ++v) {
-        touched[v] = touched[v] && !s.pinned[v];
-        if (!touched[v])
+        if (!shrunk[v])
             continue;
         any = true;
         h[v] *= kShrink;
-        yields[v] -= yields[v] > 0;
         if (h[v] < shortest_pillar(s))
             s.pinned[v] = 1;
     }
-    changed = faces_around(s, touched);
+    changed = faces_around(s, shrunk);
     return any;
 }
 
@@ -185,13 +174,9 @@ bool shrink_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vect
 bool shorten_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& share,
                     std::vector<std::uint8_t>& moved)
 {
-    const Connectivity& m = *s.mesh;
-    std::fill(moved.begin(), moved.end(), std::uint8_t(0));
-    for (int f = 0; f < m.face_count(); ++f)
-        for (int k = 0; bad[f] && k < 3; ++k)
-            moved[m.corner(f, k)] = !s.pinned[m.corner(f, k)];
+    moved = corners_of(s, bad);
     bool any = false;
-    for (int v = 0; v < m.vertices; ++v) {
+    for (int v = 0; v < s.mesh->vertices; ++v) {
         if (!moved[v])
             continue;
         any = true;
@@ -243,19 +228,17 @@ std::vector<double> thin_heights(const GrowState& s)
 }
 
 bool settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress, std::size_t first_yielding, double least_fill)
+                  const StageProgress& progress, double least_fill)
 {
     pin_what_cannot_leave(s, directions, h);
     for (std::size_t v = 0; v < h.size(); ++v)
         h[v] = std::min(h[v], s.cap[v]);
-    std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1), yields(h.size(), 0);
-    if (first_yielding > 0)
-        std::fill(yields.begin() + std::ptrdiff_t(first_yielding), yields.end(), kYields);
+    std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1);
     place(s, directions, h);
     bool first = true;
     // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
     // crosses itself: with all its vertices pinned.
-    while (shrink_around(s, violating_faces(s, changed, first), h, yields, changed)) {
+    while (shrink_around(s, violating_faces(s, changed, first), h, changed)) {
         progress.stop_if_interrupted(0);
         place(s, directions, h);
         first = false;

@@ -11,17 +11,14 @@
 namespace vdb_shell::growth
 {
 
-/// Sets b = a + h d with h as given, lessened until every test passes; may pin. Of the corners of a
-/// prism that violates, those from the vertex `first_yielding` on are shrunk first, a few times:
-/// where the others' pillars are known to be valid without them, little is lost that way. Gives up
-/// and returns false as soon as the fill is below `least_fill`.
+/// Sets b = a + h d with h as given, lessened until every test passes; may pin. Gives up and
+/// returns false as soon as the fill is below `least_fill`.
 bool settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress, std::size_t first_yielding = 0,
-                  double least_fill = 0);
+                  const StageProgress& progress, double least_fill = 0);
 
-/// The same for pillars that are nearly valid together, as those carried over from a coarser
-/// surface are: inner points of prisms that violate are moved (untangle.h), and only what that
-/// leaves is shortened, by a hundredth the first time and by more each time it comes up again.
+/// The same for pillars that are nearly valid together, as those carried over from the shell of a
+/// coarser surface are: inner points of prisms that violate are moved (untangle.h), and only what
+/// that leaves is shortened, by a hundredth the first time and by more each time it comes up again.
 void settle_carried(GrowState& s, const Directions& directions, const std::vector<double>& h,
                     const StageProgress& progress);
 
