@@ -163,6 +163,18 @@ TEST(Grow, FillsConvexAndRoundSolids)
     }
 }
 
+TEST(Grow, ThickestIsThickerThanCertified)
+{
+    for (const TriangleMesh& mesh : {bumpy_sphere(), bumpy_sphere(4)}) {
+        GrowOptions options;
+        const double certified = fill_of(grown(case_of(mesh), options).shell);
+        options.method = Method::thickest;
+        const double thickest = fill_of(grown(case_of(mesh), options).shell);
+        RecordProperty("certified", std::to_string(certified));
+        EXPECT_GT(thickest, certified + 0.0015);
+    }
+}
+
 TEST(Grow, KeepsEveryStateValidWithoutSymmetry)
 {
     const Case c = case_of(bumpy_sphere());
