@@ -39,7 +39,7 @@ constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 // Triangles of a surface over those of the coarse one that growth begins on, and the barrier's
 // weight at which that ends and the other goes on.
-constexpr std::size_t kCoarser = 8, kFewestCoarse = 800;
+constexpr std::size_t kCoarser = 8;
 constexpr double kRoughUntil = 0.005;
 // After it: first weight over what is left to fill, and how the certified shell goes on. Most is
 // done; a round that wins less than kEnoughGain is the last.
@@ -163,8 +163,7 @@ Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lin
                                  growth::kNearlyFull) &&
             pins(s) == 0)
             return Start::lines;
-        const Coarsened coarse =
-            coarsen(mesh, std::max(mesh.triangles.size() / kCoarser, kFewestCoarse));
+        const Coarsened coarse = coarsen(mesh, mesh.triangles.size() / kCoarser);
         if (coarse.mesh.triangles.size() <= mesh.triangles.size() / 2) {
             const std::vector<Vec3d> inner = rough_inner(coarse, start, s.cap, options, progress);
             const growth::Pillars pillars = growth::pillars_in(coarse.mesh, inner, mesh, lines);

@@ -35,8 +35,9 @@ struct GrowOptions {
     bool flips = true;         ///< choose diagonals again while moving (thickest) and for
                                ///< quality at the end
     /// From so many triangles on, growth begins on a surface of an eighth of them (which may again
-    /// be too many) and goes on from its shell: sooner, and thicker. 0: never.
-    std::size_t coarse_from = 2500;
+    /// be too many) and goes on from its shell: sooner, and thicker. Fewer triangles than the
+    /// default's have too little of their shape left then. 0: never.
+    std::size_t coarse_from = 10000;
     int free_rounds = 40; ///< upper bound on rounds of free moves, under each prism test
     /// Bound that the mean ratio of every tet should reach (certify/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
