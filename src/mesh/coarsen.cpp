@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace vdb_shell
 {
@@ -64,6 +63,12 @@ Vec3d cross_of(const Vec3d& a, const Vec3d& b, const Vec3d& c)
     return (b - a).cross(c - a);
 }
 
+/// The corner that follows v.
+std::uint32_t corner_after(const Vec3I& triangle, std::uint32_t v)
+{
+    return triangle[0] == v ? triangle[1] : triangle[1] == v ? triangle[2] : triangle[0];
+}
+
 /// Longest edge over height, squared.
 double squared_aspect(const Vec3d& a, const Vec3d& b, const Vec3d& c, double squared_cross)
 {
@@ -105,9 +110,8 @@ private:
     bool round(std::size_t triangles)
     {
         around_ = triangles_around_vertices(points_.size(), triangles_);
-        const std::vector<std::uint8_t> touched = touched_;
         for_each_index(points_.size(), [&](std::size_t v) {
-            if (touched[v] || touched[best_[v].onto])
+            if (touched_[v] || touched_[best_[v].onto])
                 best_[v] = best_collapse(static_cast<std::uint32_t>(v));
         });
         std::fill(touched_.begin(), touched_.end(), 0);
@@ -171,7 +175,7 @@ private:
         for (const std::uint32_t t : around_.around(v)) {
             const Vec3I& c = triangles_[t];
             // Closed and consistent: each neighbour is once the next corner.
-            ring.push_back(c[0] == v ? c[1] : c[1] == v ? c[2] : c[0]);
+            ring.push_back(corner_after(c, v));
             const Vec3d &p = points_[c[0]], &q = points_[c[1]], &r = points_[c[2]];
             worst_aspect =
                 std::max(worst_aspect, squared_aspect(p, q, r, cross_of(p, q, r).lengthSqr()));
@@ -221,8 +225,7 @@ private:
     {
         int common = 0, degree = 0;
         for (const std::uint32_t t : around_.around(u)) {
-            const Vec3I& c = triangles_[t];
-            const std::uint32_t w = c[0] == u ? c[1] : c[1] == u ? c[2] : c[0];
+            const std::uint32_t w = corner_after(triangles_[t], u);
             common += std::find(ring.begin(), ring.end(), w) != ring.end();
             ++degree;
         }

@@ -60,43 +60,32 @@ HalfedgeMesh to_halfedges(const TriangleMesh& mesh, const std::vector<char>& hel
     return out;
 }
 
-using Quadric = OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>;
-using Turn = OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>;
-using Aspect = OpenMesh::Decimater::ModAspectRatioT<HalfedgeMesh>;
-
-/// What every collapse is held to; gives back the module of the quadric error.
-Quadric& add_common_modules(Decimater& decimater)
-{
-    Quadric::Handle quadric;
-    Turn::Handle turn;
-    Aspect::Handle aspect;
-    decimater.add(quadric);
-    decimater.add(turn);
-    decimater.add(aspect);
-    decimater.module(quadric).set_binary(false);
-    decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
-    decimater.module(aspect).set_aspect_ratio(kWorstAspect);
-    decimater.module(aspect).set_binary(true);
-    return decimater.module(quadric);
-}
-
 /// Of a mesh in units of the tolerance.
 void collapse_edges(HalfedgeMesh& mesh, const SimplifyLimits& limits)
 {
     Decimater decimater(mesh);
-    Quadric& quadric = add_common_modules(decimater);
+    OpenMesh::Decimater::ModQuadricT<HalfedgeMesh>::Handle quadric;
     OpenMesh::Decimater::ModHausdorffT<HalfedgeMesh>::Handle distance;
+    OpenMesh::Decimater::ModNormalFlippingT<HalfedgeMesh>::Handle turn;
+    OpenMesh::Decimater::ModAspectRatioT<HalfedgeMesh>::Handle aspect;
+    decimater.add(quadric);
     decimater.add(distance);
+    decimater.add(turn);
+    decimater.add(aspect);
     OpenMesh::Decimater::ModEdgeLengthT<HalfedgeMesh>::Handle length;
     decimater.add(length);
     decimater.module(length).set_edge_length(limits.longest_edge / limits.tolerance);
     decimater.module(length).set_binary(true);
     // A sum over all planes that a vertex stands for: far stricter than the distance.
     if (limits.bound_quadric)
-        quadric.set_max_err(1.0, false);
+        decimater.module(quadric).set_max_err(1.0, false);
     else
-        quadric.unset_max_err();
+        decimater.module(quadric).unset_max_err();
+    decimater.module(quadric).set_binary(false);
     decimater.module(distance).set_tolerance(1.0);
+    decimater.module(turn).set_max_normal_deviation(kLargestTurnDegrees);
+    decimater.module(aspect).set_aspect_ratio(kWorstAspect);
+    decimater.module(aspect).set_binary(true);
     decimater.initialize();
     decimater.decimate_to_faces(0, limits.fewest_triangles);
 }

@@ -68,16 +68,6 @@ std::vector<double> first_lengths(const GrowState& s, const Directions& directio
     return lengths;
 }
 
-/// Makes the pillars the lines.
-void aim_at_inner_points(const GrowState& s, Directions& lines)
-{
-    for (std::size_t v = 0; v < s.b.size(); ++v) {
-        const Vec3d arm = s.b[v] - s.a[v];
-        if (arm != Vec3d(0.0))
-            lines.inward[v] = arm.unit();
-    }
-}
-
 std::ptrdiff_t pins(const GrowState& s)
 {
     return std::count(s.pinned.begin(), s.pinned.end(), 1);
@@ -276,10 +266,9 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     GrowResult result;
     Start started = Start::lines;
     if (from) {
-        growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
-        lines = std::move(pillars.lines);
-        growth::settle_carried(s, lines, pillars.length, progress);
-        aim_at_inner_points(s, lines);
+        const growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
+        growth::settle_carried(s, pillars.lines, pillars.length, progress);
+        lines = growth::pillars_to(mesh, shell_of(mesh, s).inner, pillars.lines).lines;
     } else {
         started = start_growth(s, mesh, lines, start, options, progress);
     }

@@ -64,16 +64,6 @@ Vec3d within_reach(const GrowState& s, int v, const Vec3d& x)
     return distance > most ? s.home[v] + off * (most / distance) : x;
 }
 
-/// The float32 point nearest x that respects the cap.
-Vec3d capped(const GrowState& s, int v, const Vec3d& x)
-{
-    const Vec3d point = rounded(x);
-    if (within_cap(s, v, point))
-        return point;
-    const Vec3d arm = x - s.a[v];
-    return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
-}
-
 /// Adds the near walls, which together weigh no more than a few tets: there may be dozens, and most
 /// say the same.
 void wall_bounds(const GrowState& s, const Walls& w, int v, Bounds& bounds)

@@ -120,6 +120,15 @@ Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length
     return within_cap(s, v, x) ? x : Vec3d(end_of_pillar(Vec3s(s.a[v]), unit, s.cap[v]));
 }
 
+Vec3d capped(const GrowState& s, int v, const Vec3d& x)
+{
+    const Vec3d point = rounded(x);
+    if (within_cap(s, v, point))
+        return point;
+    const Vec3d arm = x - s.a[v];
+    return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
+}
+
 bool swallows_component(const GrowState& s, int v, const Vec3d& x)
 {
     const Connectivity& m = *s.mesh;

@@ -26,6 +26,9 @@ bool within_cap(const GrowState& s, int v, const Vec3d& x);
 /// The point at `length` from a_v towards `unit`, rounded so that the cap holds.
 Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length);
 
+/// The float32 point nearest x that respects the cap.
+Vec3d capped(const GrowState& s, int v, const Vec3d& x);
+
 /// Would moving b_v to x sweep over another component as a whole, touching nothing? The contact
 /// tests see only where the triangles end up.
 bool swallows_component(const GrowState& s, int v, const Vec3d& x);

@@ -16,10 +16,8 @@ constexpr double kProbe = 1e-3; ///< share of the diagonal
 constexpr double kAtCap =
     1e-6; ///< relative; the rounding of the coordinates stops short of the cap
 
-enum class Meets { nothing, inner, outer };
-
 /// What the triangles around v meet first, with b_v = x.
-Meets meets_at(const GrowState& s, int v, const Vec3d& x)
+StopReason contact_at(const GrowState& s, int v, const Vec3d& x)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
     for (const FaceCorner& at : fan) {
@@ -33,12 +31,12 @@ Meets meets_at(const GrowState& s, int v, const Vec3d& x)
             inner = inner || (!s.mesh->incident_to(g, v) && moved.meets_inner(g));
         });
         if (inner)
-            return Meets::inner;
+            return StopReason::inner_contact;
         s.outer_tree.for_each_overlap(box, [&](int g) { outer = outer || moved.meets_outer(g); });
         if (outer)
-            return Meets::outer;
+            return StopReason::outer_contact;
     }
-    return Meets::nothing;
+    return StopReason::none;
 }
 
 StopReason reason_at(const GrowState& s, int v, double step)
@@ -52,15 +50,7 @@ StopReason reason_at(const GrowState& s, int v, double step)
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
-    switch (meets_at(s, v, x)) {
-    case Meets::inner:
-        return StopReason::inner_contact;
-    case Meets::outer:
-        return StopReason::outer_contact;
-    case Meets::nothing:
-        break;
-    }
-    return StopReason::none;
+    return contact_at(s, v, x);
 }
 
 } // namespace

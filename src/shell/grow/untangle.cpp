@@ -64,7 +64,7 @@ double list_bounds(const GrowState& s, int v, std::vector<Bound>& out)
     return least;
 }
 
-/// Minimum over x of the squares of what the bounds lack of `room`, and of |x|.
+/// Damped Gauss-Newton steps on the squares of what the bounds lack of `room`.
 Vec3d least_move(const std::vector<Bound>& bounds, double room)
 {
     Vec3d x(0.0);
@@ -99,11 +99,7 @@ Vec3d better_place(const GrowState& s, int v, std::vector<Bound>& bounds)
     const double length = move.length();
     if (length > most)
         move *= most / length;
-    const Vec3d x = rounded(here + move);
-    if (within_cap(s, v, x))
-        return x;
-    const Vec3d arm = x - s.a[v];
-    return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
+    return capped(s, v, rounded(here + move));
 }
 
 } // namespace
