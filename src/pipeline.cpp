@@ -243,7 +243,7 @@ std::string options_json(const ShellOptions& options)
                     {"soft_contacts", options.grow.soft_contacts},
                     {"flips", options.grow.flips},
                     {"coarse_from", options.grow.coarse_from},
-                    {"free_rounds", options.grow.free_rounds},
+                    {"free_rounds", or_null(options.grow.free_rounds)},
                     {"min_quality", options.grow.min_quality}};
     json["refine"] = {{"rounds", options.refine.rounds},
                       {"by", name_in_table(options.refine.by)},

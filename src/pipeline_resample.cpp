@@ -60,7 +60,7 @@ std::optional<RefineEnd> end_of(const RefineReport& report, const RefineOptions&
 /// The old pillars, and between them those in the middles of the halved edges.
 GrowStart start_on(const RefinedMesh& refined, const PrismShell& shell)
 {
-    GrowStart start{shell.inner};
+    GrowStart start{shell.inner, {}};
     for (const auto& [a, b] : refined.halved)
         start.inner.emplace_back(0.5 * (Vec3d(shell.inner[a]) + Vec3d(shell.inner[b])));
     return start;

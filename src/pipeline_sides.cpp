@@ -59,7 +59,7 @@ struct SideJob {
     StageClock& clock;
     std::string prefix; ///< of the stages' names
     Interrupter* interrupter;
-    const GrowStart* from; ///< where growth starts; null: from the lines
+    const GrowStart* from; ///< a shell that growth starts from; null: from lines
 };
 
 /// What the stages of one side make.
@@ -81,18 +81,32 @@ void make_raw_shell(const SideJob& job, SideResult& side)
     side.stack = one_layer(std::move(shell), std::move(split));
 }
 
-void grow_and_scale(const SideJob& job, SideResult& side)
+void grow_and_scale(const SideJob& job, const GrowStart& start, SideResult& side)
 {
     const ShellOptions& options = job.options;
     GrowResult grown =
         grow_shell(job.surface, side.lines.directions, side.lines.lengths,
                    largest_lengths(job.surface, options.line_step, job.thickness_grid),
-                   options.grow, options.split, job.interrupter, job.from);
+                   options.grow, options.split, job.interrupter, &start);
     side.grow = grown.report;
     if (options.scale.factor < 1.0)
         side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
                                      job.interrupter);
     side.stack = one_layer(std::move(grown.shell), std::move(grown.split));
+}
+
+GrowStart start_of(const SideJob& job)
+{
+    if (job.from)
+        return *job.from;
+    return {{}, coarse_levels(job.surface, job.options.grow)};
+}
+
+/// Growth that goes on from a shell has no use for lines.
+std::vector<std::uint32_t> vertices_to_step(const TriangleMesh& surface, const GrowStart& start)
+{
+    return start.inner.empty() ? vertices_of_coarsest(surface, start.levels)
+                               : std::vector<std::uint32_t>();
 }
 
 SideResult build_side(const SideJob& job)
@@ -103,19 +117,24 @@ SideResult build_side(const SideJob& job)
     job.clock.run(job.prefix + "directions", [&] {
         lines.directions = compute_directions(job.surface, job.level_set, options.directions);
     });
+    const bool raw = options.grow.method == Method::raw;
+    GrowStart start;
+    if (!raw)
+        job.clock.run(job.prefix + "coarsen", [&] { start = start_of(job); });
     job.clock.run(job.prefix + "line stepping", [&] {
         const auto step = job.sparse ? line_step_sparse : line_step;
+        const std::vector<std::uint32_t> only = vertices_to_step(job.surface, start);
         lines.lengths = step(job.surface, job.level_set, lines.directions, options.line_step,
-                             job.thickness_grid, job.interrupter);
+                             job.thickness_grid, job.interrupter, &only);
     });
     job.clock.run(job.prefix + "limits", [&] {
         apply_limits(lines.lengths,
                      vertex_limits(job.surface, lines.directions, options.limits.limit));
     });
-    if (options.grow.method == Method::raw)
+    if (raw)
         job.clock.run(job.prefix + "prisms", [&] { make_raw_shell(job, side); });
     else
-        job.clock.run(job.prefix + "growth", [&] { grow_and_scale(job, side); });
+        job.clock.run(job.prefix + "growth", [&] { grow_and_scale(job, start, side); });
     return side;
 }
 

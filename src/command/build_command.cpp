@@ -211,9 +211,10 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
                    "Triangles from which on growth begins on a coarser surface; 0: never")
         ->capture_default_str()
         ->group("Growth");
-    app.add_option("--free-rounds", grow.free_rounds, "Upper bound on rounds of free moves")
+    app.add_option("--free-rounds", grow.free_rounds,
+                   "Upper bound on rounds of free moves [40; fewer where growth began on a "
+                   "coarser surface: (50,000 / triangles)^2]")
         ->check(CLI::NonNegativeNumber)
-        ->capture_default_str()
         ->group("Growth");
     app.add_option("--min-quality", grow.min_quality,
                    "Mean ratio that tets should reach, at a cost in thickness; 0 asks for none")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh/coarsen.h"
+#include "vdb_shell/mesh/coarsen.h"
 
 #include "core/parallel.h"
 #include "mesh/topology.h"

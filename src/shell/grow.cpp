@@ -2,7 +2,7 @@
 #include "vdb_shell/shell/grow.h"
 
 #include "core/stage_progress.h"
-#include "mesh/coarsen.h"
+#include "vdb_shell/mesh/coarsen.h"
 #include "shell/grow/coarse_start.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/directions.h"
@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -45,6 +46,9 @@ constexpr double kRoughUntil = 0.005;
 // done; a round that wins less than kEnoughGain is the last.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
 constexpr double kEnoughGain = 2e-3;
+// Rounds of free moves at most; and the triangles of a surface that gets one after a coarse start.
+constexpr int kMostRounds = 40;
+constexpr double kAffordable = 50000;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -94,12 +98,6 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
     s.pinned = long_pinned;
 }
 
-bool worth_coarse_start(const TriangleMesh& mesh, const GrowState& s, const GrowOptions& options)
-{
-    return options.coarse_from > 0 && mesh.triangles.size() >= options.coarse_from && s.bounded &&
-           options.top_down && options.free_moves;
-}
-
 /// How growth starts: from lines, or from the shell of a coarser surface, nearly done.
 enum class Start { lines, carried };
 
@@ -109,60 +107,95 @@ double first_softness(const GrowState& s, Start start)
                                    : growth::kTwelveSoftness;
 }
 
-Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
-                   const LineLengths& start, const GrowOptions& options,
-                   const StageProgress& progress);
-
-/// Inner points of a coarse surface's shell that growth has not finished.
-std::vector<Vec3d> rough_inner(const Coarsened& coarse, const LineLengths& start,
-                               const std::vector<double>& cap, const GrowOptions& options,
-                               const StageProgress& progress)
+int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
 {
-    const TriangleMesh& mesh = coarse.mesh;
+    if (options.free_rounds || start == Start::lines || options.method == Method::thickest)
+        return options.free_rounds.value_or(kMostRounds);
+    const double over = kAffordable / s.mesh->face_count();
+    return static_cast<int>(std::min(double(kMostRounds), over * over));
+}
+
+Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options)
+{
     Directions directions;
     directions.inward = pseudo_normals(mesh);
     directions.visibility = visibility_of(mesh, directions.inward);
     for (Vec3d& d : directions.inward)
         d = -d;
-    const Directions lines = prepare(mesh, std::move(directions), options);
-    LineLengths lengths;
-    std::vector<double> caps;
-    for (const std::uint32_t v : coarse.from) {
-        lengths.length.push_back(start.length[v]);
-        caps.push_back(cap[v]);
+    return prepare(mesh, std::move(directions), options);
+}
+
+/// The levels' vertices as those of the mesh: by level.
+std::vector<std::vector<std::uint32_t>> vertices_of(const std::vector<Coarsened>& levels)
+{
+    std::vector<std::vector<std::uint32_t>> from;
+    for (const Coarsened& level : levels) {
+        from.push_back(level.from);
+        if (from.size() > 1)
+            for (std::uint32_t& v : from.back())
+                v = from[from.size() - 2][v];
     }
-    const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
-    GrowState s = growth::make_state(connectivity, mesh.points, caps);
-    const Start started = start_growth(s, mesh, lines, lengths, options, progress);
-    GrowReport ignored;
-    growth::move_freely(
-        s, lines.visibility, options,
-        {options.free_rounds, first_softness(s, started), kCool, kLeastGain, kRoughUntil}, progress,
-        ignored);
-    return s.b;
+    return from;
+}
+
+template <class T>
+std::vector<T> at_vertices(const std::vector<T>& all, const std::vector<std::uint32_t>& vertices)
+{
+    std::vector<T> some;
+    some.reserve(vertices.size());
+    for (const std::uint32_t v : vertices)
+        some.push_back(all[v]);
+    return some;
+}
+
+/// Inner points of the first level's shell, which growth has not finished; none where the lines
+/// fill the last one nearly: to a round solid coarser surfaces have nothing to add.
+std::vector<Vec3d> rough_inner(const std::vector<Coarsened>& levels, const LineLengths& start,
+                               const std::vector<double>& cap, const GrowOptions& options,
+                               const StageProgress& progress)
+{
+    const auto from = vertices_of(levels);
+    std::vector<Vec3d> inner;
+    for (std::size_t level = levels.size(); level-- > 0;) {
+        const TriangleMesh& mesh = levels[level].mesh;
+        const Directions lines = rough_lines(mesh, options);
+        const growth::Connectivity connectivity =
+            growth::connect(mesh.points.size(), mesh.triangles);
+        GrowState s =
+            growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
+        const Start started = inner.empty() ? Start::lines : Start::carried;
+        if (started == Start::lines) {
+            settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
+            if (pins(s) == 0 && growth::fill_of(s) > growth::kNearlyFull)
+                return {};
+        } else {
+            const growth::Pillars pillars =
+                growth::pillars_in(levels[level + 1].mesh, inner, mesh, lines);
+            growth::settle_carried(s, pillars.lines, pillars.length, progress);
+        }
+        GrowReport ignored;
+        growth::move_freely(s, lines.visibility, options,
+                            {most_rounds(s, started, options), first_softness(s, started), kCool,
+                             kLeastGain, kRoughUntil},
+                            progress, ignored);
+        inner = std::move(s.b);
+    }
+    return inner;
 }
 
 /// Sets the state to a shell that growth can go on from.
 Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
-                   const LineLengths& start, const GrowOptions& options,
-                   const StageProgress& progress)
+                   const LineLengths& start, const std::vector<Coarsened>& levels,
+                   const GrowOptions& options, const StageProgress& progress)
 {
-    if (worth_coarse_start(mesh, s, options)) {
-        // A round solid, to which a coarser surface has nothing to add.
-        if (growth::settle_start(s, lines, first_lengths(s, lines, start), progress,
-                                 growth::kNearlyFull) &&
-            pins(s) == 0)
-            return Start::lines;
-        const Coarsened coarse = coarsen(mesh, mesh.triangles.size() / kCoarser);
-        if (coarse.mesh.triangles.size() <= mesh.triangles.size() / 2) {
-            const std::vector<Vec3d> inner = rough_inner(coarse, start, s.cap, options, progress);
-            const growth::Pillars pillars = growth::pillars_in(coarse.mesh, inner, mesh, lines);
-            growth::settle_carried(s, pillars.lines, pillars.length, progress);
-            return Start::carried;
-        }
+    const std::vector<Vec3d> inner = rough_inner(levels, start, s.cap, options, progress);
+    if (inner.empty()) {
+        settle(s, lines, start, options, progress);
+        return Start::lines;
     }
-    settle(s, lines, start, options, progress);
-    return Start::lines;
+    const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines);
+    growth::settle_carried(s, pillars.lines, pillars.length, progress);
+    return Start::carried;
 }
 
 bool worth_lengthening(const GrowState& s)
@@ -176,8 +209,8 @@ void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
                         GrowReport& report)
 {
     const bool thickest = options.method == Method::thickest, carried = start == Start::carried;
-    const int twelve_rounds =
-        thickest ? std::min(kTwelveRoundsFirst, options.free_rounds) : options.free_rounds;
+    const int rounds = most_rounds(s, start, options);
+    const int twelve_rounds = thickest ? std::min(kTwelveRoundsFirst, rounds) : rounds;
     const double cool = thickest ? kCoolSlowly : carried ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
     const double enough = carried && !thickest ? kEnoughGain : -1;
@@ -189,7 +222,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
     s.twelve = false;
     growth::order_by_length(s);
     growth::move_freely(s, directions.visibility, options,
-                        {options.free_rounds, growth::kThreeSoftness, cool, least_gain}, progress,
+                        {rounds, growth::kThreeSoftness, cool, least_gain}, progress,
                         report);
 }
 
@@ -243,7 +276,42 @@ PrismSplit split_of(const GrowState& s, std::size_t ripples)
     return split;
 }
 
+bool worth_coarse_start(const TriangleMesh& mesh, const GrowOptions& options)
+{
+    return options.coarse_from > 0 && mesh.triangles.size() >= options.coarse_from &&
+           options.top_down && options.free_moves &&
+           signed_volume(mesh.points, mesh.triangles) > 0;
+}
+
 } // namespace
+
+std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options)
+{
+    std::vector<Coarsened> levels;
+    if (!worth_coarse_start(mesh, options))
+        return levels;
+    const auto finest = [&]() -> const TriangleMesh& {
+        return levels.empty() ? mesh : levels.back().mesh;
+    };
+    while (finest().triangles.size() >= options.coarse_from) {
+        const std::size_t count = finest().triangles.size();
+        Coarsened coarse = coarsen(finest(), count / kCoarser);
+        if (coarse.mesh.triangles.size() > count / 2)
+            break;
+        levels.push_back(std::move(coarse));
+    }
+    return levels;
+}
+
+std::vector<std::uint32_t> vertices_of_coarsest(const TriangleMesh& mesh,
+                                                const std::vector<Coarsened>& levels)
+{
+    if (!levels.empty())
+        return vertices_of(levels).back();
+    std::vector<std::uint32_t> all(mesh.points.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+}
 
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& start, const std::vector<double>& cap,
@@ -251,8 +319,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       Interrupter* interrupter, const GrowStart* from)
 {
     const StageProgress progress(interrupter, "grow");
-    if (options.free_rounds < 0)
-        throw InvalidOption("growth: free_rounds is " + std::to_string(options.free_rounds) +
+    if (options.free_rounds && *options.free_rounds < 0)
+        throw InvalidOption("growth: free_rounds is " + std::to_string(*options.free_rounds) +
                             ", must not be negative");
     if (!(options.min_quality >= 0.0 && options.min_quality < 1.0))
         throw InvalidOption("growth: min_quality is " + std::to_string(options.min_quality) +
@@ -265,12 +333,14 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
     Start started = Start::lines;
-    if (from) {
+    if (from && !from->inner.empty()) {
         const growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
         growth::settle_carried(s, pillars.lines, pillars.length, progress);
         lines = growth::pillars_to(mesh, shell_of(mesh, s).inner, pillars.lines).lines;
     } else {
-        started = start_growth(s, mesh, lines, start, options, progress);
+        started = start_growth(s, mesh, lines, start,
+                               from ? from->levels : coarse_levels(mesh, options), options,
+                               progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     // A carried shell has left the lines.

@@ -89,6 +89,7 @@ struct Job {
     const LineStepOptions& options;
     const openvdb::FloatGrid* thickness_grid;
     Interrupter* interrupter;
+    const std::vector<std::uint32_t>* only;
 };
 
 /// `make_stepper(rules)` gives what steps the lines of a range: step(range, line_of, store).
@@ -121,12 +122,17 @@ LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
         lengths.reason[v] = end.reason;
     };
     const auto step = make_stepper(rules);
-    for (std::size_t block = 0; block < count; block += kBlock) {
-        progress.stop_if_interrupted(static_cast<int>(100 * block / count));
+    const std::size_t lines = job.only ? job.only->size() : count;
+    const auto vertex = [&](std::size_t i) { return job.only ? (*job.only)[i] : i; };
+    for (std::size_t block = 0; block < lines; block += kBlock) {
+        progress.stop_if_interrupted(static_cast<int>(100 * block / lines));
         for_each_range(
-            std::min(kBlock, count - block),
+            std::min(kBlock, lines - block),
             [&](std::size_t begin, std::size_t end) {
-                step(std::pair(block + begin, block + end), line_of, store);
+                step(
+                    std::pair(block + begin, block + end),
+                    [&](std::size_t i) { return line_of(vertex(i)); },
+                    [&](std::size_t i, const LineEnd& line) { store(vertex(i), line); });
             },
             16);
     }
@@ -171,9 +177,10 @@ const char* name_of(StopReason reason)
 
 LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                       const Directions& directions, const LineStepOptions& options,
-                      const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+                      const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter,
+                      const std::vector<std::uint32_t>* only)
 {
-    const Job job{mesh, level_set, directions, options, thickness_grid, interrupter};
+    const Job job{mesh, level_set, directions, options, thickness_grid, interrupter, only};
     return step_all(job, [&](const MarchRules& rules) {
         return [&](const auto& range, const auto& line_of, const auto& store) {
             FieldSampler field(level_set);
@@ -185,9 +192,10 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
 
 LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid& narrow_band,
                              const Directions& directions, const LineStepOptions& options,
-                             const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+                             const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter,
+                             const std::vector<std::uint32_t>* only)
 {
-    const Job job{mesh, narrow_band, directions, options, thickness_grid, interrupter};
+    const Job job{mesh, narrow_band, directions, options, thickness_grid, interrupter, only};
     return step_all(job, [&](const MarchRules& rules) {
         const auto deep = std::make_shared<const DeepField>(mesh, narrow_band);
         const SkipAhead skip(*deep, 2 * rules.search_depth);

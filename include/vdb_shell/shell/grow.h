@@ -2,10 +2,13 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/mesh/coarsen.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace vdb_shell
@@ -38,7 +41,10 @@ struct GrowOptions {
     /// be too many) and goes on from its shell: sooner, and thicker. Fewer triangles than the
     /// default's have too little of their shape left then. 0: never.
     std::size_t coarse_from = 10000;
-    int free_rounds = 40; ///< upper bound on rounds of free moves, under each prism test
+    /// Upper bound on rounds of free moves, under each prism test. Unset: 40; after a start on a
+    /// coarser surface fewer, the more triangles there are, for each costs as much as all before
+    /// it and wins little: (50,000 / triangles) squared (docs/benchmarks.md).
+    std::optional<int> free_rounds;
     /// Bound that the mean ratio of every tet should reach (certify/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.
@@ -55,9 +61,23 @@ struct GrowReport {
     std::size_t vertices_below_quality = 0; ///< inner vertices of such tets, pinned ones included
 };
 
-/// A shell to grow on from in place of lines: that of a coarser surface on the refined one.
+/// Surfaces for growth to begin on, each an eighth of the one before, the first of the mesh: as
+/// GrowOptions::coarse_from asks. None for a side without bound, for a surface of few triangles or
+/// one that cannot be coarsened. Same result for any number of threads.
+std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options);
+
+/// The vertices of the mesh from whose lines growth on such levels begins, ascending: those of the
+/// last, or all.
+std::vector<std::uint32_t> vertices_of_coarsest(const TriangleMesh& mesh,
+                                                const std::vector<Coarsened>& levels);
+
+/// What growth sets out from.
 struct GrowStart {
-    std::vector<openvdb::Vec3s> inner; ///< one per vertex; the vertex itself where it is pinned
+    /// A shell to grow on from in place of lines, that of a coarser surface on the refined one: one
+    /// point per vertex, the vertex itself where it is pinned. Empty: there is none.
+    std::vector<openvdb::Vec3s> inner;
+    /// Otherwise: surfaces to begin on (coarse_levels); none: on the mesh itself.
+    std::vector<Coarsened> levels;
 };
 
 struct GrowResult {
@@ -80,9 +100,11 @@ struct GrowResult {
 /// Precondition: closed, manifold mesh, oriented so that the side to fill lies behind its
 /// triangles; one entry per vertex in all lists; cap not negative, and finite where that side has
 /// no bound (a reversed surface: shell/sides.h); method not raw. On a surface that crosses itself
-/// the result is some shell; only a certificate tells. With `from`, growth starts there instead of
-/// with the lines, after moving, or else shortening, what is not valid in it. Throws InvalidOption
-/// when free_rounds is negative or min_quality out of range, Cancelled.
+/// the result is some shell; only a certificate tells. Without `from`, growth begins on
+/// coarse_levels of the mesh. With from->inner it starts there instead of with lines, after moving,
+/// or else shortening, what is not valid in it; `start` is not read then. With levels, `start` is
+/// of use at vertices_of_coarsest alone and may be 0 elsewhere. Throws InvalidOption when
+/// free_rounds is negative or min_quality out of range, Cancelled.
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& start, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,

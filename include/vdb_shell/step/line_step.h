@@ -89,11 +89,13 @@ std::vector<double> own_sheet_slopes(const TriangleMesh& mesh, const Directions&
 /// is one step from the vertex. Throws InvalidOption when an option is out of its range,
 /// GeometryError when the level set's voxels are not uniform, Cancelled. Guarantee: length <=
 /// thickness and <= the sampled thickness; same bits for any number of threads. Cost: O(V N),
-/// eq. 12.
+/// eq. 12. `only` (may be null): the vertices to step from, without duplicates; the others get
+/// length 0, no steps and StopReason::none.
 LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                       const Directions& directions, const LineStepOptions& options,
                       const openvdb::FloatGrid* thickness_grid = nullptr,
-                      Interrupter* interrupter = nullptr);
+                      Interrupter* interrupter = nullptr,
+                      const std::vector<std::uint32_t>* only = nullptr);
 
 /// The same lengths from a narrow band alone (mesh_to_narrow_band of this very mesh): voxels deeper
 /// than the band are computed where a line reads them, each minus its distance to the mesh, to a
@@ -102,6 +104,7 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
 LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid& narrow_band,
                              const Directions& directions, const LineStepOptions& options,
                              const openvdb::FloatGrid* thickness_grid = nullptr,
-                             Interrupter* interrupter = nullptr);
+                             Interrupter* interrupter = nullptr,
+                      const std::vector<std::uint32_t>* only = nullptr);
 
 } // namespace vdb_shell
