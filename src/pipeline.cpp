@@ -90,12 +90,13 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
 }
 
 /// The level set that the lines step through: the given one where it is fit for that.
-void make_field(ShellResult& r, const ShellOptions& options, const openvdb::FloatGrid* given,
-                const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+void make_field(ShellResult& r, const ShellOptions& options, const GrowStart& start,
+                const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
+                Interrupter* interrupter)
 {
     const LevelSetOptions band = band_for(options, r.surface, thickness_grid);
     std::string& origin = r.report.field.origin;
-    const std::string dense_for = why_not_sparse(options, r, thickness_grid);
+    const std::string dense_for = why_not_sparse(options, r, start, thickness_grid);
     origin = dense_for.empty() ? "a narrow band made of the surface, deeper where lines end"
                                : "made of the surface, dense for " + dense_for;
     if (given) {
@@ -122,12 +123,15 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
 {
     StageClock clock(r.report.stages);
     prepare_surface(r, mesh, options, clock, interrupter);
-    clock.run("level set", [&] { make_field(r, options, given, thickness_grid, interrupter); });
+    GrowStart start;
+    clock.run("coarsen", [&] { start = start_of_growth(options, r.surface); });
+    clock.run("level set",
+              [&] { make_field(r, options, start, given, thickness_grid, interrupter); });
     clock.run("smooth", [&] {
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);
     });
-    build_and_refine(r, options, thickness_grid, clock, interrupter);
+    build_and_refine(r, options, start, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
     clock.run("tets", [&] { r.tets = make_tets(r.stack); });
     clock.run("certificate", [&] {

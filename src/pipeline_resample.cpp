@@ -103,7 +103,7 @@ RefineReport refine(ShellResult& result, const ShellOptions& options,
             break;
         std::vector<StageCost> costs;
         StageClock clock(costs);
-        build_sides(result, options, thickness_grid, clock, interrupter, &start);
+        build_sides(result, options, thickness_grid, clock, interrupter, start);
         report.rounds.push_back(figures_of(result, options));
         if (fill_tells && report.rounds.back().fill <= report.rounds[report.kept].fill)
             continue;
@@ -146,10 +146,10 @@ void resample_surface(ShellResult& result, const ShellOptions& options, StageClo
 }
 
 void build_and_refine(ShellResult& result, const ShellOptions& options,
-                      const openvdb::FloatGrid* thickness_grid, StageClock& clock,
-                      Interrupter* interrupter)
+                      const GrowStart& start, const openvdb::FloatGrid* thickness_grid,
+                      StageClock& clock, Interrupter* interrupter)
 {
-    build_sides(result, options, thickness_grid, clock, interrupter);
+    build_sides(result, options, thickness_grid, clock, interrupter, start);
     if (options.refine.rounds == 0)
         return;
     clock.run("refine", [&] {

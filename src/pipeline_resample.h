@@ -16,7 +16,7 @@ void resample_surface(ShellResult& result, const ShellOptions& options, StageClo
 /// voids, and build_sides again in the same field, on from the shell there is. Keeps the shell of
 /// the highest fill with its surface; of the raw method, the last.
 void build_and_refine(ShellResult& result, const ShellOptions& options,
-                      const openvdb::FloatGrid* thickness_grid, StageClock& clock,
-                      Interrupter* interrupter);
+                      const GrowStart& start, const openvdb::FloatGrid* thickness_grid,
+                      StageClock& clock, Interrupter* interrupter);
 
 } // namespace vdb_shell

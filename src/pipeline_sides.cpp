@@ -32,10 +32,10 @@ std::optional<double> longest_line(const LineStepOptions& options,
 /// The voxels of a dense field that cost about as much as the lines do in a sparse one. With 71
 /// voxels a line (rocker-arm) the sparse way took a quarter of the dense way's time, with 21
 /// (cheburashka, 120,000 faces) a third, with 3 (853,000 faces) as much.
-double sparse_voxels(const TriangleMesh& surface)
+double sparse_voxels(std::size_t lines)
 {
     constexpr double kVoxelsPerLine = 5;
-    return kVoxelsPerLine * static_cast<double>(surface.points.size());
+    return kVoxelsPerLine * static_cast<double>(lines);
 }
 
 /// The voxels inside down to the depth of the lines, about.
@@ -59,7 +59,7 @@ struct SideJob {
     StageClock& clock;
     std::string prefix; ///< of the stages' names
     Interrupter* interrupter;
-    const GrowStart* from; ///< a shell that growth starts from; null: from lines
+    const GrowStart& start;
 };
 
 /// What the stages of one side make.
@@ -81,25 +81,18 @@ void make_raw_shell(const SideJob& job, SideResult& side)
     side.stack = one_layer(std::move(shell), std::move(split));
 }
 
-void grow_and_scale(const SideJob& job, const GrowStart& start, SideResult& side)
+void grow_and_scale(const SideJob& job, SideResult& side)
 {
     const ShellOptions& options = job.options;
     GrowResult grown =
         grow_shell(job.surface, side.lines.directions, side.lines.lengths,
                    largest_lengths(job.surface, options.line_step, job.thickness_grid),
-                   options.grow, options.split, job.interrupter, &start);
+                   options.grow, options.split, job.interrupter, &job.start);
     side.grow = grown.report;
     if (options.scale.factor < 1.0)
         side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
                                      job.interrupter);
     side.stack = one_layer(std::move(grown.shell), std::move(grown.split));
-}
-
-GrowStart start_of(const SideJob& job)
-{
-    if (job.from)
-        return *job.from;
-    return {{}, coarse_levels(job.surface, job.options.grow)};
 }
 
 /// Growth that goes on from a shell has no use for lines.
@@ -117,13 +110,9 @@ SideResult build_side(const SideJob& job)
     job.clock.run(job.prefix + "directions", [&] {
         lines.directions = compute_directions(job.surface, job.level_set, options.directions);
     });
-    const bool raw = options.grow.method == Method::raw;
-    GrowStart start;
-    if (!raw)
-        job.clock.run(job.prefix + "coarsen", [&] { start = start_of(job); });
     job.clock.run(job.prefix + "line stepping", [&] {
         const auto step = job.sparse ? line_step_sparse : line_step;
-        const std::vector<std::uint32_t> only = vertices_to_step(job.surface, start);
+        const std::vector<std::uint32_t> only = vertices_to_step(job.surface, job.start);
         lines.lengths = step(job.surface, job.level_set, lines.directions, options.line_step,
                              job.thickness_grid, job.interrupter, &only);
     });
@@ -131,10 +120,10 @@ SideResult build_side(const SideJob& job)
         apply_limits(lines.lengths,
                      vertex_limits(job.surface, lines.directions, options.limits.limit));
     });
-    if (raw)
+    if (options.grow.method == Method::raw)
         job.clock.run(job.prefix + "prisms", [&] { make_raw_shell(job, side); });
     else
-        job.clock.run(job.prefix + "growth", [&] { grow_and_scale(job, start, side); });
+        job.clock.run(job.prefix + "growth", [&] { grow_and_scale(job, side); });
     return side;
 }
 
@@ -147,9 +136,10 @@ SideResult build_outside(const ShellResult& result, ShellOptions options,
     const TriangleMesh reversed = reversed_surface(result.surface);
     // In place, for a copy would double the memory.
     negate_level_set(*result.level_set);
+    const GrowStart from_lines;
     SideResult side =
         build_side({reversed, *result.level_set, false, options, thickness_grid, clock,
-                    options.side == Side::both ? "outward " : "", interrupter, nullptr});
+                    options.side == Side::both ? "outward " : "", interrupter, from_lines});
     negate_level_set(*result.level_set);
     side.stack = turn_back(side.stack);
     return side;
@@ -157,8 +147,15 @@ SideResult build_outside(const ShellResult& result, ShellOptions options,
 
 } // namespace
 
+GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surface)
+{
+    if (options.grow.method == Method::raw || options.side == Side::outward)
+        return {};
+    return {{}, coarse_levels(surface, options.grow)};
+}
+
 std::string why_not_sparse(const ShellOptions& options, const ShellResult& result,
-                           const openvdb::FloatGrid* thickness_grid)
+                           const GrowStart& start, const openvdb::FloatGrid* thickness_grid)
 {
     if (options.field == FieldRoute::dense)
         return "it was asked for";
@@ -175,7 +172,8 @@ std::string why_not_sparse(const ShellOptions& options, const ShellResult& resul
     if (result.report.mesh.self_intersections.count > 0)
         return "a surface that crosses itself";
     if (options.field == FieldRoute::automatic &&
-        sparse_voxels(result.surface) > dense_voxels(options, result.surface, thickness_grid))
+        sparse_voxels(vertices_of_coarsest(result.surface, start.levels).size()) >
+            dense_voxels(options, result.surface, thickness_grid))
         return "many lines";
     return "";
 }
@@ -205,14 +203,14 @@ PrismTest prism_test(const ShellOptions& options)
 
 void build_sides(ShellResult& result, const ShellOptions& options,
                  const openvdb::FloatGrid* thickness_grid, StageClock& clock,
-                 Interrupter* interrupter, const GrowStart* from)
+                 Interrupter* interrupter, const GrowStart& start)
 {
     result.report.side = options.side;
     SideResult main =
         options.side == Side::outward
             ? build_outside(result, options, thickness_grid, clock, interrupter)
             : build_side({result.surface, *result.level_set, result.report.field.sparse, options,
-                          thickness_grid, clock, "", interrupter, from});
+                          thickness_grid, clock, "", interrupter, start});
     result.directions = std::move(main.lines.directions);
     result.lengths = std::move(main.lines.lengths);
     result.report.grow = main.grow;

@@ -2,7 +2,6 @@
 #include "vdb_shell/shell/grow.h"
 
 #include "core/stage_progress.h"
-#include "shell/grow/candidates.h"
 #include "shell/grow/move_tests.h"
 #include "shell/grow/pins.h"
 #include "shell/grow/predicates.h"
@@ -459,10 +458,11 @@ TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
     }
     EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0)), 0);
     EXPECT_EQ(growth::release_pins(s, c.directions.visibility), 3);
-    growth::rebuild_candidates(s);
     for (int f = 0; f < mesh.face_count(); ++f) {
         EXPECT_TRUE(growth::prism_valid(s, f));
-        EXPECT_TRUE(growth::inner_triangle_clear(s, f));
+        const growth::InnerTriangle triangle(s, f);
+        for (int g = 0; g < mesh.face_count(); ++g)
+            EXPECT_FALSE(triangle.meets_outer(g) || (g != f && triangle.meets_inner(g)));
     }
     for (const int v : {0, 1, 11})
         EXPECT_NE(s.b[v], s.a[v]);

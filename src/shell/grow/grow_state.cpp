@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/grow_state.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,13 +55,11 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     s.pinned.assign(outer.size(), 0);
     s.reach.assign(outer.size(), 0.0);
     s.order.assign(mesh.faces.size(), 0);
-    s.inner_box.resize(mesh.faces.size());
-    s.outer_box.resize(mesh.faces.size());
-    s.near_inner.resize(mesh.faces.size());
-    s.near_outer.resize(mesh.faces.size());
-    for (int f = 0; f < mesh.face_count(); ++f)
-        s.outer_box[f] = box_of(outer_corners(s, f));
-    s.outer_tree.build(s.outer_box);
+    std::vector<Box> boxes(mesh.faces.size());
+    for_each_index(
+        boxes.size(),
+        [&](std::size_t f) { boxes[f] = box_of(outer_corners(s, static_cast<int>(f))); }, 256);
+    s.outer_tree.build(boxes);
     const Box all = bounds_of(s.a);
     s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
     double largest = 0;
@@ -73,13 +73,6 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     s.rounding = largest * double(std::numeric_limits<float>::epsilon());
     s.witness = first_of_each_component(mesh);
     return s;
-}
-
-void commit_move(GrowState& s, int v, const Vec3d& x)
-{
-    s.b[v] = x;
-    for (const FaceCorner& at : star(*s.mesh, v))
-        s.inner_box[at.face] = box_of(inner_corners(s, at.face));
 }
 
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)

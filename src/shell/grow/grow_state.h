@@ -26,13 +26,11 @@ struct GrowState {
 
     double rounding = 0; ///< how far rounding to float32 can move a point
 
-    // Broad phase: for each inner triangle the others that may reach it while every vertex stays
-    // within `reach` of `home`.
+    // Broad phase: the boxes of the inner tree hold the triangles while every vertex stays within
+    // `reach` of `home`.
     std::vector<Vec3d> home;
     std::vector<double> reach;
-    std::vector<Box> inner_box, outer_box;
     BoxTree inner_tree, outer_tree;
-    std::vector<std::vector<int>> near_inner, near_outer;
 
     /// One vertex per component, to see a move that would swallow a whole other component.
     std::vector<int> witness;
@@ -80,9 +78,6 @@ inline CornerIds inner_ids(const GrowState& s, int f)
         v += s.pinned[v] ? 0 : s.mesh->vertices;
     return id;
 }
-
-/// Moves b_v; `x` must be float32 values.
-void commit_move(GrowState& s, int v, const Vec3d& x);
 
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);

@@ -196,13 +196,13 @@ bool prism_valid(const GrowState& s, int f)
 bool inner_triangle_clear(const GrowState& s, int f)
 {
     const InnerTriangle triangle(s, f);
-    for (const int g : s.near_inner[f])
-        if (triangle.meets_inner(g))
-            return false;
-    for (const int g : s.near_outer[f])
-        if (triangle.meets_outer(g))
-            return false;
-    return true;
+    const Box box = box_of(triangle.corners());
+    bool clear = true;
+    s.inner_tree.for_each_overlap(
+        box, [&](int g) { clear = clear && (g == f || !triangle.meets_inner(g)); });
+    s.outer_tree.for_each_overlap(box,
+                                  [&](int g) { clear = clear && !triangle.meets_outer(g); });
+    return clear;
 }
 
 InnerTriangle::InnerTriangle(const GrowState& s, int f)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/pins.h"
 
-#include "shell/grow/candidates.h"
+#include "core/parallel.h"
 #include "shell/grow/directions.h"
 #include "shell/grow/move_tests.h"
 
@@ -62,13 +62,29 @@ bool release(GrowState& s, int v, double length)
             break;
         if (swallows_component(s, v, x))
             continue;
-        commit_move(s, v, x);
+        s.b[v] = x;
         if (star_valid(s, v))
             return true;
-        commit_move(s, v, s.a[v]);
+        s.b[v] = s.a[v];
     }
     s.pinned[v] = 1;
     return false;
+}
+
+/// Boxes that hold the inner triangles wherever these vertices may go.
+void box_in(GrowState& s, const std::vector<double>& longest)
+{
+    std::vector<Box> boxes(s.mesh->faces.size());
+    for_each_index(boxes.size(), [&](std::size_t i) {
+        const int f = static_cast<int>(i);
+        boxes[i] = box_of(inner_corners(s, f));
+        double reach = 0;
+        for (int k = 0; k < 3; ++k)
+            reach = std::max(reach, longest[s.mesh->corner(f, k)]);
+        if (reach > 0)
+            boxes[i].inflate(1.01 * reach + s.rounding);
+    });
+    s.inner_tree.refit(boxes);
 }
 
 } // namespace
@@ -84,14 +100,10 @@ int release_pins(GrowState& s, const std::vector<double>& visibility)
         }
     if (candidates.empty())
         return 0;
-    const std::vector<double> old_reach = s.reach;
-    for (int v = 0; v < s.mesh->vertices; ++v)
-        s.reach[v] = longest[v] > 0 ? 1.01 * longest[v] + s.rounding : 0.0;
-    rebuild_candidates(s);
+    box_in(s, longest);
     int released = 0;
     for (const int v : candidates)
         released += release(s, v, longest[v]);
-    s.reach = old_reach;
     return released;
 }
 
