@@ -22,6 +22,9 @@ std::size_t first_unique_corner(const Corners& corners)
 
 bool tidy_polygon(Corners& corners)
 {
+    if (corners.size() == 3 && corners[0] != corners[1] && corners[1] != corners[2] &&
+        corners[2] != corners[0])
+        return true;
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     while (corners.size() > 1 && corners.front() == corners.back())
         corners.pop_back();

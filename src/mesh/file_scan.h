@@ -60,6 +60,13 @@ void require_corner(const std::string& name, const Place& face, std::int64_t ind
 /// For each point the first point that equals it (0 and -0 are equal).
 std::vector<std::uint32_t> first_equal_point(const std::vector<openvdb::Vec3s>& points);
 
+/// Appends the bytes of a number to the body of a PLY file that a header of
+/// "binary_little_endian" announces.
+template <typename Value> void append_bytes(std::string& out, Value value)
+{
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
 /// The header of a PLY file of `coordinate` x, y, z and of faces as lists of int.
 std::string plain_ply_header(const char* encoding, const char* coordinate, std::size_t vertices,
                              std::size_t faces);

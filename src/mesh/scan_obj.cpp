@@ -11,7 +11,8 @@ namespace
 // OpenMesh's OBJ reader gives up on a texture coordinate beyond float range, takes corners that
 // come twice out of a face without a word, reads no line continuation, opens the material files
 // that are named, lets an index of 2^40 or a vertex of two coordinates pass, and goes by the
-// process's locale. The coordinates and corners are handed to its PLY reader, as text.
+// process's locale. The coordinates and corners are handed to its PLY reader, in binary: its
+// text reader takes as long as this scan.
 
 struct ObjScan {
     const std::string& name;
@@ -34,8 +35,7 @@ void add_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
             refuse(obj.name, vertex.text() + " has " + std::to_string(axis) +
                                  " coordinates where 3 are needed");
         point[axis] = obj.coordinates.from_text(obj.name, vertex, word, axis);
-        obj.coordinates.pass_on(obj.vertices, word, point[axis]);
-        obj.vertices += axis < 2 ? ' ' : '\n';
+        append_bytes(obj.vertices, point[axis]);
     }
     obj.scan.points.push_back(point);
 }
@@ -65,10 +65,9 @@ void add_face(ObjScan& obj, std::string_view rest, std::size_t line)
     obj.line_of_face.push_back(line);
     if (!count_face(obj.scan, obj.corners))
         return;
-    obj.faces += std::to_string(obj.corners.size());
+    append_bytes(obj.faces, static_cast<std::int32_t>(obj.corners.size()));
     for (const std::uint32_t corner : obj.corners)
-        obj.faces += ' ' + std::to_string(corner);
-    obj.faces += '\n';
+        append_bytes(obj.faces, static_cast<std::int32_t>(corner));
 }
 
 void require_known_corners(const ObjScan& obj)
@@ -95,6 +94,7 @@ FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates
     ObjScan obj{name, coordinates, {}, {}, {}, {}, {}, {}};
     obj.scan.format = "OBJ";
     obj.scan.reader = "ply";
+    obj.scan.binary = true;
     Lines lines(bytes);
     std::string joined;
     for (std::string_view line; lines.next(line);) {
@@ -115,7 +115,7 @@ FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates
     }
     require_known_corners(obj);
     obj.scan.stream =
-        plain_ply_header("ascii", "float", obj.scan.file_vertices, obj.scan.faces_passed_on()) +
+        plain_ply_header("binary_little_endian", "float", obj.scan.file_vertices, obj.scan.faces_passed_on()) +
         obj.vertices + obj.faces;
     return std::move(obj.scan);
 }

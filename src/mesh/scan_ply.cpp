@@ -24,11 +24,6 @@ struct PlyScan {
     std::string vertices, faces; ///< bodies of the stream
 };
 
-template <typename Value> void append_bytes(std::string& out, Value value)
-{
-    out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 void skip_property(PlyValues& values, const PlyProperty& property, const Place& place)
 {
     for (std::size_t n = property.is_list ? values.list_size(property, place) : 1; n > 0; --n)

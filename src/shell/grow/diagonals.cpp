@@ -108,43 +108,89 @@ std::vector<std::array<double, 6>> worst_mean_ratios(const GrowState& s)
     return worst;
 }
 
-/// The corner at u of the face across the edge that runs u -> w in face f; face -1 if there is
-/// none.
-FaceCorner across(const Connectivity& m, int f, int u, int w)
+/// An edge between two prisms, seen from the corner at its smaller end of the face where it runs
+/// towards the larger, and from that corner of the face across.
+struct Seam {
+    FaceCorner from, across;
+};
+
+/// All edges between two faces, in the order of their smaller ends.
+struct Seams {
+    std::vector<Seam> seam;
+    std::vector<std::array<int, 3>> of_face; ///< places in the list; -1 where there is none
+
+    explicit Seams(const Connectivity& m) : of_face(m.faces.size(), {-1, -1, -1})
+    {
+        seam.reserve(m.faces.size() * 3 / 2);
+        for (int u = 0; u < m.vertices; ++u)
+            for (const FaceCorner& at : star(m, u)) {
+                const int w = m.corner(at.face, (at.local + 1) % 3);
+                if (w < u)
+                    continue;
+                for (const FaceCorner& other : star(m, u))
+                    if (other.face != at.face && m.corner(other.face, (other.local + 2) % 3) == w) {
+                        of_face[at.face][at.local] = static_cast<int>(seam.size());
+                        of_face[other.face][(other.local + 2) % 3] = static_cast<int>(seam.size());
+                        seam.push_back({at, other});
+                        break;
+                    }
+            }
+    }
+};
+
+/// The orders of both prisms with the seam's diagonal turned, if that is better: score(f, order) of
+/// both is joined by `join`. Negative where it is not.
+template <class Score, class Join>
+std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Score& score,
+                                 const Join& join, double margin)
 {
-    for (const FaceCorner& at : star(m, u))
-        if (at.face != f && m.corner(at.face, (at.local + 2) % 3) == w)
-            return at;
-    return {-1, 0};
+    const int f = seam.from.face, g = seam.across.face;
+    const int f_order = exchanged(s.order[f], seam.from.local, (seam.from.local + 1) % 3);
+    const int g_order = exchanged(s.order[g], seam.across.local, (seam.across.local + 2) % 3);
+    const bool better = f_order >= 0 && g_order >= 0 &&
+                        join(score(f, f_order), score(g, g_order)) >
+                            join(score(f, s.order[f]), score(g, s.order[g])) + margin;
+    return better ? std::array{f_order, g_order} : std::array{-1, -1};
 }
 
-/// One pass over the edges in index order; score(f, order) of both prisms is joined by `join`.
+/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. A seam
+/// is looked at again only once another of its two prisms has been turned.
 template <class Score, class Join>
-std::size_t flip_pass(GrowState& s, const Score& score, const Join& join, double margin)
+std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join,
+                        double margin)
 {
-    const Connectivity& m = *s.mesh;
-    std::size_t flips = 0;
-    for (int u = 0; u < m.vertices; ++u)
-        for (const FaceCorner& at : star(m, u)) {
-            // Each edge once: from its smaller end, seen from the face where it runs u -> w.
-            const int f = at.face, next = (at.local + 1) % 3, w = m.corner(f, next);
-            const FaceCorner other = w < u ? FaceCorner{-1, 0} : across(m, f, u, w);
-            if (other.face < 0)
+    const Seams seams(*s.mesh);
+    std::vector<std::uint8_t> look(seams.seam.size());
+    for_each_index(
+        look.size(),
+        [&](std::size_t i) {
+            look[i] = better_orders(s, seams.seam[i], score, join, margin)[0] >= 0;
+        },
+        256);
+    std::size_t total = 0;
+    for (int pass = 0; pass < passes; ++pass) {
+        const std::size_t before = total;
+        for (std::size_t i = 0; i < look.size(); ++i) {
+            if (!look[i])
                 continue;
-            const int g = other.face;
-            const int f_order = exchanged(s.order[f], at.local, next);
-            const int g_order = exchanged(s.order[g], other.local, (other.local + 2) % 3);
-            if (f_order < 0 || g_order < 0)
-                continue;
-            if (join(score(f, f_order), score(g, g_order)) <=
-                    join(score(f, s.order[f]), score(g, s.order[g])) + margin ||
-                !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
+            look[i] = 0;
+            const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
+            const auto [f_order, g_order] =
+                better_orders(s, seams.seam[i], score, join, margin);
+            if (f_order < 0 || !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
                 continue;
             s.order[f] = static_cast<std::uint8_t>(f_order);
             s.order[g] = static_cast<std::uint8_t>(g_order);
-            ++flips;
+            ++total;
+            for (const int face : {f, g})
+                for (const int other : seams.of_face[face])
+                    if (other >= 0)
+                        look[other] = 1;
         }
-    return flips;
+        if (total == before)
+            break;
+    }
+    return total;
 }
 
 } // namespace
@@ -167,8 +213,8 @@ void order_by_length(GrowState& s)
 std::size_t flip_for_room(GrowState& s)
 {
     constexpr double kMargin = 1e-9;
-    return flip_pass(
-        s, [&](int f, int order) { return log_room(s, f, order); },
+    return flip_passes(
+        s, 1, [&](int f, int order) { return log_room(s, f, order); },
         [](double f, double g) { return f + g; }, kMargin);
 }
 
@@ -176,16 +222,10 @@ std::size_t flip_for_quality(GrowState& s)
 {
     constexpr double kMargin = 1e-12;
     const std::vector<std::array<double, 6>> worst = worst_mean_ratios(s);
-    std::size_t total = 0;
-    for (int pass = 0; pass < kQualityPasses; ++pass) {
-        const std::size_t flips = flip_pass(
-            s, [&](int f, int order) { return worst[std::size_t(f)][std::size_t(order)]; },
-            [](double f, double g) { return std::min(f, g); }, kMargin);
-        total += flips;
-        if (flips == 0)
-            break;
-    }
-    return total;
+    return flip_passes(
+        s, kQualityPasses,
+        [&](int f, int order) { return worst[std::size_t(f)][std::size_t(order)]; },
+        [](double f, double g) { return std::min(f, g); }, kMargin);
 }
 
 } // namespace vdb_shell::growth

@@ -6,20 +6,20 @@ namespace vdb_shell::growth
 namespace
 {
 
-bool is_even(const PrismOrder& o)
+constexpr bool is_even(const PrismOrder& o)
 {
     return (o[0] + 1) % 3 == o[1];
 }
 
-OrientedTet make(int pillar, int p, int q, int r, int s, bool swap)
+constexpr OrientedTet make(int pillar, int p, int q, int r, int s, bool swap)
 {
-    auto u = [](int i) { return static_cast<std::uint8_t>(i); };
+    const auto u = [](int i) { return static_cast<std::uint8_t>(i); };
     return swap ? OrientedTet{{u(p), u(q), u(s), u(r)}, pillar}
                 : OrientedTet{{u(p), u(q), u(r), u(s)}, pillar};
 }
 
 // Owner z: (ax ay az bz), owner y: (ax ay by bz), owner x: (ax bx by bz).
-std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
+constexpr std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
 {
     const int x = o[0], y = o[1], z = o[2];
     const bool odd = !is_even(o);
@@ -28,7 +28,7 @@ std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
 }
 
 // The twelve tets are the union over the six splits; each shows up in some split.
-std::array<OrientedTet, 12> union_of_splits(const PrismTables& t)
+constexpr std::array<OrientedTet, 12> union_of_splits(const PrismTables& t)
 {
     std::array<OrientedTet, 12> out{};
     std::array<int, 12> mask{};
@@ -41,13 +41,15 @@ std::array<OrientedTet, 12> union_of_splits(const PrismTables& t)
             bool seen = false;
             for (int i = 0; i < n; ++i)
                 seen = seen || mask[i] == m;
-            if (!seen)
-                mask[n] = m, out[n++] = o;
+            if (seen)
+                continue;
+            mask[n] = m;
+            out[n++] = o;
         }
     return out;
 }
 
-void add_from_b(PrismTables& t, int set, const OrientedTet& o)
+constexpr void add_from_b(PrismTables& t, int set, const OrientedTet& o)
 {
     for (int k = 0; k < 4; ++k) {
         if (o.corner[k] < 3)
@@ -57,13 +59,13 @@ void add_from_b(PrismTables& t, int set, const OrientedTet& o)
             if (i != k)
                 rest[n++] = o.corner[i];
         if ((3 - k) % 2 == 1)
-            std::swap(rest[0], rest[1]);
+            rest = {rest[1], rest[0], rest[2]};
         const int l = o.corner[k] - 3;
         t.from_b[set][l][t.from_b_count[set][l]++] = {rest, o.pillar};
     }
 }
 
-PrismTables make_tables()
+constexpr PrismTables make_tables()
 {
     PrismTables t{};
     t.order = {{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -80,11 +82,7 @@ PrismTables make_tables()
 
 } // namespace
 
-const PrismTables& tables()
-{
-    static const PrismTables t = make_tables();
-    return t;
-}
+constexpr PrismTables kPrismTables = make_tables();
 
 int order_index(const PrismOrder& o)
 {

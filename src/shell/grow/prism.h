@@ -36,7 +36,11 @@ struct PrismTables {
     std::array<std::array<int, 3>, 7> from_b_count;
 };
 
-const PrismTables& tables();
+extern const PrismTables kPrismTables;
+inline const PrismTables& tables()
+{
+    return kPrismTables;
+}
 int order_index(const PrismOrder& o);
 
 } // namespace vdb_shell::growth

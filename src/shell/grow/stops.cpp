@@ -16,19 +16,31 @@ constexpr double kProbe = 1e-3; ///< share of the diagonal
 constexpr double kAtCap =
     1e-6; ///< relative; the rounding of the coordinates stops short of the cap
 
+bool beside_a_pin(const GrowState& s, int v)
+{
+    const Slice<int> around = neighbours(*s.mesh, v);
+    return std::any_of(around.begin(), around.end(), [&](int u) { return s.pinned[u] != 0; });
+}
+
 /// What the triangles around v meet first, with b_v = x.
 StopReason contact_at(const GrowState& s, int v, const Vec3d& x)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
+    // At a pin kin are outer triangles too.
+    const bool kin_apart = !beside_a_pin(s, v);
+    if (kin_apart && !kin_clear_at(s, v, x))
+        return StopReason::inner_contact;
     for (const FaceCorner& at : fan) {
         const InnerTriangle moved(s, at, x);
         const Box box = box_of(moved.corners());
         bool inner = false, outer = false;
         for (const FaceCorner& other : fan)
-            inner = inner || (other.face > at.face &&
+            inner = inner || (!kin_apart && other.face > at.face &&
                               moved.meets_inner(other.face, moved_corners(s, other, x)));
         s.inner_tree.for_each_overlap(box, [&](int g) {
-            inner = inner || (!s.mesh->incident_to(g, v) && moved.meets_inner(g));
+            const bool asked = kin_apart ? s.mesh->share_a_corner(at.face, g)
+                                         : s.mesh->incident_to(g, v);
+            inner = inner || (!asked && moved.meets_inner(g));
         });
         if (inner)
             return StopReason::inner_contact;
