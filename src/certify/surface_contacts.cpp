@@ -124,6 +124,7 @@ check_surfaces(const PrismShell& shell, const std::vector<char>& pinned, Certifi
         const Vec3I &first = both.faces[f], &second = both.faces[g];
         // A triangle of no area has no plane; the shell has failed by it already.
         touching[i] = !degenerate[f] && !degenerate[g] &&
+                      !exact::apart_in_projection(both.points, first, second) &&
                       !plane_separates(both.points, first, second) &&
                       !plane_separates(both.points, second, first) &&
                       exact::triangles_touch(both.points, first, second);

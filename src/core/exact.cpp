@@ -78,9 +78,72 @@ bool collinear(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::
     return CGAL::collinear(point3(a), point3(b), point3(c));
 }
 
+namespace
+{
+
+using Point = std::array<double, 2>;
+
+/// Sign of det(b - a, c - a) where doubles decide it for certain, else 0 (Shewchuk 1997, bound A of
+/// ORIENT2D).
+int orient2d_filter(const Point& a, const Point& b, const Point& c)
+{
+    constexpr double kError = 3.4e-16;
+    const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
+    const double det = left - right;
+    const double bound = kError * (std::abs(left) + std::abs(right)) + kUnderflowGuard;
+    return (det > bound) - (det < -bound);
+}
+
+/// Whether the line of an edge of s has s on one side and t, but for corners that it shares with
+/// that edge, strictly on the other.
+bool edge_separates(const std::array<Point, 3>& s, const openvdb::Vec3I& s_id,
+                    const std::array<Point, 3>& t, const openvdb::Vec3I& t_id)
+{
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const int own = orient2d_filter(s[i], s[j], s[(i + 2) % 3]);
+        bool apart = own != 0;
+        for (std::size_t k = 0; apart && k < 3; ++k) {
+            const std::uint32_t id = t_id[int(k)];
+            apart = id == s_id[int(i)] || id == s_id[int(j)] ||
+                    orient2d_filter(s[i], s[j], t[k]) == -own;
+        }
+        if (apart)
+            return true;
+    }
+    return false;
+}
+
+int largest_axis(const openvdb::Vec3d& n)
+{
+    const double x = std::abs(n[0]), y = std::abs(n[1]), z = std::abs(n[2]);
+    return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+}
+
+} // namespace
+
+bool apart_in_projection(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
+                         const openvdb::Vec3I& second)
+{
+    const openvdb::Vec3d a(points[first[0]]), b(points[first[1]]), c(points[first[2]]);
+    const int axis = largest_axis((b - a).cross(c - a));
+    const auto seen = [&](const openvdb::Vec3I& triangle) {
+        std::array<Point, 3> corners;
+        for (int k = 0; k < 3; ++k) {
+            const openvdb::Vec3s& p = points[triangle[k]];
+            corners[std::size_t(k)] = {double(p[(axis + 1) % 3]), double(p[(axis + 2) % 3])};
+        }
+        return corners;
+    };
+    const std::array<Point, 3> s = seen(first), t = seen(second);
+    return edge_separates(s, first, t, second) || edge_separates(t, second, s, first);
+}
+
 bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
                      const openvdb::Vec3I& second)
 {
+    if (apart_in_projection(points, first, second))
+        return false;
     const SharedCorners shared = match_corners(first, second);
     auto p = [&](std::size_t slot) { return point3(points[first[shared.in_first[slot]]]); };
     auto q = [&](std::size_t slot) { return point3(points[second[shared.in_second[slot]]]); };

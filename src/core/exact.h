@@ -25,6 +25,13 @@ bool collinear(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::
 bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
                      const openvdb::Vec3I& second);
 
+/// Whether doubles show for certain that the two meet in shared corners and edges only: seen along
+/// an axis, the line of an edge of one has them on different sides. Cheap, and made for neighbours
+/// that lie in one plane, or nearly, where signs in space need exact arithmetic. Corners are shared
+/// by index. False tells nothing.
+bool apart_in_projection(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
+                         const openvdb::Vec3I& second);
+
 /// The corners of a triangle by value, for callers whose points stand in no list.
 using Triangle = std::array<openvdb::Vec3s, 3>;
 

@@ -159,8 +159,7 @@ std::vector<Vec3d> rough_inner(const std::vector<Coarsened>& levels, const LineL
     for (std::size_t level = levels.size(); level-- > 0;) {
         const TriangleMesh& mesh = levels[level].mesh;
         const Directions lines = rough_lines(mesh, options);
-        const growth::Connectivity connectivity =
-            growth::connect(mesh.points.size(), mesh.triangles);
+        growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
         GrowState s =
             growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
         const Start started = inner.empty() ? Start::lines : Start::carried;
@@ -174,10 +173,12 @@ std::vector<Vec3d> rough_inner(const std::vector<Coarsened>& levels, const LineL
             growth::settle_carried(s, pillars.lines, pillars.length, progress);
         }
         GrowReport ignored;
-        growth::move_freely(s, lines.visibility, options,
-                            {most_rounds(s, started, options), first_softness(s, started), kCool,
-                             kLeastGain, kRoughUntil},
-                            progress, ignored);
+        const int rounds = most_rounds(s, started, options);
+        if (rounds > 0)
+            growth::list_kin(connectivity);
+        growth::move_freely(
+            s, lines.visibility, options,
+            {rounds, first_softness(s, started), kCool, kLeastGain, kRoughUntil}, progress, ignored);
         inner = std::move(s.b);
     }
     return inner;
@@ -196,6 +197,12 @@ Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lin
     const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines);
     growth::settle_carried(s, pillars.lines, pillars.length, progress);
     return Start::carried;
+}
+
+bool will_move(const GrowState& s, Start start, const GrowOptions& options)
+{
+    return start == Start::lines || options.min_quality > 0 ||
+           (options.free_moves && most_rounds(s, start, options) > 0);
 }
 
 bool worth_lengthening(const GrowState& s)
@@ -328,7 +335,7 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     assert(options.method != Method::raw);
     assert(directions.inward.size() == mesh.points.size());
     assert(start.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
-    const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
+    growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
     Directions lines = prepare(mesh, directions, options);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
@@ -343,6 +350,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                                progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
+    if (will_move(s, started, options))
+        growth::list_kin(connectivity);
     // A carried shell has left the lines.
     if (options.grow_lines && started == Start::lines &&
         (!options.free_moves || worth_lengthening(s)))

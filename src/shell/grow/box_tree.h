@@ -102,6 +102,17 @@ public:
         std::vector<FloatBox> box;
         std::vector<int> item;
     };
+    /// The boxes that overlap `query`, for those who go on to look at parts of it.
+    void list_overlaps(const Box& query, Near& near) const
+    {
+        const FloatBox box = float_box(query);
+        near.box.clear(), near.item.clear();
+        descend([&](const FloatBox& other) { return box.overlaps(other); },
+                [&](std::size_t at) {
+                    near.box.push_back(boxes_[at]);
+                    near.item.push_back(item_[at]);
+                });
+    }
     /// Calls visit(i, j) for every box i of the group with wanted(i) and every box j of `other`
     /// that overlaps it; `other` may be this tree.
     template <class Wanted, class Visit>

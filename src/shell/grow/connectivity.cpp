@@ -106,7 +106,7 @@ struct KinLists {
 };
 
 /// Appends the lists of one vertex, or nothing where they are too long.
-void list_kin(const Connectivity& c, int v, KinLists& out)
+void list_kin_of(const Connectivity& c, int v, KinLists& out)
 {
     const std::size_t first_ring = out.ring.size(), first_face = out.face.size(),
                       first_pair = out.pair.size();
@@ -157,7 +157,25 @@ void list_kin(const Connectivity& c, int v, KinLists& out)
         {static_cast<int>(rings), static_cast<int>(faces), out.pair.size() - first_pair});
 }
 
-void build_kin(Connectivity& c)
+} // namespace
+
+Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
+{
+    Connectivity c;
+    c.vertices = static_cast<int>(vertices);
+    c.faces = faces;
+    build_incidence(c);
+    build_neighbours(c);
+    label_components(c);
+    colour_vertices(c);
+    const std::size_t none = vertices + 1;
+    c.kin.first_ring.assign(none, 0);
+    c.kin.first_face.assign(none, 0);
+    c.kin.first_pair.assign(none, 0);
+    return c;
+}
+
+void list_kin(Connectivity& c)
 {
     constexpr std::size_t kChunk = 512;
     const auto vertices = static_cast<std::size_t>(c.vertices);
@@ -166,7 +184,7 @@ void build_kin(Connectivity& c)
         chunks.size(),
         [&](std::size_t i) {
             for (std::size_t v = i * kChunk; v < std::min(vertices, (i + 1) * kChunk); ++v)
-                list_kin(c, static_cast<int>(v), chunks[i]);
+                list_kin_of(c, static_cast<int>(v), chunks[i]);
         },
         1);
     Kin& kin = c.kin;
@@ -183,21 +201,6 @@ void build_kin(Connectivity& c)
             kin.first_pair.push_back(kin.first_pair.back() + count.pair);
         }
     }
-}
-
-} // namespace
-
-Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
-{
-    Connectivity c;
-    c.vertices = static_cast<int>(vertices);
-    c.faces = faces;
-    build_incidence(c);
-    build_neighbours(c);
-    label_components(c);
-    colour_vertices(c);
-    build_kin(c);
-    return c;
 }
 
 } // namespace vdb_shell::growth

@@ -25,7 +25,8 @@ struct KinPair {
 };
 
 /// What could meet the triangles around a vertex in spite of a common corner, by vertex. A vertex
-/// with more around it than the lists' small numbers can tell has none.
+/// with more around it than the lists' small numbers can tell has none, nor has any before list_kin:
+/// its tests take longer.
 struct Kin {
     std::vector<int> first_ring, ring; ///< vertices up to two edges away
     std::vector<int> first_face,
@@ -60,7 +61,9 @@ struct Connectivity {
     }
 };
 
+/// All but the lists of kin, which are as much work as all the rest and for those who move vertices.
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces);
+void list_kin(Connectivity& c);
 
 /// The iterable slice of a CSR list that belongs to one vertex.
 template <class Entry> struct Slice {

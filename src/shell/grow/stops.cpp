@@ -22,36 +22,55 @@ bool beside_a_pin(const GrowState& s, int v)
     return std::any_of(around.begin(), around.end(), [&](int u) { return s.pinned[u] != 0; });
 }
 
+struct Near {
+    BoxTree::Near inner, outer;
+};
+
+/// Whether one of those near the box that is not `left_out` meets the triangle.
+template <class LeftOut, class Meets>
+bool any_meets(const BoxTree::Near& near, const FloatBox& box, const LeftOut& left_out,
+               const Meets& meets)
+{
+    for (std::size_t i = 0; i < near.item.size(); ++i)
+        if (box.overlaps(near.box[i]) && !left_out(near.item[i]) && meets(near.item[i]))
+            return true;
+    return false;
+}
+
 /// What the triangles around v meet first, with b_v = x.
-StopReason contact_at(const GrowState& s, int v, const Vec3d& x)
+StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
     // At a pin kin are outer triangles too.
-    const bool kin_apart = !beside_a_pin(s, v);
+    const bool kin_apart = kin_ring(*s.mesh, v).size() > 0 && !beside_a_pin(s, v);
     if (kin_apart && !kin_clear_at(s, v, x))
         return StopReason::inner_contact;
+    Box all;
+    for (const FaceCorner& at : fan)
+        all.add(box_of(moved_corners(s, at, x)));
+    s.inner_tree.list_overlaps(all, near.inner);
+    s.outer_tree.list_overlaps(all, near.outer);
     for (const FaceCorner& at : fan) {
         const InnerTriangle moved(s, at, x);
-        const Box box = box_of(moved.corners());
-        bool inner = false, outer = false;
+        const FloatBox box = float_box(box_of(moved.corners()));
         for (const FaceCorner& other : fan)
-            inner = inner || (!kin_apart && other.face > at.face &&
-                              moved.meets_inner(other.face, moved_corners(s, other, x)));
-        s.inner_tree.for_each_overlap(box, [&](int g) {
-            const bool asked = kin_apart ? s.mesh->share_a_corner(at.face, g)
-                                         : s.mesh->incident_to(g, v);
-            inner = inner || (!asked && moved.meets_inner(g));
-        });
-        if (inner)
+            if (!kin_apart && other.face > at.face &&
+                moved.meets_inner(other.face, moved_corners(s, other, x)))
+                return StopReason::inner_contact;
+        const auto asked = [&](int g) {
+            return s.mesh->incident_to(g, v) || (kin_apart && s.mesh->share_a_corner(at.face, g));
+        };
+        if (any_meets(near.inner, box, asked, [&](int g) { return moved.meets_inner(g); }))
             return StopReason::inner_contact;
-        s.outer_tree.for_each_overlap(box, [&](int g) { outer = outer || moved.meets_outer(g); });
-        if (outer)
+        if (any_meets(
+                near.outer, box, [](int) { return false; },
+                [&](int g) { return moved.meets_outer(g); }))
             return StopReason::outer_contact;
     }
     return StopReason::none;
 }
 
-StopReason reason_at(const GrowState& s, int v, double step)
+StopReason reason_at(const GrowState& s, int v, double step, Near& near)
 {
     if (s.pinned[v])
         return StopReason::pinned;
@@ -62,7 +81,7 @@ StopReason reason_at(const GrowState& s, int v, double step)
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
-    return contact_at(s, v, x);
+    return contact_at(s, v, x, near);
 }
 
 } // namespace
@@ -76,8 +95,11 @@ std::vector<StopReason> probe_stops(GrowState& s)
     });
     s.inner_tree.build(boxes);
     std::vector<StopReason> stop(s.b.size());
-    for_each_index(stop.size(),
-                   [&](std::size_t v) { stop[v] = reason_at(s, static_cast<int>(v), step); });
+    for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
+        Near near;
+        for (std::size_t v = begin; v < end; ++v)
+            stop[v] = reason_at(s, static_cast<int>(v), step, near);
+    });
     return stop;
 }
 
