@@ -12,16 +12,17 @@ namespace
 {
 
 using openvdb::Vec3d;
-using vdb_shell::growth::body_of;
 using vdb_shell::growth::Corners;
 using vdb_shell::growth::Slab;
-using vdb_shell::growth::slab_between;
 
 constexpr double kFar = 1e300;
 
 Slab slab(const Corners& s, const Corners& t, double enough = kFar)
 {
-    return slab_between(body_of(s, 0), body_of(t, 0), enough);
+    const vdb_shell::growth::SlabQuery query{s, t, enough};
+    Slab found;
+    vdb_shell::growth::slabs_between(&query, 1, &found);
+    return found;
 }
 
 /// The slab's own promise: both triangles on their sides of it.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/separation.h"
 
-#include "core/four_floats.h"
+#include "core/two_targets.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstring>
 
 namespace vdb_shell::growth
 {
@@ -20,16 +22,6 @@ struct Pair {
 Pair relative(const Corners& s, const Corners& t)
 {
     return {{Vec3d(0.0), s[1] - s[0], s[2] - s[0]}, {t[0] - s[0], t[1] - s[0], t[2] - s[0]}};
-}
-
-/// The room between the triangles across an axis, in units of the axis' length.
-double room_across(const Vec3d& axis, const Pair& p)
-{
-    const double s1 = axis.dot(p.s[1]), s2 = axis.dot(p.s[2]);
-    const double t0 = axis.dot(p.t[0]), t1 = axis.dot(p.t[1]), t2 = axis.dot(p.t[2]);
-    const double above = std::min({0.0, s1, s2}) - std::max({t0, t1, t2});
-    const double below = std::min({t0, t1, t2}) - std::max({0.0, s1, s2});
-    return std::max(above, below);
 }
 
 Slab slab_across(const Vec3d& axis, const Pair& p)
@@ -69,74 +61,181 @@ Vec3d between_segments(const Vec3d& p, const Vec3d& d, const Vec3d& q, const Vec
     return one.lengthSqr() < other.lengthSqr() ? one : other;
 }
 
-struct EdgePair {
-    int i, j; ///< edge of the first, edge of the second
-    double distance2;
+/// Corners 1 and 2 of the first triangles and all of the second, relative to corner 0 of the first,
+/// by axis; a pair to a lane.
+struct PairLanes {
+    alignas(kLanesAlignment) std::array<std::array<std::array<float, kLanes>, 3>, 5> at;
+    alignas(kLanesAlignment) std::array<float, kLanes> enough;
 };
 
-/// What the three edges of the second triangle have to say to one edge of the first, one to a lane.
-struct EdgeLanes {
-    FourFloats x, y, z, dx, dy, dz; ///< where they begin, and how they run
-    FourFloats squared, inverse;    ///< of their lengths
+/// What floats see of each pair. Rooms are in units of its size, the largest coordinate.
+struct Sight {
+    unsigned wide = 0;  ///< a bit a lane: certainly wider than enough
+    unsigned close = 0; ///< edges so close that floats cannot choose
+    std::array<float, kLanes> edges; ///< 3 i + j for the closest, i of the first and j of the second
+    std::array<float, kLanes> across_middles, across_first, across_second;
 };
+
+using LanePoint = std::array<Lanes, 3>;
 
 // Squares of it are far from underflow, which would cost more than all the rest.
 constexpr float kTiny = 1e-12F;
+// In units of a pair's size. Below the first, edges are too close for floats; the second is far
+// above the error of a room.
+constexpr float kClose = 0.004F, kErrorOfRoom = 1e-5F;
+// Of the squared sine between two edges: below it only their ends are looked at.
+constexpr float kParallel = 1e-3F;
 
-EdgeLanes edges_of(const std::array<Vec3d, 3>& corner, double scale)
+VDB_SHELL_LANES_PART void dot(const LanePoint& a, const LanePoint& b, Lanes& out)
 {
-    EdgeLanes e{};
-    for (int j = 0; j < 4; ++j) {
-        const Vec3d& p = corner[j % 3]; // the fourth lane is the first once more
-        const Vec3d run = corner[(j + 1) % 3] - p;
-        e.x[j] = static_cast<float>(scale * p[0]), e.dx[j] = static_cast<float>(scale * run[0]);
-        e.y[j] = static_cast<float>(scale * p[1]), e.dy[j] = static_cast<float>(scale * run[1]);
-        e.z[j] = static_cast<float>(scale * p[2]), e.dz[j] = static_cast<float>(scale * run[2]);
-    }
-    e.squared = e.dx * e.dx + e.dy * e.dy + e.dz * e.dz + four(kTiny);
-    e.inverse = four(1) / e.squared;
-    return e;
+    out = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Squared distances of the edge p + [0, 1] d from three others.
-FourFloats distances2(const Vec3s& p, const Vec3s& d, const EdgeLanes& e)
+VDB_SHELL_LANES_PART void cross(const LanePoint& a, const LanePoint& b, LanePoint& out)
 {
-    constexpr float kParallel = 16 * std::numeric_limits<float>::epsilon();
-    const FourFloats zero{}, one = four(1);
-    const float dd = d.dot(d) + kTiny, dd_inverse = 1 / dd;
-    const FourFloats rx = p[0] - e.x, ry = p[1] - e.y, rz = p[2] - e.z;
-    const FourFloats de = d[0] * e.dx + d[1] * e.dy + d[2] * e.dz;
-    const FourFloats dr = d[0] * rx + d[1] * ry + d[2] * rz;
-    const FourFloats er = e.dx * rx + e.dy * ry + e.dz * rz;
-    const auto share = [&](const FourFloats& x) { return least_of(most_of(x, zero), one); };
-    const auto from = [&](const FourFloats& start) {
-        const FourFloats t = share((de * start + er) * e.inverse);
-        const FourFloats s = share((de * t - dr) * dd_inverse);
-        const FourFloats x = rx + s * d[0] - t * e.dx, y = ry + s * d[1] - t * e.dy;
-        const FourFloats z = rz + s * d[2] - t * e.dz;
-        return x * x + y * y + z * z;
-    };
-    const FourFloats most = dd * e.squared;
-    const FourFloats denominator = most_of(most - de * de, kParallel * most);
-    // Of edges that are nearly parallel one end is among the closest points.
-    return least_of(from(share((de * er - dr * e.squared) / denominator)),
-                    least_of(from(zero), from(one)));
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/// The two edges, one of each triangle, that come closest, in units of `size`, as floats see it.
-EdgePair closest_edges(const Pair& pair, double size)
+VDB_SHELL_LANES_PART void difference(const LanePoint& a, const LanePoint& b, LanePoint& out)
 {
-    const double scale = 1 / size;
-    const EdgeLanes e = edges_of(pair.t, scale);
-    EdgePair closest{0, 0, std::numeric_limits<double>::max()};
-    for (int i = 0; i < 3; ++i) {
-        const Vec3d run = pair.s[(i + 1) % 3] - pair.s[i];
-        const FourFloats found = distances2(Vec3s(scale * pair.s[i]), Vec3s(scale * run), e);
-        for (int j = 0; j < 3; ++j)
-            if (static_cast<double>(found[j]) < closest.distance2)
-                closest = {i, j, static_cast<double>(found[j])};
+    for (std::size_t k = 0; k < 3; ++k)
+        out[k] = a[k] - b[k];
+}
+
+/// The room across an axis of any length, in units of the pair; of c[0] to c[4] as in PairLanes.
+VDB_SHELL_LANES_PART void room_across(const LanePoint& axis, const std::array<LanePoint, 5>& c,
+                                      Lanes& out)
+{
+    std::array<Lanes, 5> d;
+    for (std::size_t i = 0; i < 5; ++i)
+        dot(axis, c[i], d[i]);
+    Lanes s_low{}, s_high{}, t_low = d[2], t_high = d[2], squared;
+    for (std::size_t i = 0; i < 2; ++i) {
+        lower_to(s_low, d[i]), raise_to(s_high, d[i]);
+        lower_to(t_low, d[3 + i]), raise_to(t_high, d[3 + i]);
     }
-    return closest;
+    out = s_low - t_high;
+    raise_to(out, t_low - s_high);
+    dot(axis, axis, squared);
+    for (std::size_t i = 0; i < kLanes; ++i)
+        out[i] /= std::sqrt(squared[i]) + kTiny;
+}
+
+VDB_SHELL_LANES_PART void clamp_to_one(Lanes& x)
+{
+    raise_to(x, Lanes{});
+    lower_to(x, Lanes{1, 1, 1, 1, 1, 1, 1, 1});
+}
+
+/// Two edges p + [0, 1] d and q + [0, 1] e, with r = p - q.
+struct EdgeLanes {
+    const LanePoint &d, &e, &r;
+    const Lanes &dd_inverse, &ee_inverse;
+    Lanes de, dr, er;
+};
+
+/// Lowers `least` to the squared distance from the point of q's edge that is nearest to
+/// p + start d.
+VDB_SHELL_LANES_PART void lower_to_distance2(const EdgeLanes& edges, const Lanes& start,
+                                             Lanes& least)
+{
+    Lanes t = (edges.de * start + edges.er) * edges.ee_inverse;
+    clamp_to_one(t);
+    Lanes s = (edges.de * t - edges.dr) * edges.dd_inverse;
+    clamp_to_one(s);
+    LanePoint between;
+    for (std::size_t k = 0; k < 3; ++k)
+        between[k] = edges.r[k] + s * edges.d[k] - t * edges.e[k];
+    Lanes squared;
+    dot(between, between, squared);
+    lower_to(least, squared);
+}
+
+/// Which edges come closest, and how close.
+VDB_SHELL_LANES_PART void closest_edges(const std::array<LanePoint, 3>& p,
+                                        const std::array<LanePoint, 3>& q, Lanes& least,
+                                        Lanes& which)
+{
+    const Lanes none{}, one = none + 1;
+    std::array<LanePoint, 3> d, e;
+    std::array<Lanes, 3> dd, ee, dd_inverse, ee_inverse;
+    for (std::size_t i = 0; i < 3; ++i) {
+        difference(p[(i + 1) % 3], p[i], d[i]);
+        difference(q[(i + 1) % 3], q[i], e[i]);
+        dot(d[i], d[i], dd[i]), dot(e[i], e[i], ee[i]);
+        dd[i] += kTiny, ee[i] += kTiny;
+        dd_inverse[i] = 1 / dd[i], ee_inverse[i] = 1 / ee[i];
+    }
+    least = none + std::numeric_limits<float>::max();
+    which = none;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            LanePoint r;
+            difference(p[i], q[j], r);
+            EdgeLanes edges{d[i], e[j], r, dd_inverse[i], ee_inverse[j], {}, {}, {}};
+            dot(d[i], e[j], edges.de), dot(d[i], r, edges.dr), dot(e[j], r, edges.er);
+            const Lanes most = dd[i] * ee[j];
+            Lanes denominator = most - edges.de * edges.de;
+            const unsigned parallel = bits_of(denominator < kParallel * most);
+            raise_to(denominator, kParallel * most);
+            Lanes start = (edges.de * edges.er - edges.dr * ee[j]) / denominator;
+            clamp_to_one(start);
+            Lanes squared = none + std::numeric_limits<float>::max();
+            lower_to_distance2(edges, start, squared);
+            if (parallel != 0) {
+                // One of the ends is among the closest points.
+                lower_to_distance2(edges, none, squared);
+                lower_to_distance2(edges, one, squared);
+            }
+            const auto index = static_cast<float>(3 * i + j);
+            which = squared < least ? none + index : which;
+            lower_to(least, squared);
+        }
+}
+
+VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
+{
+    std::array<LanePoint, 5> c;
+    Lanes size{};
+    for (std::size_t i = 0; i < 5; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::memcpy(&c[i][k], pairs.at[i][k].data(), sizeof(Lanes));
+            raise_to(size, c[i][k]);
+            raise_to(size, -c[i][k]);
+        }
+    const Lanes inverse = 1 / (size + std::numeric_limits<float>::min());
+    for (LanePoint& point : c)
+        for (Lanes& x : point)
+            x *= inverse;
+    Lanes enough;
+    std::memcpy(&enough, pairs.enough.data(), sizeof enough);
+    enough = enough * inverse + kErrorOfRoom;
+
+    LanePoint u, w, normal, middles;
+    for (std::size_t k = 0; k < 3; ++k)
+        middles[k] = c[2][k] + c[3][k] + c[4][k] - c[0][k] - c[1][k];
+    Lanes across_middles, across_first, across_second;
+    room_across(middles, c, across_middles);
+    cross(c[0], c[1], normal);
+    room_across(normal, c, across_first);
+    difference(c[3], c[2], u), difference(c[4], c[2], w);
+    cross(u, w, normal);
+    room_across(normal, c, across_second);
+    Lanes widest = across_middles;
+    raise_to(widest, across_first);
+    raise_to(widest, across_second);
+    sight.wide = bits_of(widest > enough);
+
+    Lanes squared, edges;
+    closest_edges({LanePoint{}, c[0], c[1]}, {c[2], c[3], c[4]}, squared, edges);
+    sight.close = bits_of(squared < kClose * kClose);
+    std::memcpy(sight.edges.data(), &edges, sizeof edges);
+    across_middles *= size, across_first *= size, across_second *= size;
+    std::memcpy(sight.across_middles.data(), &across_middles, sizeof edges);
+    std::memcpy(sight.across_first.data(), &across_first, sizeof edges);
+    std::memcpy(sight.across_second.data(), &across_second, sizeof edges);
 }
 
 Vec3d between_edges(const Pair& p, int i, int j)
@@ -158,63 +257,62 @@ Vec3d between_closest_edges(const Pair& p)
     return least;
 }
 
-double size_of(const Pair& p)
+Vec3d normal_of(const Vec3d& a, const Vec3d& b, const Vec3d& c)
 {
-    double size = 0;
-    for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k)
-            size = std::max({size, std::abs(p.s[i][k]), std::abs(p.t[i][k])});
-    return size;
+    return (b - a).cross(c - a);
 }
 
-/// From one triangle to the other where their edges come closest; zero where they touch.
-Vec3d across_edges(const Pair& p)
+/// The widest slab, of which floats have seen which edges are closest and what other axes there
+/// are.
+Slab widest_slab(const Pair& p, const Sight& sight, std::size_t lane)
 {
-    // Below this distance, in units of the pair's size, float32 cannot choose.
-    constexpr double kNear = 0.004;
-    const double size = size_of(p);
-    if (!(size > 0))
-        return Vec3d(0.0);
-    const EdgePair closest = closest_edges(p, size);
-    return closest.distance2 < kNear * kNear ? between_closest_edges(p)
-                                             : between_edges(p, closest.i, closest.j);
+    const auto edges = static_cast<int>(sight.edges[lane]);
+    const Vec3d between = (sight.close >> lane & 1U) != 0U ? between_closest_edges(p)
+                                                           : between_edges(p, edges / 3, edges % 3);
+    const Slab across = slab_across(between, p);
+    // No slab is wider than two points are apart: most pairs end here.
+    constexpr double kAll = 1 - 1e-6;
+    if (across.gap > kAll * between.length())
+        return across;
+    // A corner of one against the inside of the other: across that one's own plane. Or whatever
+    // keeps them apart.
+    const auto first = static_cast<double>(sight.across_first[lane]),
+               second = static_cast<double>(sight.across_second[lane]),
+               middles = static_cast<double>(sight.across_middles[lane]);
+    const double widest = std::max({first, second, middles});
+    if (across.gap >= widest)
+        return across;
+    const Slab other = slab_across(widest == first    ? normal_of(p.s[0], p.s[1], p.s[2])
+                                   : widest == second ? normal_of(p.t[0], p.t[1], p.t[2])
+                                                      : p.t[0] + p.t[1] + p.t[2] - p.s[1] - p.s[2],
+                                   p);
+    return other.gap > across.gap ? other : across;
 }
 
 } // namespace
 
-Body body_of(const Corners& corner, double reach)
+void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab)
 {
-    const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-    const double length = normal.length();
-    return {corner, length > 0 ? normal / length : Vec3d(0.0), reach};
-}
-
-Slab slab_between(const Body& first, const Body& second, double enough)
-{
-    const Pair p = relative(first.corner, second.corner);
+    assert(count <= kSlabsAtOnce);
+    std::array<Pair, kLanes> pair;
+    PairLanes lanes{};
+    for (std::size_t i = 0; i < count; ++i) {
+        pair[i] = relative(query[i].first, query[i].second);
+        const Pair& p = pair[i];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto at = [&](const Vec3d& x) { return static_cast<float>(x[int(k)]); };
+            lanes.at[0][k][i] = at(p.s[1]), lanes.at[1][k][i] = at(p.s[2]);
+            for (std::size_t j = 0; j < 3; ++j)
+                lanes.at[2 + j][k][i] = at(p.t[j]);
+        }
+        lanes.enough[i] = static_cast<float>(query[i].enough);
+    }
+    Sight sight;
+    look_at(lanes, sight);
     Slab wide;
     wide.gap = std::numeric_limits<double>::infinity();
-    const Vec3d middles = p.t[0] + p.t[1] + p.t[2] - p.s[1] - p.s[2];
-    const double room = room_across(middles, p), squared = middles.lengthSqr();
-    if (room > 0 && room * room > enough * enough * squared)
-        return wide;
-    // A corner of one against the inside of the other: across that one's own plane.
-    const double across_first = room_across(first.normal, p);
-    const double across_second = room_across(second.normal, p);
-    if (std::max(across_first, across_second) > enough)
-        return wide;
-    const Vec3d edges = across_edges(p);
-    const Slab across = slab_across(edges, p);
-    // No slab is wider than two points are apart: most pairs end here.
-    constexpr double kAll = 1 - 1e-6;
-    if (across.gap > kAll * edges.length())
-        return across;
-    const double widest = std::max({0.0, across.gap, across_first, across_second});
-    if (room > 0 && room * room > widest * widest * squared)
-        return slab_across(middles, p);
-    if (across.gap >= widest)
-        return across;
-    return slab_across(across_first >= across_second ? first.normal : second.normal, p);
+    for (std::size_t i = 0; i < count; ++i)
+        slab[i] = (sight.wide >> i & 1U) != 0U ? wide : widest_slab(pair[i], sight, i);
 }
 
 } // namespace vdb_shell::growth

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/lanes.h"
 #include "shell/grow/predicates.h"
 
+#include <cstddef>
 #include <limits>
 
 namespace vdb_shell::growth
 {
-
-/// A triangle and how far its corners may move.
-struct Body {
-    Corners corner;
-    Vec3d normal; ///< unit length, or zero where the triangle has none
-    double reach;
-};
-
-Body body_of(const Corners& corner, double reach);
 
 /// The room between two triangles across a direction: the first lies where n.(x - origin) >= lo,
 /// the second where it is <= hi, with origin the first one's first corner.
@@ -25,9 +18,19 @@ struct Slab {
     double gap = -std::numeric_limits<double>::max(); ///< lo - hi
 };
 
-/// The widest slab between two triangles, but for rounding: across the direction between their
-/// closest points. Where it is seen to be wider than `enough`, only the gap is given, as infinite.
-/// gap <= 0 where the triangles touch, or nearly so.
-Slab slab_between(const Body& first, const Body& second, double enough);
+/// Two triangles, and how wide a slab between them need be.
+struct SlabQuery {
+    Corners first, second;
+    double enough;
+};
+
+/// How many queries cost as much as one.
+inline constexpr std::size_t kSlabsAtOnce = kLanes;
+
+/// The widest slab between the two triangles of each query, but for rounding: across the direction
+/// between their closest points. Where it is seen to be wider than enough, only the gap is given,
+/// as infinite. gap <= 0 where the triangles touch, or nearly so. Each slab depends on its own
+/// query alone. Precondition: count <= kSlabsAtOnce.
+void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab);
 
 } // namespace vdb_shell::growth

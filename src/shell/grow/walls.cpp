@@ -32,7 +32,8 @@ struct Chunk {
 };
 
 struct Stock {
-    std::vector<Body> inner;
+    std::vector<Corners> corner;
+    std::vector<double> reach; ///< the longest of a face's corners
     std::vector<Box> box;
     std::vector<std::uint8_t> still; ///< by face: none of its corners will move
 };
@@ -51,7 +52,7 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
 {
     const std::size_t count = s.mesh->faces.size();
     s.home = s.b;
-    Stock stock{std::vector<Body>(count), std::vector<Box>(count),
+    Stock stock{std::vector<Corners>(count), std::vector<double>(count), std::vector<Box>(count),
                 std::vector<std::uint8_t>(count)};
     for_each_index(
         count,
@@ -66,8 +67,9 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
                 reach = std::max(reach, s.reach[v]);
                 stock.still[f] = 0;
             }
-            stock.inner[f] = body_of(inner_corners(s, f), reach);
-            stock.box[f] = box_of(stock.inner[f].corner);
+            stock.corner[f] = inner_corners(s, f);
+            stock.reach[f] = reach;
+            stock.box[f] = box_of(stock.corner[f]);
             stock.box[f].inflate(reach);
         },
         256);
@@ -93,30 +95,54 @@ public:
     {
     }
 
-    /// The walls of the triangles of one group of the inner tree.
-    void list(std::size_t group, BoxTree::Near& near, Chunk& out) const
+    /// Pairs that wait until there are enough of them.
+    struct Waiting {
+        std::size_t count = 0;
+        std::array<SlabQuery, kSlabsAtOnce> query;
+        std::array<Owners, kSlabsAtOnce> owners;
+    };
+
+    /// The walls of the triangles of one group of the inner tree, but for those that are left
+    /// waiting.
+    void list(std::size_t group, BoxTree::Near& near, Waiting& waiting, Chunk& out) const
     {
         const auto moves = [&](int f) { return !stock_.still[f]; };
         s_.inner_tree.for_each_overlap_of(group, s_.inner_tree, near, moves, [&](int f, int g) {
             // Each pair once: from its smaller face, or from the one that moves.
             if (g == f || (g < f && moves(g)) || s_.mesh->share_a_corner(f, g))
                 return;
-            add(f, g, stock_.inner[g], stock_.still[g] ? 0.0 : 0.5, out);
+            add({stock_.corner[f], stock_.corner[g], stock_.reach[f] + stock_.reach[g]}, {f, g},
+                waiting, out);
         });
         s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, moves, [&](int f, int g) {
             if (!share_a_pin(s_, f, g))
-                add(f, -1, body_of(outer_corners(s_, g), 0.0), 0.0, out);
+                add({stock_.corner[f], outer_corners(s_, g), stock_.reach[f]}, {f, -1}, waiting,
+                    out);
         });
     }
 
-private:
-    /// `share` of the gap goes to the other triangle.
-    void add(int f, int g, const Body& other, double share, Chunk& out) const
+    void list_waiting(Waiting& waiting, Chunk& out) const
     {
-        const Body& body = stock_.inner[f];
-        const double need = body.reach + other.reach;
-        const Slab slab = slab_between(body, other, need);
-        if (slab.gap > need)
+        std::array<Slab, kSlabsAtOnce> slab;
+        slabs_between(waiting.query.data(), waiting.count, slab.data());
+        for (std::size_t i = 0; i < waiting.count; ++i)
+            put_wall(waiting.query[i], slab[i], waiting.owners[i], out);
+        waiting.count = 0;
+    }
+
+private:
+    void add(const SlabQuery& query, const Owners& owners, Waiting& waiting, Chunk& out) const
+    {
+        waiting.query[waiting.count] = query;
+        waiting.owners[waiting.count] = owners;
+        if (++waiting.count == kSlabsAtOnce)
+            list_waiting(waiting, out);
+    }
+
+    void put_wall(const SlabQuery& query, const Slab& slab, Owners owners, Chunk& out) const
+    {
+        const int f = owners.f, g = owners.g;
+        if (slab.gap > query.enough)
             return;
         if (!(slab.gap > 8 * slack_)) {
             out.locked.push_back(f);
@@ -124,9 +150,10 @@ private:
                 out.locked.push_back(g);
             return;
         }
+        // The share of the gap that goes to the other triangle.
+        const double share = g < 0 || stock_.still[g] ? 0.0 : 0.5;
         const double at = slab.hi + std::max(share * slab.gap, 2 * slack_);
-        const Wall wall{slab.n, Vec3d(slab.n).dot(body.corner[0]) + at};
-        Owners owners{f, g};
+        const Wall wall{slab.n, Vec3d(slab.n).dot(query.first[0]) + at};
         for (int k = 0; k < 3; ++k) {
             owners.reached |= std::uint8_t(reaches(wall, f, k, 1.0) << k);
             if (share > 0)
@@ -229,8 +256,10 @@ void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w)
         chunks.size(),
         [&](std::size_t c) {
             BoxTree::Near near;
+            Builder::Waiting waiting;
             for (std::size_t g = c * kChunk; g < std::min(groups, (c + 1) * kChunk); ++g)
-                builder.list(g, near, chunks[c]);
+                builder.list(g, near, waiting, chunks[c]);
+            builder.list_waiting(waiting, chunks[c]);
         },
         1);
     w.locked.assign(s.b.size(), 0);
