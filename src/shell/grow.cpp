@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -38,17 +39,20 @@ constexpr double kLeastLineGain = 3e-3;
 // fifth of a point of fill less, than what the thickest shell is given.
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
-// Triangles of a surface over those of the coarse one that growth begins on, and the barrier's
-// weight at which that ends and the other goes on.
-constexpr std::size_t kCoarser = 8;
-constexpr double kRoughUntil = 0.005;
+// About the triangles of the coarsest surface that growth begins on, and those of each over those of
+// the next at most. On a finer one less is lost on the way to the whole; but its own rounds cost.
+constexpr double kCoarsest = 1200, kMostCoarser = 9;
+// The barrier's weight at which growth ends on one and goes on on the next, and how it falls after
+// the first.
+constexpr double kRoughUntil = 0.005, kRoughCool = 0.45;
 // After it: first weight over what is left to fill, and how the certified shell goes on. Most is
 // done; a round that wins less than kEnoughGain is the last.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
-constexpr double kEnoughGain = 2e-3;
-// Rounds of free moves at most; and the triangles of a surface that gets one after a coarse start.
+constexpr double kEnoughGain = 3e-3;
+// Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
+// what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
-constexpr double kAffordable = 50000;
+constexpr double kAffordable = 50000, kRoughCost = 1.0 / 3;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -115,6 +119,15 @@ int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
     return static_cast<int>(std::min(double(kMostRounds), over * over));
 }
 
+/// The same on a coarser surface than that of so many triangles.
+int most_rough_rounds(const GrowState& s, Start start, const GrowOptions& options,
+                      std::size_t triangles)
+{
+    const double cheap = kRoughCost * double(triangles) / s.mesh->face_count();
+    return std::max(most_rounds(s, start, options),
+                    std::min(options.free_rounds.value_or(kMostRounds), static_cast<int>(cheap)));
+}
+
 Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options)
 {
     Directions directions;
@@ -148,11 +161,12 @@ std::vector<T> at_vertices(const std::vector<T>& all, const std::vector<std::uin
     return some;
 }
 
-/// Inner points of the first level's shell, which growth has not finished; none where the lines
+/// Inner points of the first level's shell, which growth has not finished, for a surface of so many
+/// triangles; none where the lines
 /// fill the last one nearly: to a round solid coarser surfaces have nothing to add.
-std::vector<Vec3d> rough_inner(const std::vector<Coarsened>& levels, const LineLengths& start,
-                               const std::vector<double>& cap, const GrowOptions& options,
-                               const StageProgress& progress)
+std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsened>& levels,
+                               const LineLengths& start, const std::vector<double>& cap,
+                               const GrowOptions& options, const StageProgress& progress)
 {
     const auto from = vertices_of(levels);
     std::vector<Vec3d> inner;
@@ -173,12 +187,14 @@ std::vector<Vec3d> rough_inner(const std::vector<Coarsened>& levels, const LineL
             growth::settle_carried(s, pillars.lines, pillars.length, progress);
         }
         GrowReport ignored;
-        const int rounds = most_rounds(s, started, options);
+        const int rounds = most_rough_rounds(s, started, options, triangles);
         if (rounds > 0)
             growth::list_kin(connectivity);
-        growth::move_freely(
-            s, lines.visibility, options,
-            {rounds, first_softness(s, started), kCool, kLeastGain, kRoughUntil}, progress, ignored);
+        growth::move_freely(s, lines.visibility, options,
+                            {rounds, first_softness(s, started),
+                             started == Start::carried ? kRoughCool : kCool, kLeastGain,
+                             kRoughUntil},
+                            progress, ignored);
         inner = std::move(s.b);
     }
     return inner;
@@ -189,7 +205,7 @@ Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lin
                    const LineLengths& start, const std::vector<Coarsened>& levels,
                    const GrowOptions& options, const StageProgress& progress)
 {
-    const std::vector<Vec3d> inner = rough_inner(levels, start, s.cap, options, progress);
+    const std::vector<Vec3d> inner = rough_inner(mesh.triangles.size(), levels, start, s.cap, options, progress);
     if (inner.empty()) {
         settle(s, lines, start, options, progress);
         return Start::lines;
@@ -220,7 +236,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
     const int twelve_rounds = thickest ? std::min(kTwelveRoundsFirst, rounds) : rounds;
     const double cool = thickest ? kCoolSlowly : carried ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
-    const double enough = carried && !thickest ? kEnoughGain : -1;
+    const double enough = carried && !thickest && !options.free_rounds ? kEnoughGain : -1;
     growth::move_freely(s, directions.visibility, options,
                         {twelve_rounds, first_softness(s, start), cool, least_gain, 0, enough},
                         progress, report);
@@ -300,9 +316,12 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
     const auto finest = [&]() -> const TriangleMesh& {
         return levels.empty() ? mesh : levels.back().mesh;
     };
-    while (finest().triangles.size() >= options.coarse_from) {
+    const double all = double(mesh.triangles.size()), times = std::max(all / kCoarsest, kMostCoarser);
+    const double steps = std::ceil(std::log(times) / std::log(kMostCoarser));
+    const double coarser = std::pow(times, 1 / steps);
+    for (int step = 0; step < steps; ++step) {
         const std::size_t count = finest().triangles.size();
-        Coarsened coarse = coarsen(finest(), count / kCoarser);
+        Coarsened coarse = coarsen(finest(), static_cast<std::size_t>(double(count) / coarser));
         if (coarse.mesh.triangles.size() > count / 2)
             break;
         levels.push_back(std::move(coarse));
