@@ -6,12 +6,14 @@
 #include "certify/tet_faces.h"
 #include "core/counter_random.h"
 #include "core/exact.h"
+#include "core/orient3d_filter.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -69,15 +71,43 @@ void visit_runs_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
                HalfSpaces::of_tet(corners, scene.sign[tet], scene.span), visit);
 }
 
-bool strictly_inside(const std::array<Vec3s, 4>& corners, int sign, const Vec3s& point)
+/// The inside of a tet, for many points.
+class TetInside
 {
-    for (const auto& face : kTetFaces)
-        if (exact::orient3d(corners[static_cast<std::size_t>(face[0])],
-                            corners[static_cast<std::size_t>(face[1])],
-                            corners[static_cast<std::size_t>(face[2])], point) != -sign)
-            return false;
-    return true;
-}
+public:
+    TetInside(const std::array<Vec3s, 4>& corners, int sign)
+        : corners_(corners), sign_(sign), planes_{plane(0), plane(1), plane(2), plane(3)}
+    {
+    }
+
+    bool strictly_holds(const Vec3s& point) const
+    {
+        for (std::size_t face = 0; face < 4; ++face) {
+            const int side = planes_[face].side(Vec3d(point));
+            if ((side != 0 ? side : exact_side(face, point)) != -sign_)
+                return false;
+        }
+        return true;
+    }
+
+private:
+    const Vec3s& corner(std::size_t face, std::size_t k) const
+    {
+        return corners_[static_cast<std::size_t>(kTetFaces[face][k])];
+    }
+    exact::PlaneFilter plane(std::size_t face) const
+    {
+        return {Vec3d(corner(face, 0)), Vec3d(corner(face, 1)), Vec3d(corner(face, 2))};
+    }
+    int exact_side(std::size_t face, const Vec3s& point) const
+    {
+        return exact::orient3d(corner(face, 0), corner(face, 1), corner(face, 2), point);
+    }
+
+    const std::array<Vec3s, 4>& corners_;
+    int sign_;
+    std::array<exact::PlaneFilter, 4> planes_;
+};
 
 Bounds bounds_of_both(const TriangleMesh& surface, const TetMesh& tets)
 {
@@ -193,6 +223,7 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
     for_each_index(scene.tets.tets.size(), [&](std::size_t tet) {
         const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
         const FloatBox box = box_of(corners);
+        std::optional<TetInside> inside;
         visit_runs_of_tet(scene, tet, [&](std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t i = sorted.offset[first]; i < sorted.offset[last + 1]; ++i) {
                 std::atomic<std::uint32_t>& count = hits[sorted.point[i]];
@@ -201,7 +232,11 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
                 const Vec3s& p = sorted.position[i];
                 const bool in_box = box.low[0] < p[0] && p[0] < box.high[0] && box.low[1] < p[1] &&
                                     p[1] < box.high[1] && box.low[2] < p[2] && p[2] < box.high[2];
-                if (in_box && strictly_inside(corners, scene.sign[tet], p))
+                if (!in_box)
+                    continue;
+                if (!inside)
+                    inside.emplace(corners, scene.sign[tet]);
+                if (inside->strictly_holds(p))
                     count.fetch_add(1, std::memory_order_relaxed);
             }
         });

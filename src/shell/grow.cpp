@@ -111,21 +111,24 @@ double first_softness(const GrowState& s, Start start)
                                    : growth::kTwelveSoftness;
 }
 
-int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
+int affordable_rounds(const GrowState& s)
 {
-    if (options.free_rounds || start == Start::lines || options.method == Method::thickest)
-        return options.free_rounds.value_or(kMostRounds);
     const double over = kAffordable / s.mesh->face_count();
     return static_cast<int>(std::min(double(kMostRounds), over * over));
 }
 
-/// The same on a coarser surface than that of so many triangles.
-int most_rough_rounds(const GrowState& s, Start start, const GrowOptions& options,
-                      std::size_t triangles)
+int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
+{
+    return options.free_rounds ? *options.free_rounds
+           : start == Start::lines || options.method == Method::thickest ? kMostRounds
+                                                                        : affordable_rounds(s);
+}
+
+/// On a coarser surface than that of so many triangles.
+int most_rough_rounds(const GrowState& s, std::size_t triangles)
 {
     const double cheap = kRoughCost * double(triangles) / s.mesh->face_count();
-    return std::max(most_rounds(s, start, options),
-                    std::min(options.free_rounds.value_or(kMostRounds), static_cast<int>(cheap)));
+    return std::max(affordable_rounds(s), static_cast<int>(std::min(double(kMostRounds), cheap)));
 }
 
 Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options)
@@ -162,8 +165,7 @@ std::vector<T> at_vertices(const std::vector<T>& all, const std::vector<std::uin
 }
 
 /// Inner points of the first level's shell, which growth has not finished, for a surface of so many
-/// triangles; none where the lines
-/// fill the last one nearly: to a round solid coarser surfaces have nothing to add.
+/// triangles.
 std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsened>& levels,
                                const LineLengths& start, const std::vector<double>& cap,
                                const GrowOptions& options, const StageProgress& progress)
@@ -179,15 +181,13 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         const Start started = inner.empty() ? Start::lines : Start::carried;
         if (started == Start::lines) {
             settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
-            if (pins(s) == 0 && growth::fill_of(s) > growth::kNearlyFull)
-                return {};
         } else {
             const growth::Pillars pillars =
                 growth::pillars_in(levels[level + 1].mesh, inner, mesh, lines);
             growth::settle_carried(s, pillars.lines, pillars.length, progress);
         }
         GrowReport ignored;
-        const int rounds = most_rough_rounds(s, started, options, triangles);
+        const int rounds = most_rough_rounds(s, triangles);
         if (rounds > 0)
             growth::list_kin(connectivity);
         growth::move_freely(s, lines.visibility, options,
@@ -205,11 +205,12 @@ Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lin
                    const LineLengths& start, const std::vector<Coarsened>& levels,
                    const GrowOptions& options, const StageProgress& progress)
 {
-    const std::vector<Vec3d> inner = rough_inner(mesh.triangles.size(), levels, start, s.cap, options, progress);
-    if (inner.empty()) {
+    if (levels.empty()) {
         settle(s, lines, start, options, progress);
         return Start::lines;
     }
+    const std::vector<Vec3d> inner =
+        rough_inner(mesh.triangles.size(), levels, start, s.cap, options, progress);
     const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines);
     growth::settle_carried(s, pillars.lines, pillars.length, progress);
     return Start::carried;

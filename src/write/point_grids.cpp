@@ -6,6 +6,7 @@
 #include <openvdb/points/PointGroup.h>
 #include <openvdb/tools/PointIndexGrid.h>
 #include <openvdb/tree/LeafManager.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -301,8 +302,11 @@ ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets)
 PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets)
 {
     const ShellPoints points = number_points(stack, tets);
-    return {make_points(stack, points), make_prisms(stack, points),
-            make_tet_points(stack, tets, points)};
+    PointGrids grids;
+    tbb::parallel_invoke([&] { grids.points = make_points(stack, points); },
+                         [&] { grids.prisms = make_prisms(stack, points); },
+                         [&] { grids.tets = make_tet_points(stack, tets, points); });
+    return grids;
 }
 
 } // namespace vdb_shell

@@ -227,8 +227,8 @@ std::vector<double> thin_heights(const GrowState& s)
     return h;
 }
 
-bool settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress, double least_fill)
+void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
+                  const StageProgress& progress)
 {
     pin_what_cannot_leave(s, directions, h);
     for (std::size_t v = 0; v < h.size(); ++v)
@@ -242,10 +242,7 @@ bool settle_start(GrowState& s, const Directions& directions, std::vector<double
         progress.stop_if_interrupted(0);
         place(s, directions, h);
         first = false;
-        if (least_fill > 0 && fill_of(s) < least_fill)
-            return false;
     }
-    return true;
 }
 
 void settle_carried(GrowState& s, const Directions& directions, const std::vector<double>& h,

@@ -11,10 +11,9 @@
 namespace vdb_shell::growth
 {
 
-/// Sets b = a + h d with h as given, lessened until every test passes; may pin. Gives up and
-/// returns false as soon as the fill is below `least_fill`.
-bool settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
-                  const StageProgress& progress, double least_fill = 0);
+/// Sets b = a + h d with h as given, lessened until every test passes; may pin.
+void settle_start(GrowState& s, const Directions& directions, std::vector<double> h,
+                  const StageProgress& progress);
 
 /// The same for pillars that are nearly valid together, as those carried over from the shell of a
 /// coarser surface are: inner points of prisms that violate are moved (untangle.h), and only what
