@@ -212,8 +212,7 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
         ->capture_default_str()
         ->group("Growth");
     app.add_option("--free-rounds", grow.free_rounds,
-                   "Upper bound on rounds of free moves [40; fewer where growth began on a "
-                   "coarser surface: (50,000 / triangles)^2]")
+                   "Upper bound on rounds of free moves [40; after a coarser surface as many as pay]")
         ->check(CLI::NonNegativeNumber)
         ->group("Growth");
     app.add_option("--min-quality", grow.min_quality,

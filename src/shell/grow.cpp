@@ -40,15 +40,17 @@ constexpr double kLeastLineGain = 3e-3;
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 // About the triangles of the coarsest surface that growth begins on, and those of each over those of
-// the next at most. On a finer one less is lost on the way to the whole; but its own rounds cost.
-constexpr double kCoarsest = 1200, kMostCoarser = 9;
+// the next at most: few where rounds on the whole surface are to follow, of which a finer coarse
+// one saves some, more where they are not.
+constexpr double kCoarsest = 1200, kMostCoarser = 4.2, kMostCoarserAlone = 9;
 // The barrier's weight at which growth ends on one and goes on on the next, and how it falls after
 // the first.
 constexpr double kRoughUntil = 0.005, kRoughCool = 0.45;
-// After it: first weight over what is left to fill, and how the certified shell goes on. Most is
-// done; a round that wins less than kEnoughGain is the last.
+// After it most is done: first weight over what is left to fill, and how it falls. Twice as much,
+// and kCool, where there is time.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
-constexpr double kEnoughGain = 3e-3;
+// What a round has to win for each triangle, whose price it is, for another to follow.
+constexpr double kGainForTriangle = 1.5e-7;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
@@ -105,10 +107,17 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
 /// How growth starts: from lines, or from the shell of a coarser surface, nearly done.
 enum class Start { lines, carried };
 
-double first_softness(const GrowState& s, Start start)
+/// After a coarse start growth goes on only as long as that pays, unless more was asked for.
+bool in_haste(Start start, const GrowOptions& options)
 {
-    return start == Start::carried ? kCarriedSoftness * (1 - growth::fill_of(s))
-                                   : growth::kTwelveSoftness;
+    return start == Start::carried && options.method != Method::thickest && !options.free_rounds;
+}
+
+double first_softness(const GrowState& s, Start start, bool hasty)
+{
+    return start == Start::carried
+               ? (hasty ? 1 : 2) * kCarriedSoftness * (1 - growth::fill_of(s))
+               : growth::kTwelveSoftness;
 }
 
 int affordable_rounds(const GrowState& s)
@@ -119,9 +128,8 @@ int affordable_rounds(const GrowState& s)
 
 int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
 {
-    return options.free_rounds ? *options.free_rounds
-           : start == Start::lines || options.method == Method::thickest ? kMostRounds
-                                                                        : affordable_rounds(s);
+    return in_haste(start, options) ? affordable_rounds(s)
+                                    : options.free_rounds.value_or(kMostRounds);
 }
 
 /// On a coarser surface than that of so many triangles.
@@ -191,7 +199,7 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         if (rounds > 0)
             growth::list_kin(connectivity);
         growth::move_freely(s, lines.visibility, options,
-                            {rounds, first_softness(s, started),
+                            {rounds, first_softness(s, started, true),
                              started == Start::carried ? kRoughCool : kCool, kLeastGain,
                              kRoughUntil},
                             progress, ignored);
@@ -232,15 +240,16 @@ void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
                         const GrowOptions& options, const StageProgress& progress,
                         GrowReport& report)
 {
-    const bool thickest = options.method == Method::thickest, carried = start == Start::carried;
+    const bool thickest = options.method == Method::thickest, hasty = in_haste(start, options);
     const int rounds = most_rounds(s, start, options);
     const int twelve_rounds = thickest ? std::min(kTwelveRoundsFirst, rounds) : rounds;
-    const double cool = thickest ? kCoolSlowly : carried ? kCarriedCool : kCool;
+    const double cool = thickest ? kCoolSlowly : hasty ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
-    const double enough = carried && !thickest && !options.free_rounds ? kEnoughGain : -1;
-    growth::move_freely(s, directions.visibility, options,
-                        {twelve_rounds, first_softness(s, start), cool, least_gain, 0, enough},
-                        progress, report);
+    const double enough = hasty ? kGainForTriangle * s.mesh->face_count() : -1;
+    growth::move_freely(
+        s, directions.visibility, options,
+        {twelve_rounds, first_softness(s, start, hasty), cool, least_gain, 0, enough}, progress,
+        report);
     if (!thickest)
         return;
     s.twelve = false;
@@ -317,8 +326,10 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
     const auto finest = [&]() -> const TriangleMesh& {
         return levels.empty() ? mesh : levels.back().mesh;
     };
-    const double all = double(mesh.triangles.size()), times = std::max(all / kCoarsest, kMostCoarser);
-    const double steps = std::ceil(std::log(times) / std::log(kMostCoarser));
+    const auto all = static_cast<double>(mesh.triangles.size());
+    const double most = all < kAffordable / 2 ? kMostCoarser : kMostCoarserAlone;
+    const double times = std::max(all / kCoarsest, most);
+    const double steps = std::ceil(std::log(times) / std::log(most));
     const double coarser = std::pow(times, 1 / steps);
     for (int step = 0; step < steps; ++step) {
         const std::size_t count = finest().triangles.size();

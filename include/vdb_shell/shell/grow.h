@@ -37,13 +37,14 @@ struct GrowOptions {
     bool soft_contacts = true; ///< free moves keep clear of near triangles before they touch
     bool flips = true;         ///< choose diagonals again while moving (thickest) and for
                                ///< quality at the end
-    /// From so many triangles on, growth begins on a surface of an eighth of them (which may again
-    /// be too many) and goes on from its shell: sooner, and thicker. Fewer triangles than the
-    /// default's have too little of their shape left then. 0: never.
-    std::size_t coarse_from = 10000;
-    /// Upper bound on rounds of free moves, under each prism test. Unset: 40; after a start on a
-    /// coarser surface fewer, the more triangles there are, for each costs as much as all before
-    /// it and wins little: (50,000 / triangles) squared (docs/benchmarks.md).
+    /// From so many triangles on, growth begins on a surface of a thousand or two, and comes to the
+    /// whole over some in between: sooner, and as thick. Fewer triangles than the default's have
+    /// too little of their shape left then. 0: never.
+    std::size_t coarse_from = 5000;
+    /// Upper bound on rounds of free moves, under each prism test. Unset: 40; but after a start on
+    /// coarser surfaces (50,000 / triangles) squared under Method::certified, and they end sooner,
+    /// when one wins little for what it costs. Given, growth takes its time: thicker
+    /// (docs/benchmarks.md).
     std::optional<int> free_rounds;
     /// Bound that the mean ratio of every tet should reach (certify/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
@@ -61,7 +62,7 @@ struct GrowReport {
     std::size_t vertices_below_quality = 0; ///< inner vertices of such tets, pinned ones included
 };
 
-/// Surfaces for growth to begin on, each an eighth of the one before, the first of the mesh: as
+/// Surfaces for growth to begin on, each of fewer triangles than the one before, as
 /// GrowOptions::coarse_from asks. None for a side without bound, for a surface of few triangles or
 /// one that cannot be coarsened. Same result for any number of threads.
 std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options);
