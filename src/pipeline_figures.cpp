@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline_figures.h"
 
+#include "core/parallel.h"
+
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>
@@ -113,14 +115,16 @@ void measure_result(ShellResult& result)
 {
     ShellReport& report = result.report;
     measure_field(report.field, *result.level_set);
-    measure_sides(result);
     const ShellStack& stack = result.stack;
     report.prisms = stack.layers.size() * stack.triangles().size();
     report.pinned_vertices = zeros_in(lengths_of(hull_of(stack)));
     report.ripples = stack.splits.front().ripples;
-    report.signs = count_tet_signs(result.tets);
-    report.conformity = check_conformity(stack, result.tets);
-    report.quality = measure_quality(result.tets);
+    run_together([&] { report.conformity = check_conformity(stack, result.tets); },
+                 [&] {
+                     report.signs = count_tet_signs(result.tets);
+                     report.quality = measure_quality(result.tets);
+                     measure_sides(result);
+                 });
     report.solid_volume = signed_volume(result.surface.points, result.surface.triangles);
     report.shell_volume = tet_volume(result.tets);
     report.outside_volume = volume_outside(stack, result.tets, report.shell_volume);

@@ -7,6 +7,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <cstddef>
 
@@ -33,6 +34,13 @@ void for_each_index(std::size_t count, const Body& body, std::size_t grain = 64)
                 body(i);
         },
         grain);
+}
+
+/// Calls them all, in any order or at once: for jobs that are serial in part and write what none of
+/// the others reads.
+template <typename... Job> void run_together(const Job&... job)
+{
+    tbb::parallel_invoke(job...);
 }
 
 } // namespace vdb_shell

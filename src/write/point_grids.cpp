@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "write/point_grids.h"
 
+#include "core/parallel.h"
+
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointGroup.h>
 #include <openvdb/tools/PointIndexGrid.h>
 #include <openvdb/tree/LeafManager.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -303,9 +304,9 @@ PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets)
 {
     const ShellPoints points = number_points(stack, tets);
     PointGrids grids;
-    tbb::parallel_invoke([&] { grids.points = make_points(stack, points); },
-                         [&] { grids.prisms = make_prisms(stack, points); },
-                         [&] { grids.tets = make_tet_points(stack, tets, points); });
+    run_together([&] { grids.points = make_points(stack, points); },
+                 [&] { grids.prisms = make_prisms(stack, points); },
+                 [&] { grids.tets = make_tet_points(stack, tets, points); });
     return grids;
 }
 

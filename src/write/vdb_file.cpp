@@ -4,6 +4,7 @@
 #include "vdb_shell/core/error.h"
 
 #include "core/atomic_file.h"
+#include "core/parallel.h"
 #include "write/point_grids.h"
 #include "write/vdb_archive.h"
 #include "write/vdb_header.h"
@@ -152,12 +153,14 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     openvdb::initialize();
     require_consistent(file.stack, file.tets);
     const bool beside = options.points == PointPlacement::beside;
-    const openvdb::MetaMap metadata = shell_metadata(path, file, options.points);
+    openvdb::MetaMap metadata;
+    PointGrids made;
+    run_together([&] { metadata = shell_metadata(path, file, options.points); },
+                 [&] { made = make_point_grids(file.stack, file.tets); });
     openvdb::GridPtrVec volumes{
         named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
         named_copy(file.depth, kDepthGrid, options.half, file.placement)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
-    const PointGrids made = make_point_grids(file.stack, file.tets);
     const openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
