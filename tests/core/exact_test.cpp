@@ -92,6 +92,70 @@ TEST(triangles_touch, allows_what_neighbours_share)
     EXPECT_TRUE(touch(points, {0, 1, 2}, {2, 0, 1})) << "the same";
 }
 
+/// What triangles_touch says by its definition, without looking at projections.
+bool touch_by_definition(const std::vector<Vec3s>& points, const Vec3I& first, const Vec3I& second)
+{
+    std::vector<std::uint32_t> shared, p, q;
+    for (int k = 0; k < 3; ++k) {
+        const bool in_second =
+            first[k] == second[0] || first[k] == second[1] || first[k] == second[2];
+        (in_second ? shared : p).push_back(first[k]);
+        if (second[k] != first[0] && second[k] != first[1] && second[k] != first[2])
+            q.push_back(second[k]);
+    }
+    const auto corners = [&](const Vec3I& t) {
+        return exact::Triangle{points[t[0]], points[t[1]], points[t[2]]};
+    };
+    if (shared.empty())
+        return exact::triangles_touch(corners(first), corners(second));
+    if (shared.size() == 1)
+        return exact::segment_touches_triangle(points[p[0]], points[p[1]], corners(second)) ||
+               exact::segment_touches_triangle(points[q[0]], points[q[1]], corners(first));
+    return shared.size() == 3 ||
+           (exact::orient3d(points[first[0]], points[first[1]], points[first[2]], points[q[0]]) ==
+                0 &&
+            exact::on_one_side(points[shared[0]], points[shared[1]], points[p[0]], points[q[0]]));
+}
+
+TEST(apart_in_projection, is_never_said_of_triangles_that_touch)
+{
+    // Few places, so that most pairs are in special position; the lowest layer is a plane.
+    for (const int height : {1, 2}) {
+        std::vector<Vec3s> points;
+        for (int z = 0; z < height; ++z)
+            for (int y = 0; y < 3; ++y)
+                for (int x = 0; x < 3; ++x)
+                    points.emplace_back(float(x), float(y), 0.5F * float(z) + 0.25F * float(x));
+        std::vector<Vec3I> triangles;
+        const auto count = std::uint32_t(points.size());
+        for (std::uint32_t a = 0; a < count; ++a)
+            for (std::uint32_t b = a + 1; b < count; ++b)
+                for (std::uint32_t c = b + 1; c < count; ++c)
+                    if ((a + b + c) % std::uint32_t(height * height) == 0 &&
+                        !exact::collinear(points[a], points[b], points[c]))
+                        triangles.emplace_back(a, b, c);
+        std::size_t apart = 0, touching = 0, missed = 0;
+        for (const Vec3I& s : triangles)
+            for (const Vec3I& t : triangles) {
+                if (s == t)
+                    continue;
+                const bool said = exact::apart_in_projection(points, s, t);
+                const bool touch = touch_by_definition(points, s, t);
+                EXPECT_FALSE(said && touch) << s << t;
+                EXPECT_EQ(exact::triangles_touch(points, s, t), touch) << s << t;
+                apart += said;
+                touching += touch;
+                missed += !said && !touch;
+            }
+        EXPECT_GT(apart, 100U);
+        EXPECT_GT(touching, 100U);
+        // In one plane the line of an edge tells nearly all.
+        if (height == 1) {
+            EXPECT_LT(10 * missed, apart);
+        }
+    }
+}
+
 TEST(crossing_above, counts_shared_edges_and_corners_once)
 {
     // Straight above and below corners and edges of a gridded box, and between them.

@@ -3,10 +3,14 @@
 
 #include "support/shapes.h"
 #include "support/stacks.h"
+#include "vdb_shell/shell/sides.h"
 
 #include <tbb/global_control.h>
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
 
 namespace
 {
@@ -55,8 +59,29 @@ TEST(CoarseStart, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
     const growth::Pillars pillars = growth::pillars_in(sphere, outside, sphere, lines);
     for (std::size_t v = 0; v < sphere.points.size(); ++v) {
         EXPECT_EQ(pillars.lines.inward[v], lines.inward[v]);
-        EXPECT_NEAR(pillars.length[v], 0.5, 1e-6);
+        // Halfway to the mean of pillars that lean away from it.
+        EXPECT_GT(pillars.length[v], 0.45);
+        EXPECT_LT(pillars.length[v], 0.5);
     }
+}
+
+TEST(CoarseStart, AKinkBetweenCoarseTrianglesIsSmoothed)
+{
+    // One pillar is longer than all others.
+    const TriangleMesh coarse = test::icosphere(1.0, 1), fine = test::icosphere(1.0, 4);
+    std::vector<Vec3d> inner;
+    for (std::size_t v = 0; v < coarse.points.size(); ++v)
+        inner.push_back(Vec3d(coarse.points[v]) * (v == 0 ? 0.3 : 0.6));
+    Directions lines;
+    for (const Vec3s& p : fine.points)
+        lines.inward.push_back(-Vec3d(p).unit());
+    lines.visibility.assign(fine.points.size(), 1.0);
+    const growth::Pillars pillars = growth::pillars_in(coarse, inner, fine, lines);
+    const auto tip = std::find(fine.points.begin(), fine.points.end(), coarse.points[0]);
+    ASSERT_NE(tip, fine.points.end());
+    const double length = pillars.length[std::size_t(tip - fine.points.begin())];
+    EXPECT_LT(length, 0.69);
+    EXPECT_GT(length, 0.6);
 }
 
 class GrownFromCoarse : public testing::TestWithParam<Method>
@@ -81,26 +106,91 @@ TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThread
     EXPECT_EQ(alone.split.order, with.split.order);
 }
 
-TEST(CoarseStart, ACoarseSurfaceAboveTheLimitIsCoarsenedAgain)
+TEST(CoarseStart, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
+    ASSERT_EQ(levels.size(), 2U);
+    const auto all = double(mesh.triangles.size()), first = double(levels[0].mesh.triangles.size()),
+               last = double(levels[1].mesh.triangles.size());
+    EXPECT_NEAR(last, 1200, 50);
+    EXPECT_NEAR(all / first, first / last, 0.2);
+}
+
+TEST(CoarseStart, TheCoarsestSurfacesVerticesAreTheMeshs)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
+    const std::vector<std::uint32_t> vertices = vertices_of_coarsest(mesh, levels);
+    ASSERT_EQ(vertices.size(), levels.back().mesh.points.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+        EXPECT_EQ(mesh.points[vertices[v]], levels.back().mesh.points[v]);
+    EXPECT_EQ(vertices_of_coarsest(mesh, {}).size(), mesh.points.size());
+}
+
+TEST(CoarseStart, NoLevelsForFewTrianglesNorOutwardNorWithoutItsLevers)
 {
     const TriangleMesh mesh = test::bumpy_sphere(5);
     GrowOptions options;
-    options.coarse_from = mesh.triangles.size() / 8;
-    const GrowResult result = test::grown(mesh, options);
-    test::expect_certified(one_layer(result.shell, result.split), PrismTest::twelve_tets);
-    EXPECT_GT(fill_of(result.shell), 0.98);
-    options.coarse_from = mesh.triangles.size();
-    EXPECT_NE(test::grown(mesh, options).shell.inner, result.shell.inner);
+    options.coarse_from = mesh.triangles.size() + 1;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+    options.coarse_from = 0;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+    options = {};
+    EXPECT_TRUE(coarse_levels(reversed_surface(mesh), options).empty());
+    options.free_moves = false;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+    options = {};
+    options.top_down = false;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
 }
 
-TEST(CoarseStart, LeavesAloneWhatLinesFillNearly)
+TEST(CoarseStart, ReadsLengthsOfTheCoarsestVerticesAlone)
 {
-    const TriangleMesh mesh = test::torus(2.0, 0.8, 48, 24);
+    const TriangleMesh mesh = test::bumpy_sphere(4);
     GrowOptions options;
-    options.coarse_from = 0;
-    const GrowResult without = test::grown(mesh, options);
     options.coarse_from = 500;
-    EXPECT_EQ(test::grown(mesh, options).shell.inner, without.shell.inner);
+    GrowStart start{{}, coarse_levels(mesh, options)};
+    ASSERT_FALSE(start.levels.empty());
+    Directions directions;
+    for (const Vec3s& p : mesh.points)
+        directions.inward.push_back(-Vec3d(p).unit());
+    directions.visibility.assign(mesh.points.size(), 0.5);
+    const std::vector<double> cap(mesh.points.size(), std::numeric_limits<double>::infinity());
+    LineLengths all{std::vector<double>(mesh.points.size(), 0.4), {}, {}}, some = all;
+    some.length.assign(mesh.points.size(), 0.0);
+    for (const std::uint32_t v : vertices_of_coarsest(mesh, start.levels))
+        some.length[v] = all.length[v];
+    const auto grow = [&](const LineLengths& lengths, const GrowStart* from) {
+        return grow_shell(mesh, directions, lengths, cap, options, {}, nullptr, from).shell.inner;
+    };
+    EXPECT_EQ(grow(some, &start), grow(all, &start));
+    // Without levels growth makes its own.
+    EXPECT_EQ(grow(all, nullptr), grow(all, &start));
+}
+
+TEST(CoarseStart, GoesOnLongerWhenRoundsAreAskedForAndIsThickerThen)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    GrowOptions options;
+    options.coarse_from = 500;
+    const GrowResult hasty = test::grown(mesh, options);
+    options.free_rounds = 40;
+    const GrowResult patient = test::grown(mesh, options);
+    EXPECT_GT(patient.report.rounds, hasty.report.rounds);
+    EXPECT_GT(fill_of(patient.shell), fill_of(hasty.shell));
+    options.free_rounds = 3;
+    EXPECT_EQ(test::grown(mesh, options).report.rounds, 3U);
+}
+
+TEST(CoarseStart, AVeryLargeSurfaceHasItsRoundsOnCoarserOnes)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(6);
+    ASSERT_GT(mesh.triangles.size(), 50000U);
+    const GrowResult result = test::grown(mesh, GrowOptions{});
+    EXPECT_EQ(result.report.rounds, 0U);
+    EXPECT_GT(fill_of(result.shell), 0.95);
+    test::expect_certified(one_layer(result.shell, result.split), PrismTest::twelve_tets);
 }
 
 TEST_P(GrownFromCoarse, KeepsToTheCap)

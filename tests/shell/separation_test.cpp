@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace
 {
@@ -132,6 +134,47 @@ TEST(Separation, StopsLookingBeyondEnough)
     const Slab found = slab(s, t, 5.5);
     expect_apart(s, t, found);
     EXPECT_NEAR(found.gap, 5.0, 1e-6);
+}
+
+TEST(Separation, OfAPairIsTheSameInAnyCompany)
+{
+    const vdb_shell::CounterRandom random(11);
+    std::vector<vdb_shell::growth::SlabQuery> queries;
+    for (std::uint64_t i = 0; i < 64; ++i) {
+        const Vec3d by(random.unit(5000 + i), random.unit(6000 + i), random.unit(7000 + i));
+        queries.push_back({random_triangle(random, 2 * i, Vec3d(0.0)),
+                           random_triangle(random, 2 * i + 1, by), i % 3 == 0 ? 0.2 : kFar});
+    }
+    for (const std::size_t at_once : {2U, 5U, 8U})
+        for (std::size_t first = 0; first + at_once <= queries.size(); first += at_once) {
+            std::array<Slab, vdb_shell::growth::kSlabsAtOnce> found;
+            vdb_shell::growth::slabs_between(&queries[first], at_once, found.data());
+            for (std::size_t i = 0; i < at_once; ++i) {
+                const auto& [s, t, enough] = queries[first + i];
+                const Slab alone = slab(s, t, enough);
+                EXPECT_EQ(found[i].n, alone.n);
+                EXPECT_EQ(found[i].lo, alone.lo);
+                EXPECT_EQ(found[i].gap, alone.gap);
+            }
+        }
+}
+
+TEST(Separation, IsNeverCalledWideWhereItIsNot)
+{
+    // Of the slab found without a limit, a little more or less than its gap.
+    const vdb_shell::CounterRandom random(13);
+    int apart = 0;
+    for (std::uint64_t i = 0; i < 400; ++i) {
+        const Vec3d by(random.unit(5000 + i), random.unit(6000 + i), 0.8 * random.unit(7000 + i));
+        const Corners s = random_triangle(random, 2 * i, Vec3d(0.0)),
+                      t = random_triangle(random, 2 * i + 1, by);
+        const double gap = slab(s, t).gap;
+        if (gap <= 0)
+            continue;
+        ++apart;
+        EXPECT_EQ(slab(s, t, 1.0001 * gap).gap, gap);
+    }
+    EXPECT_GT(apart, 50);
 }
 
 TEST(Separation, TouchingAndDegenerateTrianglesHaveNoGap)

@@ -4,6 +4,7 @@
 #include "step/march.h"
 #include "support/files.h"
 #include "support/shapes.h"
+#include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/narrow_band.h"
 #include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/pipeline.h"
@@ -55,6 +56,29 @@ Stage stage_of(const TriangleMesh& mesh, int resolution)
     stage.directions = compute_directions(mesh, *stage.band, {});
     stage.voxel = stage.band->voxelSize()[0];
     return stage;
+}
+
+TEST(SparseStep, StepsFromTheVerticesAskedForAlone)
+{
+    const Stage stage = stage_of(test::torus(2.0, 0.8, 24, 12), 96);
+    const std::vector<std::uint32_t> only{3, 4, 100, 287};
+    for (const bool sparse : {true, false}) {
+        LevelSetOptions deep;
+        deep.resolution = 96;
+        const openvdb::FloatGrid::Ptr field =
+            sparse ? stage.band : mesh_to_level_set(stage.mesh, deep);
+        const auto step = sparse ? line_step_sparse : line_step;
+        const LineLengths whole =
+            step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr, nullptr);
+        const LineLengths some =
+            step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr, &only);
+        for (std::uint32_t v = 0; v < stage.mesh.points.size(); ++v) {
+            const bool asked = std::find(only.begin(), only.end(), v) != only.end();
+            EXPECT_EQ(some.length[v], asked ? whole.length[v] : 0.0);
+            EXPECT_EQ(some.steps[v], asked ? whole.steps[v] : 0U);
+            EXPECT_EQ(some.reason[v], asked ? whole.reason[v] : StopReason::none);
+        }
+    }
 }
 
 struct Differences {
