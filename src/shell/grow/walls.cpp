@@ -33,6 +33,7 @@ struct Chunk {
 
 struct Stock {
     std::vector<Corners> corner;
+    std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
     std::vector<double> reach; ///< the longest of a face's corners
     std::vector<Box> box;
     std::vector<std::uint8_t> still; ///< by face: none of its corners will move
@@ -48,12 +49,28 @@ bool share_a_pin(const GrowState& s, int f, int g)
     return false;
 }
 
+Vec3d unit_normal(const Corners& c)
+{
+    const Vec3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
+    const double length = normal.length();
+    return length > 0 ? normal / length : Vec3d(0.0);
+}
+
+/// Whether the other triangle lies farther than that from the plane through p, on one side.
+bool beyond(const Vec3d& normal, const Vec3d& p, const Corners& other, double distance)
+{
+    const double a = normal.dot(other[0] - p), b = normal.dot(other[1] - p),
+                 c = normal.dot(other[2] - p);
+    return std::min({a, b, c}) > distance || std::max({a, b, c}) < -distance;
+}
+
 Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
 {
     const std::size_t count = s.mesh->faces.size();
     s.home = s.b;
-    Stock stock{std::vector<Corners>(count), std::vector<double>(count), std::vector<Box>(count),
-                std::vector<std::uint8_t>(count)};
+    Stock stock{std::vector<Corners>(count), std::vector<Vec3d>(count),
+                std::vector<Vec3d>(count),   std::vector<double>(count),
+                std::vector<Box>(count),     std::vector<std::uint8_t>(count)};
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -68,6 +85,8 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
                 stock.still[f] = 0;
             }
             stock.corner[f] = inner_corners(s, f);
+            stock.normal[f] = unit_normal(stock.corner[f]);
+            stock.outer_normal[f] = unit_normal(outer_corners(s, f));
             stock.reach[f] = reach;
             stock.box[f] = box_of(stock.corner[f]);
             stock.box[f].inflate(reach);
@@ -111,13 +130,13 @@ public:
             // Each pair once: from its smaller face, or from the one that moves.
             if (g == f || (g < f && moves(g)) || s_.mesh->share_a_corner(f, g))
                 return;
-            add({stock_.corner[f], stock_.corner[g], stock_.reach[f] + stock_.reach[g]}, {f, g},
-                waiting, out);
+            add({stock_.corner[f], stock_.corner[g], stock_.reach[f] + stock_.reach[g]},
+                stock_.normal[g], {f, g}, waiting, out);
         });
         s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, moves, [&](int f, int g) {
             if (!share_a_pin(s_, f, g))
-                add({stock_.corner[f], outer_corners(s_, g), stock_.reach[f]}, {f, -1}, waiting,
-                    out);
+                add({stock_.corner[f], outer_corners(s_, g), stock_.reach[f]},
+                    stock_.outer_normal[g], {f, -1}, waiting, out);
         });
     }
 
@@ -131,8 +150,15 @@ public:
     }
 
 private:
-    void add(const SlabQuery& query, const Owners& owners, Waiting& waiting, Chunk& out) const
+    /// Most pairs are left out here: across the plane of one of the two is room enough.
+    void add(const SlabQuery& query, const Vec3d& normal_of_second, const Owners& owners,
+             Waiting& waiting, Chunk& out) const
     {
+        constexpr double kAboveRounding = 1 + 1e-9;
+        const double enough = kAboveRounding * query.enough;
+        if (beyond(stock_.normal[owners.f], query.first[0], query.second, enough) ||
+            beyond(normal_of_second, query.second[0], query.first, enough))
+            return;
         waiting.query[waiting.count] = query;
         waiting.owners[waiting.count] = owners;
         if (++waiting.count == kSlabsAtOnce)
