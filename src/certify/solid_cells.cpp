@@ -38,10 +38,18 @@ std::vector<std::vector<std::uint32_t>> cells_by_triangle(const CellGrid& grid,
     return cells;
 }
 
+Shadow shadow_of(const TriangleMesh& surface, std::uint32_t triangle)
+{
+    const std::array<Vec3s, 3> p = corners_of(surface, triangle);
+    return {std::min({p[0][0], p[1][0], p[2][0]}), std::max({p[0][0], p[1][0], p[2][0]}),
+            std::min({p[0][1], p[1][1], p[2][1]}), std::max({p[0][1], p[1][1], p[2][1]}),
+            std::max({p[0][2], p[1][2], p[2][2]}), triangle};
+}
+
 /// A vertical line meets a triangle only in cells that the triangle meets, so the columns of those
 /// cells are all that matter.
-void list_columns(const CellGrid& grid, std::vector<std::vector<std::uint32_t>> cells,
-                  SolidCells& result)
+void list_columns(const CellGrid& grid, const TriangleMesh& surface,
+                  std::vector<std::vector<std::uint32_t>> cells, SolidCells& result)
 {
     result.column_offset.assign(grid.columns() + 1, 0);
     for_each_index(cells.size(), [&](std::size_t t) {
@@ -56,11 +64,13 @@ void list_columns(const CellGrid& grid, std::vector<std::vector<std::uint32_t>> 
             ++result.column_offset[column + 1];
     for (std::size_t c = 0; c < grid.columns(); ++c)
         result.column_offset[c + 1] += result.column_offset[c];
-    result.column_triangle.resize(result.column_offset.back());
+    result.column_shadow.resize(result.column_offset.back());
     std::vector<std::uint32_t> next(result.column_offset.begin(), result.column_offset.end() - 1);
-    for (std::size_t t = 0; t < cells.size(); ++t)
+    for (std::size_t t = 0; t < cells.size(); ++t) {
+        const Shadow shadow = shadow_of(surface, static_cast<std::uint32_t>(t));
         for (const std::uint32_t column : cells[t])
-            result.column_triangle[next[column]++] = static_cast<std::uint32_t>(t);
+            result.column_shadow[next[column]++] = shadow;
+    }
 }
 
 } // namespace
@@ -76,7 +86,7 @@ SolidCells classify_cells(const CellGrid& grid, const TriangleMesh& surface)
     for (const std::vector<std::uint32_t>& of_triangle : cells)
         for (const std::uint32_t cell : of_triangle)
             result.kind[cell] = CellKind::surface;
-    list_columns(grid, std::move(cells), result);
+    list_columns(grid, surface, std::move(cells), result);
     for_each_index(grid.columns(), [&](std::size_t column) {
         // No surface passes between neighbours that it does not touch: one exact test for each run.
         bool known = false, inside = false;
@@ -104,14 +114,12 @@ bool inside_solid(const SolidCells& cells, const TriangleMesh& surface, std::uin
     int winding = 0;
     bool on_surface = false;
     for (std::uint32_t i = cells.column_offset[column]; i < cells.column_offset[column + 1]; ++i) {
-        const std::array<Vec3s, 3> p = corners_of(surface, cells.column_triangle[i]);
-        const bool beside = (p[0][0] < point[0] && p[1][0] < point[0] && p[2][0] < point[0]) ||
-                            (p[0][0] > point[0] && p[1][0] > point[0] && p[2][0] > point[0]) ||
-                            (p[0][1] < point[1] && p[1][1] < point[1] && p[2][1] < point[1]) ||
-                            (p[0][1] > point[1] && p[1][1] > point[1] && p[2][1] > point[1]);
-        const bool below = p[0][2] < point[2] && p[1][2] < point[2] && p[2][2] < point[2];
-        if (!beside && !below)
-            winding += exact::crossing_above(point, p[0], p[1], p[2], on_surface);
+        const Shadow& shadow = cells.column_shadow[i];
+        if (shadow.high_x < point[0] || shadow.low_x > point[0] || shadow.high_y < point[1] ||
+            shadow.low_y > point[1] || shadow.high_z < point[2])
+            continue;
+        const std::array<Vec3s, 3> p = corners_of(surface, shadow.triangle);
+        winding += exact::crossing_above(point, p[0], p[1], p[2], on_surface);
     }
     return winding != 0 && !on_surface;
 }

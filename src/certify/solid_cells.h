@@ -12,12 +12,19 @@ namespace vdb_shell
 
 enum class CellKind : std::uint8_t { outside, inside, surface };
 
+/// A triangle's extent, to tell at a glance whether a vertical ray may meet it.
+struct Shadow {
+    float low_x, high_x, low_y, high_y, high_z;
+    std::uint32_t triangle;
+};
+
 /// Which cells lie inside the surface, which outside, and which the surface may pass through.
 struct SolidCells {
     std::vector<CellKind> kind;
     /// Triangles over or under each column of cells: those of column c stand at
     /// [column_offset[c], column_offset[c+1]).
-    std::vector<std::uint32_t> column_offset, column_triangle;
+    std::vector<std::uint32_t> column_offset;
+    std::vector<Shadow> column_shadow;
 };
 
 /// Precondition: the surface lies inside the grid.
