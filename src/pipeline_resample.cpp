@@ -145,9 +145,9 @@ void resample_surface(ShellResult& result, const ShellOptions& options, StageClo
     });
 }
 
-void build_and_refine(ShellResult& result, const ShellOptions& options,
-                      const GrowStart& start, const openvdb::FloatGrid* thickness_grid,
-                      StageClock& clock, Interrupter* interrupter)
+void build_and_refine(ShellResult& result, const ShellOptions& options, const GrowStart& start,
+                      const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                      Interrupter* interrupter)
 {
     build_sides(result, options, thickness_grid, clock, interrupter, start);
     if (options.refine.rounds == 0)

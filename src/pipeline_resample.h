@@ -15,8 +15,8 @@ void resample_surface(ShellResult& result, const ShellOptions& options, StageClo
 /// build_sides, and then as often as RefineOptions asks for: triangles cut where the shell leaves
 /// voids, and build_sides again in the same field, on from the shell there is. Keeps the shell of
 /// the highest fill with its surface; of the raw method, the last.
-void build_and_refine(ShellResult& result, const ShellOptions& options,
-                      const GrowStart& start, const openvdb::FloatGrid* thickness_grid,
-                      StageClock& clock, Interrupter* interrupter);
+void build_and_refine(ShellResult& result, const ShellOptions& options, const GrowStart& start,
+                      const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                      Interrupter* interrupter);
 
 } // namespace vdb_shell

@@ -32,9 +32,9 @@ bool operator<(const FaceSide& x, const FaceSide& y)
     const auto pair = [](std::uint64_t high, std::uint64_t low) { return high << 32U | low; };
     const std::uint64_t x_face = pair(x.corners[1], x.corners[2]),
                         y_face = pair(y.corners[1], y.corners[2]);
-    return x_face != y_face ? x_face < y_face
-                            : std::tie(x.of_surface, x.owner, x.even) <
-                                  std::tie(y.of_surface, y.owner, y.even);
+    return x_face != y_face
+               ? x_face < y_face
+               : std::tie(x.of_surface, x.owner, x.even) < std::tie(y.of_surface, y.owner, y.even);
 }
 
 FaceSide side_of(const Vec3I& face, std::uint32_t owner, bool of_surface)

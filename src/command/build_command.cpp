@@ -211,8 +211,9 @@ void add_growth_options(CLI::App& app, GrowOptions& grow)
                    "Triangles from which on growth begins on a coarser surface; 0: never")
         ->capture_default_str()
         ->group("Growth");
-    app.add_option("--free-rounds", grow.free_rounds,
-                   "Upper bound on rounds of free moves [40; after a coarser surface as many as pay]")
+    app.add_option(
+           "--free-rounds", grow.free_rounds,
+           "Upper bound on rounds of free moves [40; after a coarser surface as many as pay]")
         ->check(CLI::NonNegativeNumber)
         ->group("Growth");
     app.add_option("--min-quality", grow.min_quality,

@@ -114,9 +114,9 @@ FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates
             add_face(obj, line, number);
     }
     require_known_corners(obj);
-    obj.scan.stream =
-        plain_ply_header("binary_little_endian", "float", obj.scan.file_vertices, obj.scan.faces_passed_on()) +
-        obj.vertices + obj.faces;
+    obj.scan.stream = plain_ply_header("binary_little_endian", "float", obj.scan.file_vertices,
+                                       obj.scan.faces_passed_on()) +
+                      obj.vertices + obj.faces;
     return std::move(obj.scan);
 }
 

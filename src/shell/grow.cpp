@@ -2,7 +2,6 @@
 #include "vdb_shell/shell/grow.h"
 
 #include "core/stage_progress.h"
-#include "vdb_shell/mesh/coarsen.h"
 #include "shell/grow/coarse_start.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/directions.h"
@@ -12,6 +11,7 @@
 #include "shell/grow/quality.h"
 #include "shell/grow/start.h"
 #include "shell/grow/stops.h"
+#include "vdb_shell/mesh/coarsen.h"
 
 #include <algorithm>
 #include <cassert>
@@ -39,8 +39,8 @@ constexpr double kLeastLineGain = 3e-3;
 // fifth of a point of fill less, than what the thickest shell is given.
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
-// About the triangles of the coarsest surface that growth begins on, and those of each over those of
-// the next at most: few where rounds on the whole surface are to follow, of which a finer coarse
+// About the triangles of the coarsest surface that growth begins on, and those of each over those
+// of the next at most: few where rounds on the whole surface are to follow, of which a finer coarse
 // one saves some, more where they are not.
 constexpr double kCoarsest = 1200, kMostCoarser = 4.2, kMostCoarserAlone = 9;
 // The barrier's weight at which growth ends on one and goes on on the next, and how it falls after
@@ -115,9 +115,8 @@ bool in_haste(Start start, const GrowOptions& options)
 
 double first_softness(const GrowState& s, Start start, bool hasty)
 {
-    return start == Start::carried
-               ? (hasty ? 1 : 2) * kCarriedSoftness * (1 - growth::fill_of(s))
-               : growth::kTwelveSoftness;
+    return start == Start::carried ? (hasty ? 1 : 2) * kCarriedSoftness * (1 - growth::fill_of(s))
+                                   : growth::kTwelveSoftness;
 }
 
 int affordable_rounds(const GrowState& s)
@@ -184,8 +183,7 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         const TriangleMesh& mesh = levels[level].mesh;
         const Directions lines = rough_lines(mesh, options);
         growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
-        GrowState s =
-            growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
+        GrowState s = growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
         const Start started = inner.empty() ? Start::lines : Start::carried;
         if (started == Start::lines) {
             settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
@@ -255,8 +253,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
     s.twelve = false;
     growth::order_by_length(s);
     growth::move_freely(s, directions.visibility, options,
-                        {rounds, growth::kThreeSoftness, cool, least_gain}, progress,
-                        report);
+                        {rounds, growth::kThreeSoftness, cool, least_gain}, progress, report);
 }
 
 PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s)
@@ -312,8 +309,7 @@ PrismSplit split_of(const GrowState& s, std::size_t ripples)
 bool worth_coarse_start(const TriangleMesh& mesh, const GrowOptions& options)
 {
     return options.coarse_from > 0 && mesh.triangles.size() >= options.coarse_from &&
-           options.top_down && options.free_moves &&
-           signed_volume(mesh.points, mesh.triangles) > 0;
+           options.top_down && options.free_moves && signed_volume(mesh.points, mesh.triangles) > 0;
 }
 
 } // namespace
@@ -376,9 +372,9 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
         growth::settle_carried(s, pillars.lines, pillars.length, progress);
         lines = growth::pillars_to(mesh, shell_of(mesh, s).inner, pillars.lines).lines;
     } else {
-        started = start_growth(s, mesh, lines, start,
-                               from ? from->levels : coarse_levels(mesh, options), options,
-                               progress);
+        started =
+            start_growth(s, mesh, lines, start, from ? from->levels : coarse_levels(mesh, options),
+                         options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     if (will_move(s, started, options))

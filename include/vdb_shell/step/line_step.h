@@ -105,6 +105,6 @@ LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid&
                              const Directions& directions, const LineStepOptions& options,
                              const openvdb::FloatGrid* thickness_grid = nullptr,
                              Interrupter* interrupter = nullptr,
-                      const std::vector<std::uint32_t>* only = nullptr);
+                             const std::vector<std::uint32_t>* only = nullptr);
 
 } // namespace vdb_shell

@@ -68,7 +68,8 @@ std::vector<Vec3s> smoothed(const TriangleMesh& mesh, const std::vector<Vec3s>& 
                 ++count;
             }
         if (count > 0)
-            result[v] = Vec3s(0.5 * (Vec3d(inner[v]) + Vec3d(mesh.points[v]) + sum / double(count)));
+            result[v] =
+                Vec3s(0.5 * (Vec3d(inner[v]) + Vec3d(mesh.points[v]) + sum / double(count)));
     });
     return result;
 }

@@ -25,8 +25,8 @@ struct KinPair {
 };
 
 /// What could meet the triangles around a vertex in spite of a common corner, by vertex. A vertex
-/// with more around it than the lists' small numbers can tell has none, nor has any before list_kin:
-/// its tests take longer.
+/// with more around it than the lists' small numbers can tell has none, nor has any before
+/// list_kin: its tests take longer.
 struct Kin {
     std::vector<int> first_ring, ring; ///< vertices up to two edges away
     std::vector<int> first_face,
@@ -61,7 +61,8 @@ struct Connectivity {
     }
 };
 
-/// All but the lists of kin, which are as much work as all the rest and for those who move vertices.
+/// All but the lists of kin, which are as much work as all the rest and for those who move
+/// vertices.
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces);
 void list_kin(Connectivity& c);
 

@@ -175,8 +175,7 @@ std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join
                 continue;
             look[i] = 0;
             const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
-            const auto [f_order, g_order] =
-                better_orders(s, seams.seam[i], score, join, margin);
+            const auto [f_order, g_order] = better_orders(s, seams.seam[i], score, join, margin);
             if (f_order < 0 || !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
                 continue;
             s.order[f] = static_cast<std::uint8_t>(f_order);

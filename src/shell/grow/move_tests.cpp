@@ -200,8 +200,7 @@ bool inner_triangle_clear(const GrowState& s, int f)
     bool clear = true;
     s.inner_tree.for_each_overlap(
         box, [&](int g) { clear = clear && (g == f || !triangle.meets_inner(g)); });
-    s.outer_tree.for_each_overlap(box,
-                                  [&](int g) { clear = clear && !triangle.meets_outer(g); });
+    s.outer_tree.for_each_overlap(box, [&](int g) { clear = clear && !triangle.meets_outer(g); });
     return clear;
 }
 

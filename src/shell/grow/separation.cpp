@@ -72,7 +72,8 @@ struct PairLanes {
 struct Sight {
     unsigned wide = 0;  ///< a bit a lane: certainly wider than enough
     unsigned close = 0; ///< edges so close that floats cannot choose
-    std::array<float, kLanes> edges; ///< 3 i + j for the closest, i of the first and j of the second
+    std::array<float, kLanes>
+        edges; ///< 3 i + j for the closest, i of the first and j of the second
     std::array<float, kLanes> across_middles, across_first, across_second;
 };
 

@@ -34,7 +34,7 @@ struct Chunk {
 struct Stock {
     std::vector<Corners> corner;
     std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
-    std::vector<double> reach; ///< the longest of a face's corners
+    std::vector<double> reach;               ///< the longest of a face's corners
     std::vector<Box> box;
     std::vector<std::uint8_t> still; ///< by face: none of its corners will move
 };
