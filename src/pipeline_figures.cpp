@@ -48,6 +48,9 @@ void measure_lines(LineReport& report, const Directions& directions, const LineL
     report.min_visibility = *std::min_element(visibility.begin(), visibility.end());
     report.blind_vertices = static_cast<std::size_t>(
         std::count_if(visibility.begin(), visibility.end(), [](double v) { return v <= 0.0; }));
+    report.lines = lines.reason.size() -
+                   static_cast<std::size_t>(
+                       std::count(lines.reason.begin(), lines.reason.end(), StopReason::none));
     report.steps = std::accumulate(lines.steps.begin(), lines.steps.end(), std::size_t(0));
     for (const StopReason reason : hull.stop)
         ++report.stops[static_cast<std::size_t>(reason)];

@@ -74,8 +74,10 @@ struct ShellResult {
     /// where self-intersections are allowed.
     TriangleMesh surface;
     openvdb::FloatGrid::Ptr level_set;
-    Directions directions;            ///< of the side that the shell lies on; of both sides, inward
-    LineLengths lengths;              ///< likewise
+    Directions directions; ///< of the side that the shell lies on; of both sides, inward
+    /// Likewise. StopReason::none where no line was stepped: growth that begins on coarser surfaces
+    /// has no use for more than those of the coarsest.
+    LineLengths lengths;
     std::optional<SideLines> outside; ///< the lines outward, where the shell lies on both sides
     ShellStack stack;                 ///< one layer a side unless more were asked for
     TetMesh tets;

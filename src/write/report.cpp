@@ -128,6 +128,7 @@ ordered_json lines_json(const LineReport& lines)
     return {{"min_visibility", lines.min_visibility},
             {"blind_vertices", lines.blind_vertices},
             {"stuck_vertices", lines.stuck_vertices},
+            {"stepped", lines.lines},
             {"steps", lines.steps},
             {"stop_reasons", stops},
             {"length", spread_json(lines.length)},

@@ -208,8 +208,8 @@ void line_figures(std::ostringstream& out, const LineReport& lines)
          "smallest visibility " + number(lines.min_visibility) + ", " +
              number(lines.blind_vertices, 12) + " blind vertices");
     line(out, "lines",
-         number(lines.steps, 12) + " steps, " + number(lines.stuck_vertices, 12) +
-             " stuck vertices");
+         number(lines.lines, 12) + " stepped, " + number(lines.steps, 12) + " steps, " +
+             number(lines.stuck_vertices, 12) + " stuck vertices");
     line(out, "stops", stop_text(lines));
     line(out, "lengths", spread(lines.length));
     line(out, "  in voxels", spread(lines.length_voxels));

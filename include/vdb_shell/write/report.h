@@ -51,6 +51,7 @@ struct LineReport {
     double min_visibility = 0;
     std::size_t blind_vertices = 0; ///< visibility <= 0
     std::size_t stuck_vertices = 0; ///< length 0
+    std::size_t lines = 0;          ///< stepped: growth may begin on a coarser surface's alone
     std::size_t steps = 0;
     std::array<std::size_t, kStopReasonCount> stops{}; ///< vertices by StopReason
     Spread length;                                     ///< world units
