@@ -36,10 +36,10 @@ struct PrismTables {
     std::array<std::array<int, 3>, 7> from_b_count;
 };
 
-extern const PrismTables kPrismTables;
+extern const PrismTables prism_tables;
 inline const PrismTables& tables()
 {
-    return kPrismTables;
+    return prism_tables;
 }
 int order_index(const PrismOrder& o);
 
