@@ -82,7 +82,7 @@ constexpr PrismTables make_tables()
 
 } // namespace
 
-constexpr PrismTables prism_tables = make_tables();
+const PrismTables prism_tables = make_tables();
 
 int order_index(const PrismOrder& o)
 {
