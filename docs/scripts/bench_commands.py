@@ -17,8 +17,8 @@ NOT_INSTALLED = "not installed"
 class Job:
     """One surface and how to work on it. `mesh` is what OBJ readers get; `folder` has it in the other formats."""
 
-    def __init__(self, command, mesh, folder, resolution=256, threads=0):
-        self.command, self.mesh, self.folder = command, mesh, folder
+    def __init__(self, command, mesh, folder, resolution=256, threads=0, options=()):
+        self.command, self.mesh, self.folder, self.options = command, mesh, folder, options
         self.resolution, self.threads = str(resolution), str(threads)
 
 
@@ -26,7 +26,7 @@ def arguments_of(name, job):
     """The command line and the files that a success leaves."""
     if name == OURS:
         return [job.command, "--threads", job.threads, "build", "-q", str(job.mesh), "-o", "ours.vdb", "--resolution",
-                job.resolution, "--report", "ours.json"], ["ours.vdb", "ours.json"]
+                job.resolution, "--report", "ours.json", *job.options], ["ours.vdb", "ours.json"]
     if name == DEEP:
         return [job.command, "build", "-q", str(job.mesh), "--method", "raw", "--samples", "0", "--field", "dense",
                 "--resolution", job.resolution, "--report", "deep.json"], ["deep.json"]

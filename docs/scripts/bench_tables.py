@@ -215,6 +215,23 @@ def write_resolutions(page, runs):
                           *comparison(rows, [LEVEL_SET, DEEP], ["mesh", "resolution", "fill"])], "resolutions")
 
 
+def write_starts(page, runs):
+    bouts, rows, starts = those(runs, "starts, "), [], []
+    for key, found in bouts.items():
+        mesh, parts = key.split(", ")
+        runs_of_start = {name: figures for name, figures in found.items() if isinstance(figures, dict)}
+        starts = list(runs_of_start)
+        cells = []
+        for figures in runs_of_start.values():
+            good = "failed" not in figures
+            flaw = "" if figures.get("certified", True) else " **NOT CERTIFIED**"
+            cells += [f"{figures['fill']:.4f}{flaw}" if good else why_not(figures),
+                      cell(stage_seconds(figures, "growth")) if good else ""]
+        rows.append([mesh if parts == "1" else f"{mesh}, edges cut into {parts}", str(found["faces"]), *cells])
+    head = ["mesh", "faces", *[text for name in starts for text in (f"{name}: fill", "growth s")]]
+    replace_tables(page, [*remark(bouts.values()), *(table(head, rows) if rows else [])], "starts")
+
+
 def write_stages(page, runs):
     if "suite" not in runs:
         return
@@ -280,4 +297,4 @@ def write_aims(page, runs):
 
 
 WRITERS = {"clean": write_clean, "faces": write_faces, "threads": write_threads, "resolutions": write_resolutions,
-           "stages": write_stages}
+           "stages": write_stages, "starts": write_starts}

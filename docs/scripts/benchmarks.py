@@ -35,6 +35,11 @@ QUICK_MESHES = ["paper/teapot", "paper/cow", "paper/torus"]
 LARGEST_DEEP_RESOLUTION = 512
 # Among surfaces of growing size, a rival that took longer than this is not asked again.
 LONGEST_RIVAL = 30
+# Where growth begins on coarser surfaces, and two ways to have it otherwise.
+STARTS = {"from lines": ["--coarse-from", "0"], "default": [], "asked for more": ["--free-rounds", "40"]}
+STARTED = [("paper/jack", 2), ("paper/lamp", 3), ("paper/knot", 1), ("paper/dragon_small_resolution", 2),
+           ("paper/cow", 2), ("paper/diku", 5), ("paper/glass", 3), ("paper/sphere", 4), ("paper/torus", 2),
+           ("artist/fandisk", 1), ("artist/cheburashka", 1), ("artist/rocker-arm", 1), ("paper/cow", 6)]
 OPTIONS = [("--suite", {}), ("--minutes", {"type": float, "default": 16.0}),
            ("--timeout", {"type": float, "default": 120.0}), ("--rounds", {"type": int, "default": 5}),
            ("--bout-seconds", {"type": float, "default": 12.0})]
@@ -153,6 +158,12 @@ def measure_resolutions(series):
             rivals = still_quick_enough(rivals, found)
 
 
+def measure_starts(series):
+    for name, parts in STARTED[2:5:2] if series.options.quick else STARTED:
+        series.run(f"starts, {name}, {parts}", name, parts, lambda folder, mesh: {
+            start: (OURS, Job(series.command, mesh, folder, options=options)) for start, options in STARTS.items()})
+
+
 def measure_stages(series):
     options = series.options
     if not options.suite or "suite" in series.results.runs or series.clock.left() < 0:
@@ -171,7 +182,7 @@ def measure_stages(series):
 
 
 MEASURES = {"clean": measure_clean, "faces": measure_faces, "threads": measure_threads,
-            "resolutions": measure_resolutions, "stages": measure_stages}
+            "resolutions": measure_resolutions, "stages": measure_stages, "starts": measure_starts}
 
 
 def main():

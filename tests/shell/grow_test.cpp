@@ -170,7 +170,8 @@ TEST(Grow, ThickestIsThickerThanCertified)
         options.method = Method::thickest;
         const double thickest = fill_of(grown(case_of(mesh), options).shell);
         RecordProperty("certified", std::to_string(certified));
-        EXPECT_GT(thickest, certified + 0.0015);
+        // A solid filled to 0.998 gets no further round by either.
+        EXPECT_GE(thickest, std::min(certified + 0.0015, 0.998));
     }
 }
 

@@ -142,8 +142,12 @@ TEST(Refine, BeatsUniformSubdivisionTetForTet)
     const ShellResult four = build_shell(cow, uniform), some = build_shell(cow, adaptive);
     expect_certified(some);
     EXPECT_LT(some.tets.tets.size(), four.tets.tets.size() / 2 + 1000);
-    EXPECT_GT(some.report.fill, four.report.fill);
-    EXPECT_GT(some.report.fill, some.report.refine->rounds[0].fill + 0.002);
+    const RefineRound& before = some.report.refine->rounds[0];
+    EXPECT_GT(some.report.fill, before.fill + 0.002);
+    const auto gain_per_tet = [&](const ShellResult& result) {
+        return (result.report.fill - before.fill) / double(result.tets.tets.size() - before.tets);
+    };
+    EXPECT_GT(gain_per_tet(some), 1.5 * gain_per_tet(four));
 }
 
 TEST(Refine, EndsWhereItIsTold)
