@@ -95,11 +95,13 @@ void grow_and_scale(const SideJob& job, SideResult& side)
     side.stack = one_layer(std::move(grown.shell), std::move(grown.split));
 }
 
-/// Growth that goes on from a shell has no use for lines.
-std::vector<std::uint32_t> vertices_to_step(const TriangleMesh& surface, const GrowStart& start)
+/// Growth that goes on from a shell has no use for lines; a raw shell is made of nothing else.
+std::vector<std::uint32_t> vertices_to_step(const SideJob& job)
 {
-    return start.inner.empty() ? vertices_of_coarsest(surface, start.levels)
-                               : std::vector<std::uint32_t>();
+    if (job.options.grow.method == Method::raw)
+        return vertices_of_coarsest(job.surface, {});
+    return job.start.inner.empty() ? vertices_of_coarsest(job.surface, job.start.levels)
+                                   : std::vector<std::uint32_t>();
 }
 
 SideResult build_side(const SideJob& job)
@@ -112,7 +114,7 @@ SideResult build_side(const SideJob& job)
     });
     job.clock.run(job.prefix + "line stepping", [&] {
         const auto step = job.sparse ? line_step_sparse : line_step;
-        const std::vector<std::uint32_t> only = vertices_to_step(job.surface, job.start);
+        const std::vector<std::uint32_t> only = vertices_to_step(job);
         lines.lengths = step(job.surface, job.level_set, lines.directions, options.line_step,
                              job.thickness_grid, job.interrupter, &only);
     });

@@ -132,6 +132,18 @@ TEST(Refine, GrowsOnToMoreFillAndStaysCertified)
     }
 }
 
+TEST(Refine, ARawShellIsMadeOfTheRefinedSurfacesOwnLines)
+{
+    ShellOptions options = refining(1);
+    options.grow.method = Method::raw;
+    const ShellResult result = build_shell(test::icosphere(1.0, 2), options);
+    ASSERT_EQ(result.report.refine->kept, 1U);
+    EXPECT_GT(result.surface.points.size(), test::icosphere(1.0, 2).points.size());
+    EXPECT_EQ(result.report.lines.lines, result.surface.points.size());
+    EXPECT_EQ(result.tets.tets.size(), 3 * result.surface.triangles.size());
+    EXPECT_GT(result.report.fill, 0.5);
+}
+
 TEST(Refine, BeatsUniformSubdivisionTetForTet)
 {
     VDB_SHELL_NEEDS_REAL_MESHES();
