@@ -174,7 +174,8 @@ std::string why_not_sparse(const ShellOptions& options, const ShellResult& resul
     if (result.report.mesh.self_intersections.count > 0)
         return "a surface that crosses itself";
     if (options.field == FieldRoute::automatic &&
-        sparse_voxels(vertices_of_coarsest(result.surface, start.levels).size()) >
+        sparse_voxels(
+            (start.levels.empty() ? result.surface : start.levels.back().mesh).points.size()) >
             dense_voxels(options, result.surface, thickness_grid))
         return "many lines";
     return "";

@@ -102,10 +102,9 @@ public:
         std::vector<FloatBox> box;
         std::vector<int> item;
     };
-    /// The boxes that overlap `query`, for those who go on to look at parts of it.
-    void list_overlaps(const Box& query, Near& near) const
+    /// The boxes that overlap this one, for those who go on to look at parts of it.
+    void list_overlaps(const FloatBox& box, Near& near) const
     {
-        const FloatBox box = float_box(query);
         near.box.clear(), near.item.clear();
         descend([&](const FloatBox& other) { return box.overlaps(other); },
                 [&](std::size_t at) {
@@ -131,12 +130,7 @@ public:
             }
         if (!any)
             return;
-        near.box.clear(), near.item.clear();
-        other.descend([&](const FloatBox& box) { return all.overlaps(box); },
-                      [&](std::size_t at) {
-                          near.box.push_back(other.boxes_[at]);
-                          near.item.push_back(other.item_[at]);
-                      });
+        other.list_overlaps(all, near);
         for (std::size_t i = begin; i < end; ++i)
             if (wanted(item_[i]))
                 for (std::size_t k = 0; k < near.box.size(); ++k)

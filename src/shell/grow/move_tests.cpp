@@ -66,11 +66,6 @@ bool pair_meets(const GrowState& s, int v, const Vec3d& x, int f, int g)
                             inner_ids(s, g));
 }
 
-bool any_pinned(const GrowState& s, const Slice<int>& vertices)
-{
-    return std::any_of(vertices.begin(), vertices.end(), [&](int u) { return s.pinned[u] != 0; });
-}
-
 /// kin_clear_at, for vertices that Kin has nothing about or that have pins beside them.
 bool kin_clear_one_by_one(const GrowState& s, int v, const Vec3d& x)
 {
@@ -257,11 +252,17 @@ void tet_bounds(const GrowState& s, int v, Bounds& out)
     }
 }
 
+bool beside_a_pin(const GrowState& s, int v)
+{
+    const Slice<int> around = neighbours(*s.mesh, v);
+    return std::any_of(around.begin(), around.end(), [&](int u) { return s.pinned[u] != 0; });
+}
+
 bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
 {
     const Connectivity& m = *s.mesh;
     const Slice<int> ring = kin_ring(m, v);
-    if (ring.size() == 0 || any_pinned(s, neighbours(m, v)))
+    if (ring.size() == 0 || beside_a_pin(s, v))
         return kin_clear_one_by_one(s, v, x);
     PlaneSides sides;
     for (const int u : ring)

@@ -40,7 +40,8 @@ bool holds_component(const GrowState& s, int f);
 bool prism_valid(const GrowState& s, int f);
 /// Whether the chosen tets of face f were positive with this order.
 bool split_positive(const GrowState& s, int f, int order);
-/// Whether inner triangle f is free of improper contact with every other triangle on its lists.
+/// Whether inner triangle f is free of improper contact with every other triangle. Precondition:
+/// the inner tree's boxes hold the triangles.
 bool inner_triangle_clear(const GrowState& s, int f);
 
 /// An inner triangle that is held against others, one after another; with `x`, as it is when its
@@ -67,6 +68,8 @@ private:
 
 /// Appends the linear bounds that the tets around v put on b_v.
 void tet_bounds(const GrowState& s, int v, Bounds& out);
+
+bool beside_a_pin(const GrowState& s, int v);
 
 /// Would no inner triangle around v meet one that shares a corner with it, with b_v = x? Exact.
 /// Reads nothing of vertices further than two edges from v.

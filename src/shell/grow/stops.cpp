@@ -16,12 +16,6 @@ constexpr double kProbe = 1e-3; ///< share of the diagonal
 constexpr double kAtCap =
     1e-6; ///< relative; the rounding of the coordinates stops short of the cap
 
-bool beside_a_pin(const GrowState& s, int v)
-{
-    const Slice<int> around = neighbours(*s.mesh, v);
-    return std::any_of(around.begin(), around.end(), [&](int u) { return s.pinned[u] != 0; });
-}
-
 struct Near {
     BoxTree::Near inner, outer;
 };
@@ -48,8 +42,8 @@ StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
     Box all;
     for (const FaceCorner& at : fan)
         all.add(box_of(moved_corners(s, at, x)));
-    s.inner_tree.list_overlaps(all, near.inner);
-    s.outer_tree.list_overlaps(all, near.outer);
+    s.inner_tree.list_overlaps(float_box(all), near.inner);
+    s.outer_tree.list_overlaps(float_box(all), near.outer);
     for (const FaceCorner& at : fan) {
         const InnerTriangle moved(s, at, x);
         const FloatBox box = float_box(box_of(moved.corners()));
