@@ -75,6 +75,15 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     return s;
 }
 
+std::vector<Box> inner_boxes(const GrowState& s)
+{
+    std::vector<Box> boxes(s.mesh->faces.size());
+    for_each_index(
+        boxes.size(),
+        [&](std::size_t f) { boxes[f] = box_of(inner_corners(s, static_cast<int>(f))); }, 256);
+    return boxes;
+}
+
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
 {
     if (p.empty())

@@ -79,6 +79,9 @@ inline CornerIds inner_ids(const GrowState& s, int f)
     return id;
 }
 
+/// Of the inner triangles as they are.
+std::vector<Box> inner_boxes(const GrowState& s);
+
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);
 /// What lies between the surfaces over what the outer one encloses, whichever side it lies on.

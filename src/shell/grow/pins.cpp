@@ -74,10 +74,9 @@ bool release(GrowState& s, int v, double length)
 /// Boxes that hold the inner triangles wherever these vertices may go.
 void box_in(GrowState& s, const std::vector<double>& longest)
 {
-    std::vector<Box> boxes(s.mesh->faces.size());
+    std::vector<Box> boxes = inner_boxes(s);
     for_each_index(boxes.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
-        boxes[i] = box_of(inner_corners(s, f));
         double reach = 0;
         for (int k = 0; k < 3; ++k)
             reach = std::max(reach, longest[s.mesh->corner(f, k)]);

@@ -56,12 +56,9 @@ void mark(std::atomic<std::uint8_t>& entry)
 /// and are not marked yet.
 void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
 {
-    std::vector<Box> boxes(changed.size());
+    const std::vector<Box> boxes = inner_boxes(s);
     std::vector<std::uint8_t> ask(changed.size());
-    for_each_index(boxes.size(), [&](std::size_t f) {
-        boxes[f] = box_of(inner_corners(s, static_cast<int>(f)));
-        ask[f] = changed[f] && !bad[f];
-    });
+    for_each_index(ask.size(), [&](std::size_t f) { ask[f] = changed[f] && !bad[f]; });
     first ? s.inner_tree.build(boxes) : s.inner_tree.refit(boxes);
     const auto asked = [&](int f) { return ask[f] != 0; };
     for_each_range(
