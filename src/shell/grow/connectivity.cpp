@@ -6,6 +6,8 @@
 #include "shell/grow/plane_sides.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 namespace vdb_shell::growth
 {
@@ -105,56 +107,93 @@ struct KinLists {
     std::vector<Count> count;
 };
 
-/// Appends the lists of one vertex, or nothing where they are too long.
-void list_kin_of(const Connectivity& c, int v, KinLists& out)
+/// Places of vertices and faces in the lists of the vertex at hand; -1 for those in none.
+struct Places {
+    std::vector<std::int8_t> vertex, face;
+};
+
+/// Appends the lists of one vertex, or nothing where they are too long. Leaves `places` at -1.
+void list_kin_of(const Connectivity& c, int v, Places& places, KinLists& out)
 {
+    static_assert(PlaneSides::kMostPoints < 64);
+    constexpr int kMostFaces = 127;
     const std::size_t first_ring = out.ring.size(), first_face = out.face.size(),
                       first_pair = out.pair.size();
     std::vector<int>&ring = out.ring, &face = out.face;
-    for (const FaceCorner& at : star(c, v))
-        face.push_back(at.face);
-    const std::size_t moved = face.size() - first_face;
-    const auto beside = std::ptrdiff_t(face.size());
-    for (const int u : neighbours(c, v))
-        for (const FaceCorner& at : star(c, u)) {
-            if (!c.incident_to(at.face, v) &&
-                std::find(face.begin() + beside, face.end(), at.face) == face.end())
-                face.push_back(at.face);
-            for (int k = 0; k < 3; ++k)
-                if (c.corner(at.face, k) != v)
-                    ring.push_back(c.corner(at.face, k));
+    std::array<std::uint64_t, kMostFaces> corners; // of each face, a bit for each place but v's
+    bool short_enough = star(c, v).size() <= static_cast<int>(PlaneSides::kMostPlanes);
+    const auto add_face = [&](int f) {
+        const std::size_t place = face.size() - first_face;
+        if (places.face[f] >= 0 || place == kMostFaces) {
+            short_enough = short_enough && places.face[f] >= 0;
+            return;
         }
-    const auto ring_begin = ring.begin() + std::ptrdiff_t(first_ring);
-    std::sort(ring_begin, ring.end());
-    ring.erase(std::unique(ring_begin, ring.end()), ring.end());
+        places.face[f] = static_cast<std::int8_t>(place);
+        face.push_back(f);
+        corners[place] = 0;
+        for (int k = 0; k < 3; ++k) {
+            const int u = c.corner(f, k);
+            if (u == v)
+                continue;
+            std::int8_t& at = places.vertex[u];
+            if (at < 0 && ring.size() - first_ring == PlaneSides::kMostPoints) {
+                short_enough = false;
+                continue;
+            }
+            if (at < 0) {
+                at = static_cast<std::int8_t>(ring.size() - first_ring);
+                ring.push_back(u);
+            }
+            corners[place] |= std::uint64_t(1) << at;
+        }
+    };
+    for (const FaceCorner& at : star(c, v))
+        add_face(at.face);
+    const std::size_t moved = face.size() - first_face;
+    for (const int u : neighbours(c, v))
+        for (const FaceCorner& at : star(c, u))
+            add_face(at.face);
     const std::size_t rings = ring.size() - first_ring, faces = face.size() - first_face;
-    if (rings > PlaneSides::kMostPoints || moved > PlaneSides::kMostPlanes || faces > 255) {
+    for (std::size_t i = first_ring; i < ring.size(); ++i)
+        places.vertex[ring[i]] = -1;
+    for (std::size_t i = first_face; i < face.size(); ++i)
+        places.face[face[i]] = -1;
+    if (!short_enough) {
         ring.resize(first_ring);
         face.resize(first_face);
         out.count.emplace_back();
         return;
     }
-    const auto place_of = [&](int u) {
-        return static_cast<std::uint8_t>(std::lower_bound(ring_begin, ring.end(), u) - ring_begin);
-    };
     for (std::size_t m = 0; m < moved; ++m)
         for (std::size_t o = m + 1; o < faces; ++o) {
-            const int f = face[first_face + m], g = face[first_face + o];
-            int first = -1, last = -1, own = 0;
-            for (int k = 0; k < 3; ++k) {
-                const int u = c.corner(g, k);
-                if (c.incident_to(f, u))
-                    continue;
-                first = first < 0 ? u : first;
-                last = u;
-                ++own;
-            }
-            if (own > 0 && own < 3)
+            const std::uint64_t own = corners[o] & ~corners[m];
+            // Beside the star a face has v's bit nowhere: one that shares nothing has three.
+            const int count = __builtin_popcountll(own);
+            if (count > 0 && count < 3)
                 out.pair.push_back({static_cast<std::uint8_t>(m), static_cast<std::uint8_t>(o),
-                                    place_of(first), place_of(last)});
+                                    static_cast<std::uint8_t>(__builtin_ctzll(own)),
+                                    static_cast<std::uint8_t>(63 - __builtin_clzll(own))});
         }
     out.count.push_back(
         {static_cast<int>(rings), static_cast<int>(faces), out.pair.size() - first_pair});
+}
+
+/// Puts the lists of the chunks one after another.
+template <class Entry>
+void join(const std::vector<KinLists>& chunks, std::vector<Entry> KinLists::*list,
+          std::vector<Entry>& out)
+{
+    std::vector<std::size_t> begin(chunks.size() + 1, 0);
+    for (std::size_t i = 0; i < chunks.size(); ++i)
+        begin[i + 1] = begin[i] + (chunks[i].*list).size();
+    out.resize(begin.back());
+    for_each_index(
+        chunks.size(),
+        [&](std::size_t i) {
+            std::copy((chunks[i].*list).begin(), (chunks[i].*list).end(),
+                      out.begin() + std::ptrdiff_t(begin[i]));
+        },
+        1);
 }
 
 } // namespace
@@ -175,32 +214,37 @@ Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
     return c;
 }
 
-void list_kin(Connectivity& c)
+void list_kin(Connectivity& c, const std::vector<std::uint8_t>& wanted)
 {
     constexpr std::size_t kChunk = 512;
     const auto vertices = static_cast<std::size_t>(c.vertices);
     std::vector<KinLists> chunks((vertices + kChunk - 1) / kChunk);
-    for_each_index(
+    for_each_range(
         chunks.size(),
-        [&](std::size_t i) {
-            for (std::size_t v = i * kChunk; v < std::min(vertices, (i + 1) * kChunk); ++v)
-                list_kin_of(c, static_cast<int>(v), chunks[i]);
+        [&](std::size_t begin, std::size_t end) {
+            Places places{std::vector<std::int8_t>(vertices, -1),
+                          std::vector<std::int8_t>(c.faces.size(), -1)};
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t v = i * kChunk; v < std::min(vertices, (i + 1) * kChunk); ++v)
+                    if (wanted.empty() || wanted[v])
+                        list_kin_of(c, static_cast<int>(v), places, chunks[i]);
+                    else
+                        chunks[i].count.emplace_back();
         },
         1);
     Kin& kin = c.kin;
+    join(chunks, &KinLists::ring, kin.ring);
+    join(chunks, &KinLists::face, kin.face);
+    join(chunks, &KinLists::pair, kin.pair);
     kin.first_ring.assign(1, 0);
     kin.first_face.assign(1, 0);
     kin.first_pair.assign(1, 0);
-    for (const KinLists& chunk : chunks) {
-        kin.ring.insert(kin.ring.end(), chunk.ring.begin(), chunk.ring.end());
-        kin.face.insert(kin.face.end(), chunk.face.begin(), chunk.face.end());
-        kin.pair.insert(kin.pair.end(), chunk.pair.begin(), chunk.pair.end());
+    for (const KinLists& chunk : chunks)
         for (const KinLists::Count& count : chunk.count) {
             kin.first_ring.push_back(kin.first_ring.back() + count.ring);
             kin.first_face.push_back(kin.first_face.back() + count.face);
             kin.first_pair.push_back(kin.first_pair.back() + count.pair);
         }
-    }
 }
 
 } // namespace vdb_shell::growth
