@@ -40,21 +40,23 @@ constexpr double kLeastLineGain = 3e-3;
 constexpr double kCool = 0.65, kCoolSlowly = 0.72;
 constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 // About the triangles of the coarsest surface that growth begins on, and those of each over those
-// of the next at most: few where rounds on the whole surface are to follow, of which a finer coarse
-// one saves some, more where they are not.
-constexpr double kCoarsest = 1200, kMostCoarser = 4.2, kMostCoarserAlone = 9;
-// The barrier's weight at which growth ends on one and goes on on the next, and how it falls after
-// the first.
-constexpr double kRoughUntil = 0.005, kRoughCool = 0.45;
+// of the next at most.
+constexpr double kCoarsest = 1200, kMostCoarser = 9;
+// The barrier's weight at which growth ends on one and goes on on the next, and how it falls on the
+// coarsest and after it.
+constexpr double kRoughUntil = 0.005, kRoughCoolFirst = 0.5, kRoughCool = 0.45;
 // After it most is done: first weight over what is left to fill, and how it falls. Twice as much,
 // and kCool, where there is time.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
 // What a round has to win for each triangle, whose price it is, for another to follow.
-constexpr double kGainForTriangle = 1.5e-7;
+constexpr double kGainForTriangle = 2e-8;
+/// What a vertex has to win in a round for it and its neighbours to be asked in the next, share of
+/// the solid.
+constexpr double kGainForVertex = 1.2e-6;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
-constexpr double kAffordable = 50000, kRoughCost = 1.0 / 3;
+constexpr double kAffordable = 500000, kRoughCost = 1.0 / 3;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -106,6 +108,10 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
 
 /// How growth starts: from lines, or from the shell of a coarser surface, nearly done.
 enum class Start { lines, carried };
+struct Started {
+    Start from = Start::lines;
+    std::vector<double> hope; ///< carried: what each vertex may win back of what that cost, volume6
+};
 
 /// After a coarse start growth goes on only as long as that pays, unless more was asked for.
 bool in_haste(Start start, const GrowOptions& options)
@@ -184,8 +190,8 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         const Directions lines = rough_lines(mesh, options);
         growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
         GrowState s = growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
-        const Start started = inner.empty() ? Start::lines : Start::carried;
-        if (started == Start::lines) {
+        const Start from_what = inner.empty() ? Start::lines : Start::carried;
+        if (from_what == Start::lines) {
             settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
         } else {
             const growth::Pillars pillars =
@@ -197,8 +203,8 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         if (rounds > 0)
             growth::list_kin(connectivity);
         growth::move_freely(s, lines.visibility, options,
-                            {rounds, first_softness(s, started, true),
-                             started == Start::carried ? kRoughCool : kCool, kLeastGain,
+                            {rounds, first_softness(s, from_what, true),
+                             from_what == Start::carried ? kRoughCool : kRoughCoolFirst, kLeastGain,
                              kRoughUntil},
                             progress, ignored);
         inner = std::move(s.b);
@@ -207,19 +213,28 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
 }
 
 /// Sets the state to a shell that growth can go on from.
-Start start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
-                   const LineLengths& start, const std::vector<Coarsened>& levels,
-                   const GrowOptions& options, const StageProgress& progress)
+Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& lines,
+                     const LineLengths& start, const std::vector<Coarsened>& levels,
+                     const GrowOptions& options, const StageProgress& progress)
 {
     if (levels.empty()) {
         settle(s, lines, start, options, progress);
-        return Start::lines;
+        return {};
     }
     const std::vector<Vec3d> inner =
         rough_inner(mesh.triangles.size(), levels, start, s.cap, options, progress);
     const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines);
-    growth::settle_carried(s, pillars.lines, pillars.length, progress);
-    return Start::carried;
+    return {Start::carried, growth::settle_carried(s, pillars.lines, pillars.length, progress)};
+}
+
+/// Those that the rounds begin with; empty: all.
+std::vector<std::uint8_t> asked_first(const GrowState& s, const Started& started,
+                                      const GrowOptions& options)
+{
+    if (!in_haste(started.from, options))
+        return {};
+    return growth::worth_asking(s, started.hope,
+                                kGainForVertex * std::abs(growth::volume6(s.a, s.mesh->faces)));
 }
 
 bool will_move(const GrowState& s, Start start, const GrowOptions& options)
@@ -234,20 +249,21 @@ bool worth_lengthening(const GrowState& s)
     return !s.bounded || fill > growth::kNearlyFull || fill < kThin;
 }
 
-void move_off_the_lines(GrowState& s, const Directions& directions, Start start,
+void move_off_the_lines(GrowState& s, const Directions& directions, const Started& started,
                         const GrowOptions& options, const StageProgress& progress,
                         GrowReport& report)
 {
-    const bool thickest = options.method == Method::thickest, hasty = in_haste(start, options);
-    const int rounds = most_rounds(s, start, options);
+    const bool thickest = options.method == Method::thickest;
+    const bool hasty = in_haste(started.from, options);
+    const int rounds = most_rounds(s, started.from, options);
     const int twelve_rounds = thickest ? std::min(kTwelveRoundsFirst, rounds) : rounds;
     const double cool = thickest ? kCoolSlowly : hasty ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
     const double enough = hasty ? kGainForTriangle * s.mesh->face_count() : -1;
-    growth::move_freely(
-        s, directions.visibility, options,
-        {twelve_rounds, first_softness(s, start, hasty), cool, least_gain, 0, enough}, progress,
-        report);
+    growth::move_freely(s, directions.visibility, options,
+                        {twelve_rounds, first_softness(s, started.from, hasty), cool, least_gain, 0,
+                         enough, hasty ? kGainForVertex : 0, started.hope},
+                        progress, report);
     if (!thickest)
         return;
     s.twelve = false;
@@ -323,9 +339,8 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
         return levels.empty() ? mesh : levels.back().mesh;
     };
     const auto all = static_cast<double>(mesh.triangles.size());
-    const double most = all < kAffordable / 2 ? kMostCoarser : kMostCoarserAlone;
-    const double times = std::max(all / kCoarsest, most);
-    const double steps = std::ceil(std::log(times) / std::log(most));
+    const double times = std::max(all / kCoarsest, kMostCoarser);
+    const double steps = std::ceil(std::log(times) / std::log(kMostCoarser));
     const double coarser = std::pow(times, 1 / steps);
     for (int step = 0; step < steps; ++step) {
         const std::size_t count = finest().triangles.size();
@@ -366,7 +381,7 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     Directions lines = prepare(mesh, directions, options);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
-    Start started = Start::lines;
+    Started started;
     if (from && !from->inner.empty()) {
         const growth::Pillars pillars = growth::pillars_to(mesh, from->inner, std::move(lines));
         growth::settle_carried(s, pillars.lines, pillars.length, progress);
@@ -377,10 +392,10 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                          options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
-    if (will_move(s, started, options))
-        growth::list_kin(connectivity);
+    if (will_move(s, started.from, options))
+        growth::list_kin(connectivity, asked_first(s, started, options));
     // A carried shell has left the lines.
-    if (options.grow_lines && started == Start::lines &&
+    if (options.grow_lines && started.from == Start::lines &&
         (!options.free_moves || worth_lengthening(s)))
         growth::lengthen_lines(s, lines, options.free_moves && s.bounded ? kLeastLineGain : -1.0,
                                progress);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/free_moves.h"
 
+#include "core/parallel.h"
 #include "shell/grow/barrier.h"
 #include "shell/grow/diagonals.h"
 #include "shell/grow/pins.h"
@@ -42,19 +43,6 @@ struct MoveRules {
     double softness; ///< barrier weight, in units of volume6
     double least;    ///< shorter moves are not worth making
 };
-
-/// Gradient of the inner surface's volume6 in b_v.
-Vec3d inner_volume6_gradient(const GrowState& s, int v)
-{
-    const Connectivity& m = *s.mesh;
-    Vec3d sum(0.0);
-    for (const FaceCorner& at : star(m, v)) {
-        const Vec3d u = s.b[m.corner(at.face, (at.local + 1) % 3)] - s.b[v];
-        const Vec3d w = s.b[m.corner(at.face, (at.local + 2) % 3)] - s.b[v];
-        sum += u.cross(w);
-    }
-    return sum;
-}
 
 /// Nearer than the reach, which the walls rely on.
 Vec3d within_reach(const GrowState& s, int v, const Vec3d& x)
@@ -151,6 +139,16 @@ std::vector<std::uint8_t> find_still(const GrowState& s, const std::vector<int>&
     return still;
 }
 
+/// What the vertices asked have won between the walls, as volume6; nought for the others.
+void count_won(const GrowState& s, const std::vector<std::uint8_t>& still, std::vector<double>& won)
+{
+    won.resize(still.size());
+    for_each_index(still.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        won[i] = still[i] ? 0 : -inner_volume6_gradient(s, v).dot(s.b[v] - s.home[v]);
+    });
+}
+
 /// Faster where little is left to give; a loss early on is the barrier undoing jams.
 double cooled(double softness, double gain, double factor)
 {
@@ -168,6 +166,18 @@ double volume6_to_fill(const GrowState& s, double first_fill)
 
 } // namespace
 
+std::vector<std::uint8_t> worth_asking(const GrowState& s, const std::vector<double>& hope,
+                                       double worth)
+{
+    std::vector<std::uint8_t> asked(hope.size());
+    for_each_index(asked.size(), [&](std::size_t i) {
+        const Slice<int> around = neighbours(*s.mesh, static_cast<int>(i));
+        asked[i] = hope[i] > worth || std::any_of(around.begin(), around.end(),
+                                                  [&](int u) { return hope[u] > worth; });
+    });
+    return asked;
+}
+
 void move_freely(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,
                  const FreeStage& stage, const StageProgress& progress, GrowReport& report)
 {
@@ -182,6 +192,8 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
     // A barrier worth more than what is left to win would only undo what is reached.
     double softness = s.bounded ? std::min(stage.softness, std::max(kLeastSoftness, 7 * (1 - fill)))
                                 : stage.softness;
+    const double worth = stage.worth * std::abs(volume6(s.a, s.mesh->faces));
+    std::vector<double> hope = stage.hope;
     Walls walls;
     std::vector<int> quiet(s.b.size(), 0);
     tbb::enumerable_thread_specific<Bounds> scratch;
@@ -191,12 +203,19 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         // Seldom: a pin that cannot go now will hardly be able to in the next round.
         if ((round & (round - 1)) == 0)
             report.released += static_cast<std::size_t>(release_pins(s, visibility));
-        const std::vector<std::uint8_t> still = find_still(s, quiet);
+        std::vector<std::uint8_t> still = find_still(s, quiet);
+        if (worth > 0 && !hope.empty()) {
+            const std::vector<std::uint8_t> asked = worth_asking(s, hope, worth);
+            for (std::size_t v = 0; v < still.size(); ++v)
+                still[v] |= !asked[v];
+        }
         raise_walls(s, still, walls);
         for (int i = 0; i < kSweepsPerRound; ++i)
             sweep(s, walls, still, [&](int v, Vec3d& x) {
                 return propose_move(s, walls, v, rules, scratch.local(), x);
             });
+        if (worth > 0)
+            count_won(s, still, hope);
         update_quiet(s, quiet);
         adapt_reach(s, still);
         if (options.flips && !s.twelve)

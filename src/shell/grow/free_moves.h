@@ -27,7 +27,17 @@ struct FreeStage {
     /// Share of the solid: ends with a round that wins less, whatever the weight. Below 0 not even
     /// a loss ends it: early on that is the barrier undoing jams.
     double enough = -1;
+    /// Share of the solid: only vertices that won more in the round before, and those beside them,
+    /// are asked. 0: all are.
+    double worth = 0;
+    /// What each is to win in the first round, as volume6. Empty: all are asked.
+    std::vector<double> hope = {};
 };
+
+/// The vertices that move_freely asks in a round: those that win more than `worth` (volume6), and
+/// their neighbours.
+std::vector<std::uint8_t> worth_asking(const GrowState& s, const std::vector<double>& hope,
+                                       double worth);
 
 /// Inner vertices leave their lines: each minimises the inner volume with an interior barrier on
 /// the tets around it and on the walls in front of near triangles, and every move is tested exactly

@@ -95,6 +95,18 @@ double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
     return sum;
 }
 
+Vec3d inner_volume6_gradient(const GrowState& s, int v)
+{
+    const Connectivity& m = *s.mesh;
+    Vec3d sum(0.0);
+    for (const FaceCorner& at : star(m, v)) {
+        const Vec3d u = s.b[m.corner(at.face, (at.local + 1) % 3)] - s.b[v];
+        const Vec3d w = s.b[m.corner(at.face, (at.local + 2) % 3)] - s.b[v];
+        sum += u.cross(w);
+    }
+    return sum;
+}
+
 double fill_of(const GrowState& s)
 {
     const double ratio = volume6(s.b, s.mesh->faces) / volume6(s.a, s.mesh->faces);

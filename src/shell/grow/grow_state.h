@@ -84,6 +84,8 @@ std::vector<Box> inner_boxes(const GrowState& s);
 
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);
+/// Gradient of the inner surface's volume6 in b_v.
+Vec3d inner_volume6_gradient(const GrowState& s, int v);
 /// What lies between the surfaces over what the outer one encloses, whichever side it lies on.
 double fill_of(const GrowState& s);
 

@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kThinShare = 0.02;
 constexpr double kShrink = 0.65; ///< factor on a pillar of a prism that violates
 // The same for carried pillars, as the share that goes: it doubles each time, up to the last.
-constexpr double kFirstShare = 0.01, kLastShare = 0.7;
+constexpr double kFirstShare = 0.004, kLastShare = 0.7;
 // Rounds in which their inner points are untangled; what is bad after them shrinks only, so that it
 // ends.
 constexpr int kUntangledRounds = 7;
@@ -242,12 +242,13 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
     }
 }
 
-void settle_carried(GrowState& s, const Directions& directions, const std::vector<double>& h,
-                    const StageProgress& progress)
+std::vector<double> settle_carried(GrowState& s, const Directions& directions,
+                                   const std::vector<double>& h, const StageProgress& progress)
 {
     const Connectivity& m = *s.mesh;
     pin_what_cannot_leave(s, directions, h);
     place(s, directions, h);
+    const std::vector<Vec3d> carried = s.b;
     std::vector<std::uint8_t> look(h.size(), 1), moved(h.size(), 1);
     std::vector<double> share(h.size(), kFirstShare);
     for (int round = 0;; ++round) {
@@ -258,7 +259,7 @@ void settle_carried(GrowState& s, const Directions& directions, const std::vecto
         const std::vector<std::uint8_t> changed =
             first ? std::vector<std::uint8_t>(m.faces.size(), 1) : faces_around(s, moved);
         if (!shorten_around(s, violating_faces(s, changed, first), share, moved))
-            return;
+            break;
         for (int v = 0; v < m.vertices; ++v) {
             if (!moved[v])
                 continue;
@@ -267,6 +268,12 @@ void settle_carried(GrowState& s, const Directions& directions, const std::vecto
                 look[u] = 1;
         }
     }
+    std::vector<double> lost(h.size());
+    for_each_index(lost.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        lost[i] = -inner_volume6_gradient(s, v).dot(carried[i] - s.b[i]);
+    });
+    return lost;
 }
 
 } // namespace vdb_shell::growth

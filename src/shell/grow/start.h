@@ -17,9 +17,10 @@ void settle_start(GrowState& s, const Directions& directions, std::vector<double
 
 /// The same for pillars that are nearly valid together, as those carried over from the shell of a
 /// coarser surface are: inner points of prisms that violate are moved (untangle.h), and only what
-/// that leaves is shortened, by a hundredth the first time and by more each time it comes up again.
-void settle_carried(GrowState& s, const Directions& directions, const std::vector<double>& h,
-                    const StageProgress& progress);
+/// that leaves is shortened, by little the first time and by more each time it comes up again.
+/// Gives back what each inner point has lost by that, as volume6: about what it can win back.
+std::vector<double> settle_carried(GrowState& s, const Directions& directions,
+                                   const std::vector<double>& h, const StageProgress& progress);
 
 /// A small share of the smallest altitude around each vertex.
 std::vector<double> thin_heights(const GrowState& s);
