@@ -127,6 +127,29 @@ std::size_t cells_for(std::uint64_t samples)
     return static_cast<std::size_t>(std::clamp(4 * std::min(samples, kMost), kFewest, kMost));
 }
 
+/// How many cells up to each lie outside the solid.
+std::vector<std::uint32_t> count_outside_before(const SolidCells& solid)
+{
+    std::vector<std::uint32_t> before(solid.kind.size() + 1, 0);
+    for (std::size_t cell = 0; cell < solid.kind.size(); ++cell)
+        before[cell + 1] = before[cell] + (solid.kind[cell] == CellKind::outside);
+    return before;
+}
+
+/// Whether the box of the tet meets a cell outside.
+bool may_leave_solid(const Scene& scene, std::size_t tet,
+                     const std::vector<std::uint32_t>& outside_before)
+{
+    const FloatBox box = box_of(corners_of(scene.tets, tet));
+    const CellRange range = scene.grid.overlapped(box.low, box.high);
+    for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
+        for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j)
+            if (outside_before[scene.grid.cell(i, j, range.first[2])] <
+                outside_before[scene.grid.cell(i, j, range.last[2]) + 1])
+                return true;
+    return false;
+}
+
 Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t samples)
 {
     const Bounds bounds = bounds_of_both(surface, tets);
@@ -138,8 +161,11 @@ Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t
         scene.sign[i] = static_cast<std::int8_t>(exact::orient3d(p[0], p[1], p[2], p[3]));
     });
     scene.solid = classify_cells(scene.grid, surface);
+    const std::vector<std::uint32_t> outside_before = count_outside_before(scene.solid);
     std::vector<std::atomic<bool>> met_by_tet(scene.grid.cells());
     for_each_index(tets.tets.size(), [&](std::size_t i) {
+        if (!may_leave_solid(scene, i, outside_before))
+            return;
         visit_runs_of_tet(scene, i, [&](std::uint32_t first, std::uint32_t last) {
             for (std::uint32_t cell = first; cell <= last; ++cell)
                 met_by_tet[cell].store(true, std::memory_order_relaxed);

@@ -51,8 +51,8 @@ constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
 // What a round has to win for each triangle, whose price it is, for another to follow.
 constexpr double kGainForTriangle = 2e-8;
 /// What a vertex has to win in a round for it and its neighbours to be asked in the next, share of
-/// the solid.
-constexpr double kGainForVertex = 1.2e-6;
+/// the solid; from lines, all of them together.
+constexpr double kGainForVertex = 1.2e-6, kGainForAll = 3e-4;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
@@ -60,11 +60,17 @@ constexpr double kAffordable = 500000, kRoughCost = 1.0 / 3;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
-Directions prepare(const TriangleMesh& mesh, Directions directions, const GrowOptions& options)
+enum class Lines {
+    to_follow,
+    to_fall_back_on ///< not worth smoothing
+};
+
+Directions prepare(const TriangleMesh& mesh, Directions directions, const GrowOptions& options,
+                   Lines use)
 {
     if (options.mend_directions)
         growth::mend_directions(mesh, directions);
-    if (options.smooth_directions)
+    if (options.smooth_directions && use == Lines::to_follow)
         growth::smooth_directions(mesh, directions);
     return directions;
 }
@@ -144,14 +150,14 @@ int most_rough_rounds(const GrowState& s, std::size_t triangles)
     return std::max(affordable_rounds(s), static_cast<int>(std::min(double(kMostRounds), cheap)));
 }
 
-Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options)
+Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options, Lines use)
 {
     Directions directions;
     directions.inward = pseudo_normals(mesh);
     directions.visibility = visibility_of(mesh, directions.inward);
     for (Vec3d& d : directions.inward)
         d = -d;
-    return prepare(mesh, std::move(directions), options);
+    return prepare(mesh, std::move(directions), options, use);
 }
 
 /// The levels' vertices as those of the mesh: by level.
@@ -187,7 +193,8 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
     std::vector<Vec3d> inner;
     for (std::size_t level = levels.size(); level-- > 0;) {
         const TriangleMesh& mesh = levels[level].mesh;
-        const Directions lines = rough_lines(mesh, options);
+        const Directions lines =
+            rough_lines(mesh, options, inner.empty() ? Lines::to_follow : Lines::to_fall_back_on);
         growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
         GrowState s = growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
         const Start from_what = inner.empty() ? Start::lines : Start::carried;
@@ -249,6 +256,15 @@ bool worth_lengthening(const GrowState& s)
     return !s.bounded || fill > growth::kNearlyFull || fill < kThin;
 }
 
+/// FreeStage::worth. Who asks for the most has everybody asked.
+double worth_of_vertex(const GrowState& s, Start start, const GrowOptions& options)
+{
+    if (in_haste(start, options))
+        return kGainForVertex;
+    const bool by_default = options.method != Method::thickest && !options.free_rounds;
+    return by_default ? kGainForAll / s.mesh->vertices : 0;
+}
+
 void move_off_the_lines(GrowState& s, const Directions& directions, const Started& started,
                         const GrowOptions& options, const StageProgress& progress,
                         GrowReport& report)
@@ -262,7 +278,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const Starte
     const double enough = hasty ? kGainForTriangle * s.mesh->face_count() : -1;
     growth::move_freely(s, directions.visibility, options,
                         {twelve_rounds, first_softness(s, started.from, hasty), cool, least_gain, 0,
-                         enough, hasty ? kGainForVertex : 0, started.hope},
+                         enough, worth_of_vertex(s, started.from, options), started.hope},
                         progress, report);
     if (!thickest)
         return;
@@ -378,7 +394,11 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     assert(directions.inward.size() == mesh.points.size());
     assert(start.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
     growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
-    Directions lines = prepare(mesh, directions, options);
+    const std::vector<Coarsened> own_levels =
+        from ? std::vector<Coarsened>() : coarse_levels(mesh, options);
+    const std::vector<Coarsened>& levels = from ? from->levels : own_levels;
+    Directions lines = prepare(mesh, directions, options,
+                               levels.empty() ? Lines::to_follow : Lines::to_fall_back_on);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
     Started started;
@@ -387,9 +407,7 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
         growth::settle_carried(s, pillars.lines, pillars.length, progress);
         lines = growth::pillars_to(mesh, shell_of(mesh, s).inner, pillars.lines).lines;
     } else {
-        started =
-            start_growth(s, mesh, lines, start, from ? from->levels : coarse_levels(mesh, options),
-                         options, progress);
+        started = start_growth(s, mesh, lines, start, levels, options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     if (will_move(s, started.from, options))

@@ -18,6 +18,7 @@ namespace
 
 constexpr double kEnoughFill = 0.998; ///< a solid this full is not worth another round
 constexpr double kLeastSoftness = 1e-3;
+constexpr double kSettled = 0.05;  ///< above it a loss is the barrier undoing jams
 constexpr double kCoolFast = 0.3;  ///< factor per round where little is won
 constexpr double kStale = 5e-4;    ///< share of the solid: a round that wins less is such a round
 constexpr int kSweepsPerRound = 2; ///< between the same walls
@@ -149,10 +150,10 @@ void count_won(const GrowState& s, const std::vector<std::uint8_t>& still, std::
     });
 }
 
-/// Faster where little is left to give; a loss early on is the barrier undoing jams.
+/// Faster where little is left to give.
 double cooled(double softness, double gain, double factor)
 {
-    const bool stale = softness < 0.05 && std::abs(gain) < kStale;
+    const bool stale = softness < kSettled && std::abs(gain) < kStale;
     return std::max(kLeastSoftness, softness * (stale ? kCoolFast : factor));
 }
 
@@ -204,12 +205,13 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         if ((round & (round - 1)) == 0)
             report.released += static_cast<std::size_t>(release_pins(s, visibility));
         std::vector<std::uint8_t> still = find_still(s, quiet);
-        if (worth > 0 && !hope.empty()) {
+        if (worth > 0 && softness < kSettled && !hope.empty()) {
             const std::vector<std::uint8_t> asked = worth_asking(s, hope, worth);
             for (std::size_t v = 0; v < still.size(); ++v)
                 still[v] |= !asked[v];
         }
-        raise_walls(s, still, walls);
+        const bool near_the_last = round > 0 && softness < kSettled;
+        raise_walls(s, still, walls, near_the_last ? Tree::kept : Tree::anew);
         for (int i = 0; i < kSweepsPerRound; ++i)
             sweep(s, walls, still, [&](int v, Vec3d& x) {
                 return propose_move(s, walls, v, rules, scratch.local(), x);

@@ -28,7 +28,7 @@ struct FreeStage {
     /// a loss ends it: early on that is the barrier undoing jams.
     double enough = -1;
     /// Share of the solid: only vertices that won more in the round before, and those beside them,
-    /// are asked. 0: all are.
+    /// are asked, once most jams are undone. 0: all are.
     double worth = 0;
     /// What each is to win in the first round, as volume6. Empty: all are asked.
     std::vector<double> hope = {};

@@ -41,8 +41,12 @@ template <class Visit> bool all_walls_of(const Walls& w, int v, Visit&& visit)
 /// triangles with a corner in common have none (kin_clear_at). Vertices marked `still` will not
 /// move. The wall stands across the closest points: halfway between two inner triangles, against
 /// the outer one or one that is still. Each vertex gets the walls that it could reach.
+/// The tree of inner triangles is built anew, or kept from before and only its boxes made anew:
+/// sooner, and as good as long as the triangles have not gone far.
 /// Same walls for any number of threads.
-void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w);
+enum class Tree { anew, kept };
+void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w,
+                 Tree tree = Tree::anew);
 
 /// On the right side of all its walls, for certain.
 inline bool between_walls(const Walls& w, int v, const Vec3d& x)
