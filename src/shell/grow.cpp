@@ -234,16 +234,6 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& l
     return {Start::carried, growth::settle_carried(s, pillars.lines, pillars.length, progress)};
 }
 
-/// Those that the rounds begin with; empty: all.
-std::vector<std::uint8_t> asked_first(const GrowState& s, const Started& started,
-                                      const GrowOptions& options)
-{
-    if (!in_haste(started.from, options))
-        return {};
-    return growth::worth_asking(s, started.hope,
-                                kGainForVertex * std::abs(growth::volume6(s.a, s.mesh->faces)));
-}
-
 bool will_move(const GrowState& s, Start start, const GrowOptions& options)
 {
     return start == Start::lines || options.min_quality > 0 ||
@@ -411,7 +401,7 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
     if (will_move(s, started.from, options))
-        growth::list_kin(connectivity, asked_first(s, started, options));
+        growth::list_kin(connectivity);
     // A carried shell has left the lines.
     if (options.grow_lines && started.from == Start::lines &&
         (!options.free_moves || worth_lengthening(s)))

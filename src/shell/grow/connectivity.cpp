@@ -214,7 +214,7 @@ Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
     return c;
 }
 
-void list_kin(Connectivity& c, const std::vector<std::uint8_t>& wanted)
+void list_kin(Connectivity& c)
 {
     constexpr std::size_t kChunk = 512;
     const auto vertices = static_cast<std::size_t>(c.vertices);
@@ -226,10 +226,7 @@ void list_kin(Connectivity& c, const std::vector<std::uint8_t>& wanted)
                           std::vector<std::int8_t>(c.faces.size(), -1)};
             for (std::size_t i = begin; i < end; ++i)
                 for (std::size_t v = i * kChunk; v < std::min(vertices, (i + 1) * kChunk); ++v)
-                    if (wanted.empty() || wanted[v])
-                        list_kin_of(c, static_cast<int>(v), places, chunks[i]);
-                    else
-                        chunks[i].count.emplace_back();
+                    list_kin_of(c, static_cast<int>(v), places, chunks[i]);
         },
         1);
     Kin& kin = c.kin;

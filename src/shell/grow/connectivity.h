@@ -64,8 +64,7 @@ struct Connectivity {
 /// All but the lists of kin, which are as much work as all the rest and for those who move
 /// vertices.
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces);
-/// Of all vertices, or of those that are `wanted`.
-void list_kin(Connectivity& c, const std::vector<std::uint8_t>& wanted = {});
+void list_kin(Connectivity& c);
 
 /// The iterable slice of a CSR list that belongs to one vertex.
 template <class Entry> struct Slice {

@@ -150,6 +150,19 @@ void count_won(const GrowState& s, const std::vector<std::uint8_t>& still, std::
     });
 }
 
+/// Those that win more than `worth` (volume6), and their neighbours.
+std::vector<std::uint8_t> worth_asking(const GrowState& s, const std::vector<double>& hope,
+                                       double worth)
+{
+    std::vector<std::uint8_t> asked(hope.size());
+    for_each_index(asked.size(), [&](std::size_t i) {
+        const Slice<int> around = neighbours(*s.mesh, static_cast<int>(i));
+        asked[i] = hope[i] > worth || std::any_of(around.begin(), around.end(),
+                                                  [&](int u) { return hope[u] > worth; });
+    });
+    return asked;
+}
+
 /// Faster where little is left to give.
 double cooled(double softness, double gain, double factor)
 {
@@ -166,18 +179,6 @@ double volume6_to_fill(const GrowState& s, double first_fill)
 }
 
 } // namespace
-
-std::vector<std::uint8_t> worth_asking(const GrowState& s, const std::vector<double>& hope,
-                                       double worth)
-{
-    std::vector<std::uint8_t> asked(hope.size());
-    for_each_index(asked.size(), [&](std::size_t i) {
-        const Slice<int> around = neighbours(*s.mesh, static_cast<int>(i));
-        asked[i] = hope[i] > worth || std::any_of(around.begin(), around.end(),
-                                                  [&](int u) { return hope[u] > worth; });
-    });
-    return asked;
-}
 
 void move_freely(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,
                  const FreeStage& stage, const StageProgress& progress, GrowReport& report)

@@ -34,11 +34,6 @@ struct FreeStage {
     std::vector<double> hope = {};
 };
 
-/// The vertices that move_freely asks in a round: those that win more than `worth` (volume6), and
-/// their neighbours.
-std::vector<std::uint8_t> worth_asking(const GrowState& s, const std::vector<double>& hope,
-                                       double worth);
-
 /// Inner vertices leave their lines: each minimises the inner volume with an interior barrier on
 /// the tets around it and on the walls in front of near triangles, and every move is tested exactly
 /// before it is made.

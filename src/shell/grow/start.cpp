@@ -23,7 +23,7 @@ constexpr double kFirstShare = 0.004, kLastShare = 0.7;
 // Rounds in which their inner points are untangled; what is bad after them shrinks only, so that it
 // ends.
 constexpr int kUntangledRounds = 7;
-constexpr int kFirstSweeps = 40, kSweeps = 5;
+constexpr int kFirstSweeps = 12, kSweeps = 5;
 
 double smallest_altitude(const Corners& c)
 {
