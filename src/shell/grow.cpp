@@ -48,8 +48,8 @@ constexpr double kRoughUntil = 0.005, kRoughCoolFirst = 0.5, kRoughCool = 0.45;
 // After it most is done: first weight over what is left to fill, and how it falls. Twice as much,
 // and kCool, where there is time.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
-// What a round has to win for each triangle, whose price it is, for another to follow.
-constexpr double kGainForTriangle = 2e-8;
+// What a round has to win for each vertex asked, whose price it is, for another to follow.
+constexpr double kGainForAsked = 6.5e-7;
 /// What a vertex has to win in a round for it and its neighbours to be asked in the next, share of
 /// the solid; from lines, all of them together.
 constexpr double kGainForVertex = 1.2e-6, kGainForAll = 3e-4;
@@ -265,7 +265,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const Starte
     const int twelve_rounds = thickest ? std::min(kTwelveRoundsFirst, rounds) : rounds;
     const double cool = thickest ? kCoolSlowly : hasty ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
-    const double enough = hasty ? kGainForTriangle * s.mesh->face_count() : -1;
+    const double enough = hasty ? kGainForAsked : -1;
     growth::move_freely(s, directions.visibility, options,
                         {twelve_rounds, first_softness(s, started.from, hasty), cool, least_gain, 0,
                          enough, worth_of_vertex(s, started.from, options), started.hope},

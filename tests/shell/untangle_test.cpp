@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace
@@ -63,6 +64,26 @@ TEST(Untangle, MakesTheTwelveTetsOfEveryPrismPositive)
         EXPECT_GT(p.length(), 0.35);
         EXPECT_LT(p.length(), 0.65);
     }
+}
+
+TEST(Untangle, MovesAlongTheInnerSurfaceBeforeItMovesAcross)
+{
+    // Thrown about on their sphere, so that what is wrong can be put right there.
+    NoisySphere sphere(0.08);
+    for (Vec3d& p : sphere.s.b)
+        p = rounded(0.5 * p.unit());
+    const std::vector<Vec3d> before = sphere.s.b;
+    ASSERT_GT(invalid_prisms(sphere.s), 200);
+    std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
+    untangle(sphere.s, 60, look, moved);
+    EXPECT_EQ(invalid_prisms(sphere.s), 0);
+    double along = 0, across = 0;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+        const double height = sphere.s.b[v].dot(before[v].unit());
+        across += std::abs(sphere.s.b[v].length() - 0.5);
+        along += (sphere.s.b[v] - height * before[v].unit()).length();
+    }
+    EXPECT_LT(across, 0.1 * along);
 }
 
 TEST(Untangle, LeavesAloneWhatIsValid)

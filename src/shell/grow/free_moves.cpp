@@ -150,17 +150,16 @@ void count_won(const GrowState& s, const std::vector<std::uint8_t>& still, std::
     });
 }
 
-/// Those that win more than `worth` (volume6), and their neighbours.
-std::vector<std::uint8_t> worth_asking(const GrowState& s, const std::vector<double>& hope,
-                                       double worth)
+/// Adds to `still` those that win no more than `worth` (volume6), nor any of their neighbours.
+void leave_out(const GrowState& s, const std::vector<double>& hope, double worth,
+               std::vector<std::uint8_t>& still)
 {
-    std::vector<std::uint8_t> asked(hope.size());
-    for_each_index(asked.size(), [&](std::size_t i) {
+    for_each_index(still.size(), [&](std::size_t i) {
         const Slice<int> around = neighbours(*s.mesh, static_cast<int>(i));
-        asked[i] = hope[i] > worth || std::any_of(around.begin(), around.end(),
-                                                  [&](int u) { return hope[u] > worth; });
+        if (!(hope[i] > worth) &&
+            std::none_of(around.begin(), around.end(), [&](int u) { return hope[u] > worth; }))
+            still[i] = 1;
     });
-    return asked;
 }
 
 /// Faster where little is left to give.
@@ -206,11 +205,9 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         if ((round & (round - 1)) == 0)
             report.released += static_cast<std::size_t>(release_pins(s, visibility));
         std::vector<std::uint8_t> still = find_still(s, quiet);
-        if (worth > 0 && softness < kSettled && !hope.empty()) {
-            const std::vector<std::uint8_t> asked = worth_asking(s, hope, worth);
-            for (std::size_t v = 0; v < still.size(); ++v)
-                still[v] |= !asked[v];
-        }
+        if (worth > 0 && softness < kSettled && !hope.empty())
+            leave_out(s, hope, worth, still);
+        const std::ptrdiff_t asked = std::count(still.begin(), still.end(), 0);
         const bool near_the_last = round > 0 && softness < kSettled;
         raise_walls(s, still, walls, near_the_last ? Tree::kept : Tree::anew);
         for (int i = 0; i < kSweepsPerRound; ++i)
@@ -226,7 +223,7 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         ++report.rounds;
         const double gain = fill_of(s) - fill;
         fill += gain;
-        if (softness < stage.until || gain < stage.enough ||
+        if (softness < stage.until || gain <= stage.enough * double(asked) ||
             (softness <= kLeastSoftness && gain < stage.least_gain))
             break;
         softness = cooled(softness, gain, stage.cool);

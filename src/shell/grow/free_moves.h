@@ -24,8 +24,8 @@ struct FreeStage {
     double cool;       ///< factor on it per round: the slower, the thicker and the longer
     double least_gain; ///< share of the solid that a round must win to go on, at the end
     double until = 0;  ///< ends as soon as the weight is below, units of softness
-    /// Share of the solid: ends with a round that wins less, whatever the weight. Below 0 not even
-    /// a loss ends it: early on that is the barrier undoing jams.
+    /// Share of the solid, for each vertex asked: ends with a round that wins less, whatever the
+    /// weight. Below 0 not even a loss ends it: early on that is the barrier undoing jams.
     double enough = -1;
     /// Share of the solid: only vertices that won more in the round before, and those beside them,
     /// are asked, once most jams are undone. 0: all are.

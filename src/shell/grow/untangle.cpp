@@ -63,11 +63,9 @@ struct alignas(8 * kDoubles) Bases {
     std::array<double, kDoubles> counts;
 };
 
-VDB_SHELL_LANES_PART Doubles load(const std::array<double, kDoubles>& from)
+VDB_SHELL_LANES_PART void load(const std::array<double, kDoubles>& from, Doubles& lanes)
 {
-    Doubles lanes;
     std::memcpy(&lanes, from.data(), sizeof lanes);
-    return lanes;
 }
 
 VDB_SHELL_LANES_PART void bound(const Bases& bases, Bounds4& out)
@@ -75,13 +73,16 @@ VDB_SHELL_LANES_PART void bound(const Bases& bases, Bounds4& out)
     constexpr double kEnough = std::numeric_limits<double>::infinity();
     std::array<Doubles, 3> p, u, w;
     for (std::size_t k = 0; k < 3; ++k) {
-        p[k] = load(bases.corner[0][k]);
-        u[k] = load(bases.corner[1][k]) - p[k];
-        w[k] = load(bases.corner[2][k]) - p[k];
+        load(bases.corner[0][k], p[k]);
+        load(bases.corner[1][k], u[k]);
+        load(bases.corner[2][k], w[k]);
+        u[k] -= p[k], w[k] -= p[k];
     }
     const Doubles x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
                   z = u[0] * w[1] - u[1] * w[0], value = -(x * p[0] + y * p[1] + z * p[2]);
-    const Doubles squared = (x * x + y * y + z * z) * load(bases.counts);
+    Doubles counts;
+    load(bases.counts, counts);
+    const Doubles squared = (x * x + y * y + z * z) * counts;
     Doubles length;
     for (std::size_t i = 0; i < kDoubles; ++i)
         length[i] = std::sqrt(squared[i]);
