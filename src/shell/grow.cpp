@@ -48,11 +48,12 @@ constexpr double kRoughUntil = 0.005, kRoughCoolFirst = 0.5, kRoughCool = 0.45;
 // After it most is done: first weight over what is left to fill, and how it falls. Twice as much,
 // and kCool, where there is time.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
-// What a round has to win for each vertex asked, whose price it is, for another to follow.
-constexpr double kGainForAsked = 6.5e-7;
-/// What a vertex has to win in a round for it and its neighbours to be asked in the next, share of
-/// the solid; from lines, all of them together.
-constexpr double kGainForVertex = 1.2e-6, kGainForAll = 3e-4;
+// What a vertex has to win in a round for it and its neighbours to be asked in the next, share of
+// the solid: what asking is worth on a surface of so many vertices or more, less in proportion on a
+// smaller one; from lines, all of them together. And what a round has to win for each vertex asked,
+// as a share of that, for another to follow.
+constexpr double kGainForVertex = 1.2e-6, kDear = 6500, kGainForAll = 3e-4;
+constexpr double kGainForAsked = 0.54;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
@@ -250,7 +251,7 @@ bool worth_lengthening(const GrowState& s)
 double worth_of_vertex(const GrowState& s, Start start, const GrowOptions& options)
 {
     if (in_haste(start, options))
-        return kGainForVertex;
+        return kGainForVertex * std::min(1.0, s.mesh->vertices / kDear);
     const bool by_default = options.method != Method::thickest && !options.free_rounds;
     return by_default ? kGainForAll / s.mesh->vertices : 0;
 }
@@ -265,10 +266,11 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const Starte
     const int twelve_rounds = thickest ? std::min(kTwelveRoundsFirst, rounds) : rounds;
     const double cool = thickest ? kCoolSlowly : hasty ? kCarriedCool : kCool;
     const double least_gain = thickest ? kLeastGainThickest : kLeastGain;
-    const double enough = hasty ? kGainForAsked : -1;
+    const double worth = worth_of_vertex(s, started.from, options);
+    const double enough = hasty ? kGainForAsked * worth : -1;
     growth::move_freely(s, directions.visibility, options,
                         {twelve_rounds, first_softness(s, started.from, hasty), cool, least_gain, 0,
-                         enough, worth_of_vertex(s, started.from, options), started.hope},
+                         enough, worth, started.hope},
                         progress, report);
     if (!thickest)
         return;

@@ -140,17 +140,19 @@ std::vector<std::uint8_t> find_still(const GrowState& s, const std::vector<int>&
     return still;
 }
 
-/// What the vertices asked have won between the walls, as volume6; nought for the others.
+/// What the vertices asked have won or given way between the walls, as volume6, for one that gives
+/// way is not done either; nought for the others.
 void count_won(const GrowState& s, const std::vector<std::uint8_t>& still, std::vector<double>& won)
 {
     won.resize(still.size());
     for_each_index(still.size(), [&](std::size_t i) {
         const int v = static_cast<int>(i);
-        won[i] = still[i] ? 0 : -inner_volume6_gradient(s, v).dot(s.b[v] - s.home[v]);
+        won[i] = still[i] ? 0 : std::abs(inner_volume6_gradient(s, v).dot(s.b[v] - s.home[v]));
     });
 }
 
-/// Adds to `still` those that win no more than `worth` (volume6), nor any of their neighbours.
+/// Adds to `still` those that have no more than `worth` (volume6) to win, nor any of their
+/// neighbours.
 void leave_out(const GrowState& s, const std::vector<double>& hope, double worth,
                std::vector<std::uint8_t>& still)
 {
