@@ -57,7 +57,7 @@ constexpr double kGainForAsked = 0.54;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
-constexpr double kAffordable = 500000, kRoughCost = 1.0 / 3;
+constexpr double kAffordable = 50000, kRoughCost = 1.0 / 3;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
@@ -132,15 +132,22 @@ double first_softness(const GrowState& s, Start start, bool hasty)
                                    : growth::kTwelveSoftness;
 }
 
-int affordable_rounds(const GrowState& s)
+int affordable_rounds(std::size_t triangles)
 {
-    const double over = kAffordable / s.mesh->face_count();
+    const double over = kAffordable / double(triangles);
     return static_cast<int>(std::min(double(kMostRounds), over * over));
+}
+
+/// Where no rounds on the whole surface follow, most of the time goes into what is mended, and
+/// smoothing saves some of that; else rounds win back more than it saves.
+growth::Bends bends_handed_on(std::size_t triangles)
+{
+    return affordable_rounds(triangles) > 0 ? growth::Bends::kept : growth::Bends::smoothed;
 }
 
 int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
 {
-    return in_haste(start, options) ? affordable_rounds(s)
+    return in_haste(start, options) ? affordable_rounds(s.mesh->faces.size())
                                     : options.free_rounds.value_or(kMostRounds);
 }
 
@@ -148,7 +155,8 @@ int most_rounds(const GrowState& s, Start start, const GrowOptions& options)
 int most_rough_rounds(const GrowState& s, std::size_t triangles)
 {
     const double cheap = kRoughCost * double(triangles) / s.mesh->face_count();
-    return std::max(affordable_rounds(s), static_cast<int>(std::min(double(kMostRounds), cheap)));
+    return std::max(affordable_rounds(s.mesh->faces.size()),
+                    static_cast<int>(std::min(double(kMostRounds), cheap)));
 }
 
 Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options, Lines use)
@@ -202,8 +210,8 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         if (from_what == Start::lines) {
             settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
         } else {
-            const growth::Pillars pillars =
-                growth::pillars_in(levels[level + 1].mesh, inner, mesh, lines);
+            const growth::Pillars pillars = growth::pillars_in(levels[level + 1].mesh, inner, mesh,
+                                                               lines, bends_handed_on(triangles));
             growth::settle_carried(s, pillars.lines, pillars.length, progress);
         }
         GrowReport ignored;
@@ -231,7 +239,8 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& l
     }
     const std::vector<Vec3d> inner =
         rough_inner(mesh.triangles.size(), levels, start, s.cap, options, progress);
-    const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines);
+    const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines,
+                                                       bends_handed_on(mesh.triangles.size()));
     return {Start::carried, growth::settle_carried(s, pillars.lines, pillars.length, progress)};
 }
 

@@ -35,7 +35,8 @@ TEST(CoarseStart, PillarsEndWhereThoseOfTheCoarseShellDo)
     Directions lines;
     lines.inward.assign(fine.points.size(), Vec3d(0.0));
     lines.visibility.assign(fine.points.size(), 0.7);
-    const growth::Pillars pillars = growth::pillars_in(coarse, inner, fine, lines);
+    const growth::Pillars pillars =
+        growth::pillars_in(coarse, inner, fine, lines, growth::Bends::kept);
     for (std::size_t v = 0; v < fine.points.size(); ++v) {
         const Vec3d end = Vec3d(fine.points[v]) + pillars.length[v] * pillars.lines.inward[v];
         // On a chord of the inner sphere, which lies up to 0.035 below its arc.
@@ -56,11 +57,34 @@ TEST(CoarseStart, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
     for (const Vec3s& p : sphere.points)
         lines.inward.push_back(-Vec3d(p).unit());
     lines.visibility.assign(sphere.points.size(), 1.0);
-    const growth::Pillars pillars = growth::pillars_in(sphere, outside, sphere, lines);
+    const growth::Pillars pillars =
+        growth::pillars_in(sphere, outside, sphere, lines, growth::Bends::kept);
     for (std::size_t v = 0; v < sphere.points.size(); ++v) {
         EXPECT_EQ(pillars.lines.inward[v], lines.inward[v]);
         EXPECT_NEAR(pillars.length[v], 0.5, 1e-6);
     }
+}
+
+TEST(CoarseStart, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
+{
+    // One pillar is longer than all others.
+    const TriangleMesh coarse = test::icosphere(1.0, 1), fine = test::icosphere(1.0, 4);
+    std::vector<Vec3d> inner;
+    for (std::size_t v = 0; v < coarse.points.size(); ++v)
+        inner.push_back(Vec3d(coarse.points[v]) * (v == 0 ? 0.3 : 0.6));
+    Directions lines;
+    for (const Vec3s& p : fine.points)
+        lines.inward.push_back(-Vec3d(p).unit());
+    lines.visibility.assign(fine.points.size(), 1.0);
+    const auto tip = std::find(fine.points.begin(), fine.points.end(), coarse.points[0]);
+    ASSERT_NE(tip, fine.points.end());
+    const auto length = [&](growth::Bends bends) {
+        return growth::pillars_in(coarse, inner, fine, lines, bends)
+            .length[std::size_t(tip - fine.points.begin())];
+    };
+    EXPECT_NEAR(length(growth::Bends::kept), 0.7, 1e-6);
+    EXPECT_LT(length(growth::Bends::smoothed), 0.69);
+    EXPECT_GT(length(growth::Bends::smoothed), 0.6);
 }
 
 class GrownFromCoarse : public testing::TestWithParam<Method>

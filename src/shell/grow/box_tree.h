@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace vdb_shell::growth
@@ -77,6 +78,8 @@ public:
     void build(const std::vector<Box>& boxes);
     /// Same boxes, moved: the tree keeps its shape. Precondition: as many boxes as in build().
     void refit(const std::vector<Box>& boxes);
+    /// Only those that have changed; the others are not looked at.
+    void refit(const std::vector<Box>& boxes, const std::vector<std::uint8_t>& changed);
 
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const Box& query, Visit&& visit) const
@@ -148,6 +151,7 @@ private:
     static constexpr int kStack = 64;
     static constexpr std::size_t kGroup = 16;
 
+    void fit_nodes();
     void split(int id, int begin, int end);
 
     /// Calls visit(place) for every box that is met, leaving out what lies under boxes that are

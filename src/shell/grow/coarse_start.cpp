@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "field/nearest_on_triangle.h"
 #include "field/triangle_tree.h"
+#include "mesh/topology.h"
 
 #include <array>
 #include <cmath>
@@ -48,6 +49,31 @@ Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
     return end;
 }
 
+/// Each pillar halfway to the mean of its neighbours. Those handed on bend at the edges of the
+/// coarse triangles, where most of the sheared prisms are; a second time takes off more than it
+/// mends.
+std::vector<Vec3s> smoothed(const TriangleMesh& mesh, const std::vector<Vec3s>& inner)
+{
+    const VertexTriangles around = triangles_around_vertices(inner.size(), mesh.triangles);
+    std::vector<Vec3s> result = inner;
+    for_each_index(inner.size(), [&](std::size_t v) {
+        Vec3d sum(0.0);
+        std::size_t count = 0;
+        for (const std::uint32_t t : around.around(v))
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t u = mesh.triangles[t][k];
+                if (u == v)
+                    continue;
+                sum += Vec3d(inner[u]) - Vec3d(mesh.points[u]);
+                ++count;
+            }
+        if (count > 0)
+            result[v] =
+                Vec3s(0.5 * (Vec3d(inner[v]) + Vec3d(mesh.points[v]) + sum / double(count)));
+    });
+    return result;
+}
+
 } // namespace
 
 Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Directions lines)
@@ -63,7 +89,7 @@ Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Di
 }
 
 Pillars pillars_in(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
-                   const TriangleMesh& mesh, const Directions& lines)
+                   const TriangleMesh& mesh, const Directions& lines, Bends bends)
 {
     const TriangleTree tree(coarse, diagonal_of(bounds_of(coarse.points)));
     std::vector<Vec3s> inner(mesh.points.size());
@@ -73,7 +99,8 @@ Pillars pillars_in(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_
         inner[v] = Vec3s(
             end_in_prism(coarse, coarse_inner, tree.nearest(at, kNearEnough, seed).triangle, at));
     });
-    Pillars pillars = pillars_to(mesh, inner, lines);
+    Pillars pillars =
+        pillars_to(mesh, bends == Bends::smoothed ? smoothed(mesh, inner) : inner, lines);
     std::vector<Vec3d> outward(inner.size());
     for (std::size_t v = 0; v < outward.size(); ++v)
         outward[v] = -pillars.lines.inward[v];

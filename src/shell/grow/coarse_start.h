@@ -21,10 +21,15 @@ struct Pillars {
 Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& inner,
                    Directions lines);
 
+/// What to do with the bends of pillars over the edges of coarse triangles, where most of the
+/// sheared prisms are: smoothed, there are fewer of them, but the inner surface takes on some of
+/// the outer one's roughness.
+enum class Bends { kept, smoothed };
+
 /// Where the pillars of a surface end in the shell of a coarser one of about the same shape: each
 /// vertex goes along the prism in which its nearest point on the coarse surface lies. A pillar that
 /// would not see its own triangles goes along the vertex's line instead, as far.
 Pillars pillars_in(const TriangleMesh& coarse, const std::vector<openvdb::Vec3d>& coarse_inner,
-                   const TriangleMesh& mesh, const Directions& lines);
+                   const TriangleMesh& mesh, const Directions& lines, Bends bends);
 
 } // namespace vdb_shell::growth

@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kThinShare = 0.02;
 constexpr double kShrink = 0.65; ///< factor on a pillar of a prism that violates
 // The same for carried pillars, as the share that goes: it doubles each time, up to the last.
-constexpr double kFirstShare = 0.004, kLastShare = 0.7;
+constexpr double kFirstShare = 0.01, kLastShare = 0.7;
 // Rounds in which their inner points are untangled; what is bad after them shrinks only, so that it
 // ends.
 constexpr int kUntangledRounds = 7;
@@ -56,10 +56,14 @@ void mark(std::atomic<std::uint8_t>& entry)
 /// and are not marked yet.
 void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
 {
-    const std::vector<Box> boxes = inner_boxes(s);
+    std::vector<Box> boxes(changed.size());
     std::vector<std::uint8_t> ask(changed.size());
-    for_each_index(ask.size(), [&](std::size_t f) { ask[f] = changed[f] && !bad[f]; });
-    first ? s.inner_tree.build(boxes) : s.inner_tree.refit(boxes);
+    for_each_index(ask.size(), [&](std::size_t f) {
+        if (changed[f])
+            boxes[f] = box_of(inner_corners(s, static_cast<int>(f)));
+        ask[f] = changed[f] && !bad[f];
+    });
+    first ? s.inner_tree.build(boxes) : s.inner_tree.refit(boxes, changed);
     const auto asked = [&](int f) { return ask[f] != 0; };
     for_each_range(
         s.inner_tree.groups(),

@@ -27,7 +27,7 @@ constexpr double kPositive = 1e-3;
 /// Weight of staying, where a bound has 1: bounds that are at odds with each other, as they are
 /// where a whole patch is sheared, should not throw a vertex about. More of it across the inner
 /// surface: most of what is wrong can be put right along it, where nothing is lost.
-constexpr double kStay = 1.0, kStayAcross = 30.0;
+constexpr double kStay = 1.0, kStayAcross = 10.0;
 constexpr int kSteps = 6; ///< while the bounds that are not kept change
 
 // Doubles: what is still positive is decided by less than floats can tell.
