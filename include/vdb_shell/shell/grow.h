@@ -42,7 +42,7 @@ struct GrowOptions {
     /// too little of their shape left then. 0: never.
     std::size_t coarse_from = 5000;
     /// Upper bound on rounds of free moves, under each prism test. Unset: 40; but after a start on
-    /// coarser surfaces (500,000 / triangles) squared under Method::certified, and they end sooner,
+    /// coarser surfaces (50,000 / triangles) squared under Method::certified, and they end sooner,
     /// when one wins little for what it costs, and ask only vertices that can win. Given, growth
     /// takes its time: thicker (docs/benchmarks.md).
     std::optional<int> free_rounds;
