@@ -61,17 +61,16 @@ constexpr double kAffordable = 50000, kRoughCost = 1.0 / 3;
 // Of the lengths to try first: a little less than where the fronts meet.
 constexpr double kTopDown = 0.98;
 
-enum class Lines {
-    to_follow,
-    to_fall_back_on ///< not worth smoothing
-};
+/// How growth starts: from lines, or from the shell of a coarser surface, nearly done.
+enum class Start { lines, carried };
 
+/// Lines that growth only falls back on are not worth smoothing.
 Directions prepare(const TriangleMesh& mesh, Directions directions, const GrowOptions& options,
-                   Lines use)
+                   Start start)
 {
     if (options.mend_directions)
         growth::mend_directions(mesh, directions);
-    if (options.smooth_directions && use == Lines::to_follow)
+    if (options.smooth_directions && start == Start::lines)
         growth::smooth_directions(mesh, directions);
     return directions;
 }
@@ -113,17 +112,20 @@ void settle(GrowState& s, const Directions& directions, const LineLengths& start
     s.pinned = long_pinned;
 }
 
-/// How growth starts: from lines, or from the shell of a coarser surface, nearly done.
-enum class Start { lines, carried };
 struct Started {
     Start from = Start::lines;
     std::vector<double> hope; ///< carried: what each vertex may win back of what that cost, volume6
 };
 
+bool asks_for_more(const GrowOptions& options)
+{
+    return options.method == Method::thickest || options.free_rounds;
+}
+
 /// After a coarse start growth goes on only as long as that pays, unless more was asked for.
 bool in_haste(Start start, const GrowOptions& options)
 {
-    return start == Start::carried && options.method != Method::thickest && !options.free_rounds;
+    return start == Start::carried && !asks_for_more(options);
 }
 
 double first_softness(const GrowState& s, Start start, bool hasty)
@@ -159,14 +161,14 @@ int most_rough_rounds(const GrowState& s, std::size_t triangles)
                     static_cast<int>(std::min(double(kMostRounds), cheap)));
 }
 
-Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options, Lines use)
+Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options, Start start)
 {
     Directions directions;
     directions.inward = pseudo_normals(mesh);
     directions.visibility = visibility_of(mesh, directions.inward);
     for (Vec3d& d : directions.inward)
         d = -d;
-    return prepare(mesh, std::move(directions), options, use);
+    return prepare(mesh, std::move(directions), options, start);
 }
 
 /// The levels' vertices as those of the mesh: by level.
@@ -202,11 +204,10 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
     std::vector<Vec3d> inner;
     for (std::size_t level = levels.size(); level-- > 0;) {
         const TriangleMesh& mesh = levels[level].mesh;
-        const Directions lines =
-            rough_lines(mesh, options, inner.empty() ? Lines::to_follow : Lines::to_fall_back_on);
+        const Start from_what = inner.empty() ? Start::lines : Start::carried;
+        const Directions lines = rough_lines(mesh, options, from_what);
         growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
         GrowState s = growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
-        const Start from_what = inner.empty() ? Start::lines : Start::carried;
         if (from_what == Start::lines) {
             settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
         } else {
@@ -261,8 +262,7 @@ double worth_of_vertex(const GrowState& s, Start start, const GrowOptions& optio
 {
     if (in_haste(start, options))
         return kGainForVertex * std::min(1.0, s.mesh->vertices / kDear);
-    const bool by_default = options.method != Method::thickest && !options.free_rounds;
-    return by_default ? kGainForAll / s.mesh->vertices : 0;
+    return asks_for_more(options) ? 0 : kGainForAll / s.mesh->vertices;
 }
 
 void move_off_the_lines(GrowState& s, const Directions& directions, const Started& started,
@@ -398,8 +398,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     const std::vector<Coarsened> own_levels =
         from ? std::vector<Coarsened>() : coarse_levels(mesh, options);
     const std::vector<Coarsened>& levels = from ? from->levels : own_levels;
-    Directions lines = prepare(mesh, directions, options,
-                               levels.empty() ? Lines::to_follow : Lines::to_fall_back_on);
+    Directions lines =
+        prepare(mesh, directions, options, levels.empty() ? Start::lines : Start::carried);
     GrowState s = growth::make_state(connectivity, mesh.points, cap);
     GrowResult result;
     Started started;

@@ -101,6 +101,21 @@ TEST(BoxTree, FindsTheSameAfterItsBoxesHaveMoved)
     expect_same_as_all_pairs(tree, moved);
 }
 
+TEST(BoxTree, LooksOnlyAtBoxesThatAreSaidToHaveChanged)
+{
+    const std::vector<Box> before = random_boxes(500, 1), elsewhere = random_boxes(500, 2);
+    BoxTree tree;
+    tree.build(before);
+    std::vector<std::uint8_t> changed(before.size(), 0);
+    std::vector<Box> now = before;
+    for (std::size_t i = 0; i < now.size(); i += 3) {
+        changed[i] = 1;
+        now[i] = elsewhere[i];
+    }
+    tree.refit(elsewhere, changed);
+    expect_same_as_all_pairs(tree, now);
+}
+
 TEST(BoxTree, IsEmptyWithoutBoxes)
 {
     BoxTree tree;

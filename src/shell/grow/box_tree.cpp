@@ -102,16 +102,6 @@ void BoxTree::split(int id, int begin, int end)
     tbb::parallel_invoke([&] { split(left, begin, middle); }, [&] { split(right, middle, end); });
 }
 
-void BoxTree::refit(const std::vector<Box>& boxes)
-{
-    assert(boxes.size() == boxes_.size());
-    for_each_index(
-        boxes.size(),
-        [&](std::size_t i) { boxes_[i] = float_box(boxes[static_cast<std::size_t>(item_[i])]); },
-        1024);
-    fit_nodes();
-}
-
 void BoxTree::refit(const std::vector<Box>& boxes, const std::vector<std::uint8_t>& changed)
 {
     assert(boxes.size() == boxes_.size());
@@ -119,15 +109,10 @@ void BoxTree::refit(const std::vector<Box>& boxes, const std::vector<std::uint8_
         boxes.size(),
         [&](std::size_t i) {
             const auto item = static_cast<std::size_t>(item_[i]);
-            if (changed[item])
+            if (changed.empty() || changed[item])
                 boxes_[i] = float_box(boxes[item]);
         },
         1024);
-    fit_nodes();
-}
-
-void BoxTree::fit_nodes()
-{
     // Children stand behind their parents.
     for (std::size_t i = nodes_.size(); i-- > 0;) {
         Node& n = nodes_[i];

@@ -77,9 +77,8 @@ class BoxTree
 public:
     void build(const std::vector<Box>& boxes);
     /// Same boxes, moved: the tree keeps its shape. Precondition: as many boxes as in build().
-    void refit(const std::vector<Box>& boxes);
-    /// Only those that have changed; the others are not looked at.
-    void refit(const std::vector<Box>& boxes, const std::vector<std::uint8_t>& changed);
+    /// Only those marked in `changed` are looked at; empty: all.
+    void refit(const std::vector<Box>& boxes, const std::vector<std::uint8_t>& changed = {});
 
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const Box& query, Visit&& visit) const
@@ -151,7 +150,6 @@ private:
     static constexpr int kStack = 64;
     static constexpr std::size_t kGroup = 16;
 
-    void fit_nodes();
     void split(int id, int begin, int end);
 
     /// Calls visit(place) for every box that is met, leaving out what lies under boxes that are

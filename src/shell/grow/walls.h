@@ -36,15 +36,16 @@ template <class Visit> bool all_walls_of(const Walls& w, int v, Visit&& visit)
     return true;
 }
 
+/// The tree of inner triangles is built anew, or kept from before and only its boxes made anew:
+/// sooner, and as good as long as the triangles have not gone far.
+enum class Tree { anew, kept };
+
 /// Raises a wall between each inner triangle and every other triangle, inner or outer, that it
 /// could meet while each vertex stays within `reach` of where it is now, which becomes its home;
 /// triangles with a corner in common have none (kin_clear_at). Vertices marked `still` will not
 /// move. The wall stands across the closest points: halfway between two inner triangles, against
 /// the outer one or one that is still. Each vertex gets the walls that it could reach.
-/// The tree of inner triangles is built anew, or kept from before and only its boxes made anew:
-/// sooner, and as good as long as the triangles have not gone far.
 /// Same walls for any number of threads.
-enum class Tree { anew, kept };
 void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w,
                  Tree tree = Tree::anew);
 
