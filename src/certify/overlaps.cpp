@@ -33,33 +33,31 @@ std::vector<int> signs_of(const TetMesh& mesh)
     return sign;
 }
 
-std::vector<Box> boxes_of(const TetMesh& mesh)
+std::vector<FloatBox> boxes_of(const TetMesh& mesh)
 {
-    std::vector<Box> boxes(mesh.tets.size());
+    std::vector<FloatBox> boxes(mesh.tets.size());
     for_each_index(boxes.size(), [&](std::size_t t) {
         const exact::Tet c = corners_of(mesh, t);
-        Box box{c[0], c[0]};
-        for (const openvdb::Vec3s& p : c) {
-            box.low = openvdb::math::minComponent(box.low, p);
-            box.high = openvdb::math::maxComponent(box.high, p);
-        }
+        FloatBox box = FloatBox::around(c[0]);
+        for (const openvdb::Vec3s& p : c)
+            box.add(p);
         boxes[t] = box;
     });
     return boxes;
 }
 
 /// Boxes that only touch belong to tets that do no more.
-bool interiors_overlap(const Box& a, const Box& b)
+bool interiors_overlap(const FloatBox& a, const FloatBox& b)
 {
     for (int k = 0; k < 3; ++k)
-        if (!(a.low[k] < b.high[k] && b.low[k] < a.high[k]))
+        if (!(a.lo[k] < b.hi[k] && b.lo[k] < a.hi[k]))
             return false;
     return true;
 }
 
 std::vector<TetPair> overlapping_tets(const TetMesh& mesh, const std::vector<int>& sign)
 {
-    const std::vector<Box> boxes = boxes_of(mesh);
+    const std::vector<FloatBox> boxes = boxes_of(mesh);
     return overlapping_pairs(boxes, [&](std::uint32_t i, std::uint32_t j) {
         return sign[i] != 0 && sign[j] != 0 && interiors_overlap(boxes[i], boxes[j]) &&
                exact::tets_overlap(corners_of(mesh, i), corners_of(mesh, j));

@@ -22,7 +22,7 @@ using openvdb::Vec3s;
 struct Piece {
     std::vector<std::uint32_t> triangles;
     bool closed = true;
-    Box box{}; ///< of both surfaces
+    FloatBox box{}; ///< of both surfaces
 };
 
 std::vector<Piece> gather_pieces(const PrismShell& shell,
@@ -34,18 +34,14 @@ std::vector<Piece> gather_pieces(const PrismShell& shell,
         const std::uint32_t c = component_of[t];
         if (c == pieces.size()) {
             pieces.emplace_back();
-            const Vec3s& p = shell.outer[shell.triangles[t][0]];
-            pieces[c].box = {p, p};
+            pieces[c].box = FloatBox::around(shell.outer[shell.triangles[t][0]]);
         }
         Piece& piece = pieces[c];
         piece.triangles.push_back(t);
         piece.closed = piece.closed && !open_triangle[t];
         for (int k = 0; k < 3; ++k)
-            for (const auto* surface : {&shell.outer, &shell.inner}) {
-                const Vec3s& p = (*surface)[shell.triangles[t][k]];
-                piece.box.low = openvdb::math::minComponent(piece.box.low, p);
-                piece.box.high = openvdb::math::maxComponent(piece.box.high, p);
-            }
+            for (const auto* surface : {&shell.outer, &shell.inner})
+                piece.box.add((*surface)[shell.triangles[t][k]]);
     }
     return pieces;
 }
@@ -76,11 +72,8 @@ int winding_number(const std::vector<Vec3s>& points, const PrismShell& shell, co
 
 bool in_region(const PrismShell& shell, const Piece& piece, const Vec3s& at)
 {
-    for (int k = 0; k < 3; ++k)
-        if (at[k] < piece.box.low[k] || at[k] > piece.box.high[k])
-            return false;
-    return winding_number(shell.outer, shell, piece, at) !=
-           winding_number(shell.inner, shell, piece, at);
+    return piece.box.contains(at) && winding_number(shell.outer, shell, piece, at) !=
+                                         winding_number(shell.inner, shell, piece, at);
 }
 
 /// Surfaces that do not touch those of `piece` lie in its region as a whole or not at all: one
@@ -138,7 +131,7 @@ void check_regions(const PrismShell& shell, const std::vector<std::uint32_t>& co
     const std::vector<Piece> pieces = gather_pieces(shell, component_of, open_triangle);
     check_orientation(shell, pieces, certificate);
 
-    std::vector<Box> boxes;
+    std::vector<FloatBox> boxes;
     boxes.reserve(pieces.size());
     for (const Piece& piece : pieces)
         boxes.push_back(piece.box);

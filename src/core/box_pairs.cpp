@@ -4,11 +4,7 @@
 #include "core/deal_out.h"
 #include "core/parallel.h"
 
-#include <embree3/rtcore.h>
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
-#include <stdexcept>
 
 namespace vdb_shell
 {
@@ -17,85 +13,64 @@ namespace
 
 using Pair = std::array<std::uint32_t, 2>;
 
-struct Collector {
-    const KeepPair& keep;
-    tbb::enumerable_thread_specific<std::vector<Pair>> by_thread;
-};
+constexpr std::size_t kGroupsInPart = 16;
 
-void store_bounds(const RTCBoundsFunctionArguments* arguments)
+bool any_pair(std::uint32_t, std::uint32_t)
 {
-    const auto& boxes = *static_cast<const std::vector<Box>*>(arguments->geometryUserPtr);
-    const Box& box = boxes[arguments->primID];
-    RTCBounds& bounds = *arguments->bounds_o;
-    bounds.lower_x = box.low[0], bounds.lower_y = box.low[1], bounds.lower_z = box.low[2];
-    bounds.upper_x = box.high[0], bounds.upper_y = box.high[1], bounds.upper_z = box.high[2];
+    return true;
 }
 
-void store_pairs(void* user, RTCCollision* collisions, unsigned int count)
+template <class Keep>
+std::vector<Pair> pairs_to_keep(const std::vector<FloatBox>& boxes, const Keep& keep)
 {
-    Collector& collector = *static_cast<Collector*>(user);
-    std::vector<Pair>& pairs = collector.by_thread.local();
-    for (unsigned int i = 0; i < count; ++i) {
-        const auto [low, high] = std::minmax(collisions[i].primID0, collisions[i].primID1);
-        if (low < high && collector.keep(low, high))
-            pairs.push_back({low, high});
-    }
+    BoxTree tree;
+    tree.build(boxes);
+    const std::size_t groups = tree.groups();
+    std::vector<std::vector<Pair>> parts((groups + kGroupsInPart - 1) / kGroupsInPart);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t part) {
+            BoxTree::Near near;
+            const std::size_t end = std::min(groups, (part + 1) * kGroupsInPart);
+            for (std::size_t group = part * kGroupsInPart; group < end; ++group)
+                tree.for_each_overlap_of(
+                    group, tree, near, [](int) { return true; },
+                    [&](int i, int j) {
+                        const auto low = static_cast<std::uint32_t>(i),
+                                   high = static_cast<std::uint32_t>(j);
+                        if (low < high && keep(low, high))
+                            parts[part].push_back({low, high});
+                    });
+        },
+        1);
+    return deal_out<Pair>(
+        parts, boxes.size(), [](const Pair& pair) { return pair[0]; },
+        [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
 }
 
 } // namespace
 
-std::vector<Box> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
-                                const std::vector<openvdb::Vec3I>& triangles)
+std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
+                                     const std::vector<openvdb::Vec3I>& triangles)
 {
-    std::vector<Box> boxes(triangles.size());
+    std::vector<FloatBox> boxes(triangles.size());
     for_each_index(triangles.size(), [&](std::size_t t) {
-        Box box{points[triangles[t][0]], points[triangles[t][0]]};
-        for (int corner = 1; corner < 3; ++corner) {
-            const openvdb::Vec3s& p = points[triangles[t][corner]];
-            box.low = openvdb::math::minComponent(box.low, p);
-            box.high = openvdb::math::maxComponent(box.high, p);
-        }
+        FloatBox box = FloatBox::around(points[triangles[t][0]]);
+        for (int corner = 1; corner < 3; ++corner)
+            box.add(points[triangles[t][corner]]);
         boxes[t] = box;
     });
     return boxes;
 }
 
-std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes)
+std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes)
 {
-    return overlapping_pairs(boxes, [](std::uint32_t, std::uint32_t) { return true; });
+    return pairs_to_keep(boxes, any_pair);
 }
 
-std::vector<Pair> overlapping_pairs(const std::vector<Box>& boxes, const KeepPair& keep)
+std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const KeepPair& keep)
 {
-    if (boxes.empty())
-        return {};
-    RTCDevice device = rtcNewDevice(nullptr);
-    if (!device)
-        throw std::runtime_error("Embree could not be started");
-    RTCScene scene = rtcNewScene(device);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned int>(boxes.size()));
-    rtcSetGeometryUserData(geometry, const_cast<std::vector<Box>*>(&boxes));
-    rtcSetGeometryBoundsFunction(geometry, store_bounds, nullptr);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcCommitScene(scene);
-
-    Collector collector{keep, {}};
-    rtcCollide(scene, scene, store_pairs, &collector);
-    rtcReleaseGeometry(geometry);
-    rtcReleaseScene(scene);
-    const bool ok = rtcGetDeviceError(device) == RTC_ERROR_NONE;
-    rtcReleaseDevice(device);
-    if (!ok)
-        throw std::runtime_error("Embree could not collide the bounding boxes");
-
-    auto pairs = deal_out<Pair>(
-        collector.by_thread, boxes.size(), [](const Pair& pair) { return pair[0]; },
-        [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
-    const auto same = [](const Pair& x, const Pair& y) { return x[0] == y[0] && x[1] == y[1]; };
-    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
-    return pairs;
+    return pairs_to_keep(boxes, keep);
 }
 
 } // namespace vdb_shell

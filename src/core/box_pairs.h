@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/box_tree.h"
+
 #include <openvdb/Types.h>
 
 #include <array>
@@ -11,22 +13,16 @@
 namespace vdb_shell
 {
 
-struct Box {
-    openvdb::Vec3s low, high;
-};
-
 /// The tight box of each triangle.
-std::vector<Box> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
-                                const std::vector<openvdb::Vec3I>& triangles);
+std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
+                                     const std::vector<openvdb::Vec3I>& triangles);
 
-/// All pairs i < j of boxes that have a point in common, sorted. Embree's collision of two bounding
-/// volume hierarchies; the sort makes the result independent of its threads.
-std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<Box>& boxes);
+/// All pairs i < j of boxes that have a point in common, sorted.
+std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<FloatBox>& boxes);
 
-/// Those of them for which keep(i, j) holds; for pairs too many to be listed first. Asked from
-/// several threads at a time, perhaps twice of one pair; it must not throw.
+/// Those of them for which keep(i, j) holds, which is asked from several threads at a time.
 using KeepPair = std::function<bool(std::uint32_t, std::uint32_t)>;
-std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<Box>& boxes,
+std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<FloatBox>& boxes,
                                                             const KeepPair& keep);
 
 } // namespace vdb_shell

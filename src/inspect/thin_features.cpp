@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inspect/marks.h"
 
+#include "core/box_pairs.h"
 #include "core/parallel.h"
 #include "mesh/ray_through.h"
-#include "shell/grow/box_tree.h"
 
 namespace vdb_shell
 {
@@ -34,12 +34,8 @@ bool share_a_corner(const Vec3I& a, const Vec3I& b)
 
 std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double voxel_size)
 {
-    std::vector<growth::Box> boxes(mesh.triangles.size());
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-        for (int corner = 0; corner < 3; ++corner)
-            boxes[t].add(Vec3d(mesh.points[mesh.triangles[t][corner]]));
-    growth::BoxTree tree;
-    tree.build(boxes);
+    BoxTree tree;
+    tree.build(triangle_boxes(mesh.points, mesh.triangles));
     std::vector<char> thin(mesh.triangles.size());
     for_each_index(thin.size(), [&](std::size_t t) {
         const Ray ray = inward_from(mesh, mesh.triangles[t]);

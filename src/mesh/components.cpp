@@ -49,15 +49,19 @@ double volume_of(const TriangleMesh& mesh, const Indices& triangles)
     return six_volumes / 6.0;
 }
 
-int count_points(const TriangleMesh& mesh, const Indices& triangles)
+/// How many points each component has.
+std::vector<int> count_points(const TriangleMesh& mesh, const std::vector<Indices>& triangles)
 {
-    Indices points;
-    points.reserve(3 * triangles.size());
-    for (const std::uint32_t t : triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            points.push_back(mesh.triangles[t][corner]);
-    std::sort(points.begin(), points.end());
-    return static_cast<int>(std::unique(points.begin(), points.end()) - points.begin());
+    std::vector<int> points(triangles.size());
+    Indices counted_for(mesh.points.size(), ~0U); // the last component
+    for (std::uint32_t c = 0; c < triangles.size(); ++c)
+        for (const std::uint32_t t : triangles[c])
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t v = mesh.triangles[t][corner];
+                points[c] += counted_for[v] != c;
+                counted_for[v] = c;
+            }
+    return points;
 }
 
 /// What the edges say: which components are closed, which run through each edge as often one way
@@ -88,39 +92,29 @@ EdgeFindings look_at_edges(const std::vector<EdgeUse>& uses, const Indices& comp
     return found;
 }
 
-Box box_of(const std::vector<Box>& triangle_boxes, const Indices& triangles)
+FloatBox box_of(const std::vector<FloatBox>& triangle_boxes, const Indices& triangles)
 {
-    Box box = triangle_boxes[triangles.front()];
-    for (const std::uint32_t t : triangles) {
-        box.low = openvdb::math::minComponent(box.low, triangle_boxes[t].low);
-        box.high = openvdb::math::maxComponent(box.high, triangle_boxes[t].high);
-    }
+    FloatBox box = triangle_boxes[triangles.front()];
+    for (const std::uint32_t t : triangles)
+        box.add(triangle_boxes[t]);
     return box;
-}
-
-bool contains(const Box& box, const openvdb::Vec3s& p)
-{
-    for (int axis = 0; axis < 3; ++axis)
-        if (p[axis] < box.low[axis] || p[axis] > box.high[axis])
-            return false;
-    return true;
 }
 
 struct Piece {
     Indices triangles;
-    Box box;
+    FloatBox box;
     bool closed;
 };
 
 /// Whether `point` lies inside the closed `piece`: an odd number of crossings above it.
-bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Piece& piece,
+bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, const Piece& piece,
               const openvdb::Vec3s& point, bool& on_surface)
 {
     bool inside = false;
     for (const std::uint32_t t : piece.triangles) {
-        const Box& box = boxes[t];
-        if (point[0] < box.low[0] || point[0] > box.high[0] || point[1] < box.low[1] ||
-            point[1] > box.high[1] || point[2] > box.high[2])
+        const FloatBox& box = boxes[t];
+        if (point[0] < box.lo[0] || point[0] > box.hi[0] || point[1] < box.lo[1] ||
+            point[1] > box.hi[1] || point[2] > box.hi[2])
             continue;
         const openvdb::Vec3I& corner = mesh.triangles[t];
         inside ^= exact::crossing_above(point, mesh.points[corner[0]], mesh.points[corner[1]],
@@ -131,7 +125,7 @@ bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Pie
 
 /// Two pieces that do not cross have one answer for every corner, but for those on the surface.
 /// Where they cross or touch, the corners are asked in turn, at most kMostAsked triangles of them.
-bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Piece& outer,
+bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, const Piece& outer,
               const Piece& inner, bool crossing)
 {
     constexpr std::size_t kMostAsked = 256;
@@ -142,7 +136,7 @@ bool encloses(const TriangleMesh& mesh, const std::vector<Box>& boxes, const Pie
             const openvdb::Vec3s& point = mesh.points[mesh.triangles[inner.triangles[i]][corner]];
             bool on_surface = false;
             const bool inside =
-                contains(outer.box, point) && encloses(mesh, boxes, outer, point, on_surface);
+                outer.box.contains(point) && encloses(mesh, boxes, outer, point, on_surface);
             if (on_surface)
                 continue;
             if (!crossing || !inside)
@@ -183,8 +177,9 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
 {
     std::vector<Indices> triangles = triangles_by_component(component_of);
     const std::size_t count = triangles.size();
+    const std::vector<int> points = count_points(mesh, triangles);
     const EdgeFindings found = look_at_edges(sorted_uses, component_of, count);
-    const std::vector<Box> boxes = triangle_boxes(mesh.points, mesh.triangles);
+    const std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
     std::vector<Piece> pieces(count);
     std::vector<Component> components(count);
     for_each_index(count, [&](std::size_t c) {
@@ -193,9 +188,8 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
         component.first_triangle = triangles[c].front();
         component.volume = volume_of(mesh, triangles[c]);
         component.closed = found.closed[c] != 0;
-        component.euler = count_points(mesh, triangles[c]) - found.edges[c] +
-                          static_cast<int>(triangles[c].size());
-        const Box box = box_of(boxes, triangles[c]);
+        component.euler = points[c] - found.edges[c] + static_cast<int>(triangles[c].size());
+        const FloatBox box = box_of(boxes, triangles[c]);
         pieces[c] = {std::move(triangles[c]), box, component.closed};
     });
     auto cross = [&](std::size_t a, std::size_t b) {

@@ -113,26 +113,26 @@ TriangleMesh what_is_left(const HalfedgeMesh& mesh, const TriangleMesh& original
 }
 
 /// Boxes around all triangles that spoil the surface; empty when it is sound.
-std::vector<Box> spoiled_places(const TriangleMesh& mesh)
+std::vector<FloatBox> spoiled_places(const TriangleMesh& mesh)
 {
-    const std::vector<Box> boxes = triangle_boxes(mesh.points, mesh.triangles);
+    const std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
     const std::vector<char> bad = spoiled_triangles(mesh);
-    std::vector<Box> places;
+    std::vector<FloatBox> places;
     for (std::size_t t = 0; t < bad.size(); ++t)
         if (bad[t])
             places.push_back(boxes[t]);
     return places;
 }
 
-void hold_points_near(const std::vector<Box>& places, float margin, const TriangleMesh& mesh,
+void hold_points_near(const std::vector<FloatBox>& places, float margin, const TriangleMesh& mesh,
                       std::vector<char>& held)
 {
     for_each_index(mesh.points.size(), [&](std::size_t v) {
         const Vec3s& p = mesh.points[v];
-        for (const Box& box : places) {
+        for (const FloatBox& box : places) {
             bool in = true;
             for (int axis = 0; axis < 3; ++axis)
-                in &= p[axis] >= box.low[axis] - margin && p[axis] <= box.high[axis] + margin;
+                in &= p[axis] >= box.lo[axis] - margin && p[axis] <= box.hi[axis] + margin;
             if (in) {
                 held[v] = 1;
                 return;
@@ -165,7 +165,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
         HalfedgeMesh halfedges = to_halfedges(mesh, held, tolerance);
         collapse_edges(halfedges, limits);
         TriangleMesh left = what_is_left(halfedges, mesh);
-        const std::vector<Box> places = spoiled_places(left);
+        const std::vector<FloatBox> places = spoiled_places(left);
         if (places.empty())
             return is_sound(left) ? Simplified{std::move(left), repeat} : Simplified{mesh, repeat};
         // Wider each time, so that holding cannot stall.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/void_volumes.h"
 
+#include "core/box_pairs.h"
 #include "core/parallel.h"
 #include "mesh/ray_through.h"
-#include "shell/grow/box_tree.h"
 
 #include <algorithm>
 #include <utility>
@@ -35,7 +35,7 @@ void for_each_place(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Visit&
 }
 
 /// The length of the ray up to where it leaves the inner surface; 0 where it never does.
-double chord(const TriangleMesh& inner, const growth::BoxTree& tree, std::uint32_t from,
+double chord(const TriangleMesh& inner, const BoxTree& tree, std::uint32_t from,
              const Ray& ray, double longest)
 {
     double nearest = longest;
@@ -52,12 +52,8 @@ double chord(const TriangleMesh& inner, const growth::BoxTree& tree, std::uint32
 std::vector<double> void_volumes(const PrismShell& shell)
 {
     const TriangleMesh inner = inner_surface(shell);
-    std::vector<growth::Box> boxes(inner.triangles.size());
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-        for (int corner = 0; corner < 3; ++corner)
-            boxes[t].add(Vec3d(inner.points[inner.triangles[t][corner]]));
-    growth::BoxTree tree;
-    tree.build(boxes);
+    BoxTree tree;
+    tree.build(triangle_boxes(inner.points, inner.triangles));
     const double longest = diagonal_of(bounds_of(inner.points));
     std::vector<double> volumes(inner.triangles.size());
     for_each_index(volumes.size(), [&](std::size_t t) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/stage_progress.h"
 #include "mesh/boundary_loops.h"
 #include "mesh/repair/fill_patch.h"
 #include "mesh/repair/hole_walk.h"
 #include "mesh/repair/working_surface.h"
-#include "shell/grow/box_tree.h"
 
 #include <algorithm>
 #include <map>
@@ -19,21 +19,10 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-growth::Box box_of(const TriangleMesh& mesh, const Vec3I& t)
+BoxTree tree_over(std::vector<FloatBox> boxes)
 {
-    growth::Box box;
-    for (int corner = 0; corner < 3; ++corner)
-        box.add(Vec3d(mesh.points[t[corner]]));
-    return box;
-}
-
-growth::BoxTree tree_of(const TriangleMesh& mesh, std::size_t begin)
-{
-    std::vector<growth::Box> boxes;
-    for (std::size_t t = begin; t < mesh.triangles.size(); ++t)
-        boxes.push_back(box_of(mesh, mesh.triangles[t]));
-    growth::BoxTree tree;
-    tree.build(boxes);
+    BoxTree tree;
+    tree.build(std::move(boxes));
     return tree;
 }
 
@@ -101,10 +90,13 @@ public:
 
     /// Pairs of a new triangle and any other that cross or touch; a new one without area counts as
     /// such a pair. `rest` holds the old triangles.
-    std::size_t count_crossings(const growth::BoxTree& rest) const
+    std::size_t count_crossings(const BoxTree& rest) const
     {
         const TriangleMesh& mesh = surface_.mesh;
-        const growth::BoxTree fresh = tree_of(mesh, triangles_);
+        const std::vector<FloatBox> boxes = triangle_boxes(
+            mesh.points,
+            {mesh.triangles.begin() + std::ptrdiff_t(triangles_), mesh.triangles.end()});
+        const BoxTree fresh = tree_over(boxes);
         std::size_t crossings = 0;
         for (std::size_t t = triangles_; t < mesh.triangles.size(); ++t) {
             const Vec3I& mine = mesh.triangles[t];
@@ -113,7 +105,7 @@ public:
                 ++crossings;
                 continue;
             }
-            const growth::Box box = box_of(mesh, mine);
+            const FloatBox& box = boxes[t - triangles_];
             const auto meet = [&](std::size_t other) {
                 const Vec3I& c = mesh.triangles[other];
                 crossings +=
@@ -162,7 +154,8 @@ Patch make_patch(const Rim& rim, FillMethod method)
 void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, HoleFill& fill)
 {
     const Rim rim = look_around(surface.mesh, hole);
-    const growth::BoxTree rest = tree_of(surface.mesh, 0);
+    const BoxTree rest =
+        tree_over(triangle_boxes(surface.mesh.points, surface.mesh.triangles));
     // A flat rim gets a flat lid, also where the surface around it meets the lid at an edge.
     std::vector<FillMethod> methods{FillMethod::smooth, FillMethod::membrane, FillMethod::dihedral,
                                     FillMethod::area};

@@ -55,11 +55,12 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     s.pinned.assign(outer.size(), 0);
     s.reach.assign(outer.size(), 0.0);
     s.order.assign(mesh.faces.size(), 0);
-    std::vector<Box> boxes(mesh.faces.size());
+    std::vector<FloatBox> boxes(mesh.faces.size());
     for_each_index(
         boxes.size(),
-        [&](std::size_t f) { boxes[f] = box_of(outer_corners(s, static_cast<int>(f))); }, 256);
-    s.outer_tree.build(boxes);
+        [&](std::size_t f) { boxes[f] = float_box(box_of(outer_corners(s, static_cast<int>(f)))); },
+        256);
+    s.outer_tree.build(std::move(boxes));
     const Box all = bounds_of(s.a);
     s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
     double largest = 0;
@@ -73,15 +74,6 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     s.rounding = largest * double(std::numeric_limits<float>::epsilon());
     s.witness = first_of_each_component(mesh);
     return s;
-}
-
-std::vector<Box> inner_boxes(const GrowState& s)
-{
-    std::vector<Box> boxes(s.mesh->faces.size());
-    for_each_index(
-        boxes.size(),
-        [&](std::size_t f) { boxes[f] = box_of(inner_corners(s, static_cast<int>(f))); }, 256);
-    return boxes;
 }
 
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)

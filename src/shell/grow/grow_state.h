@@ -3,7 +3,7 @@
 
 // The shell while it grows: positions, splits, pins, and the exact tests one move needs.
 
-#include "shell/grow/box_tree.h"
+#include "shell/grow/box.h"
 #include "shell/grow/connectivity.h"
 #include "shell/grow/predicates.h"
 #include "shell/grow/prism.h"
@@ -79,8 +79,13 @@ inline CornerIds inner_ids(const GrowState& s, int f)
     return id;
 }
 
-/// Of the inner triangles as they are.
-std::vector<Box> inner_boxes(const GrowState& s);
+/// The box of an inner triangle as it is, wider by `reach`.
+inline FloatBox inner_box(const GrowState& s, int f, double reach = 0)
+{
+    Box box = box_of(inner_corners(s, f));
+    box.inflate(reach);
+    return float_box(box);
+}
 
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);

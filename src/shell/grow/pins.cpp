@@ -74,14 +74,13 @@ bool release(GrowState& s, int v, double length)
 /// Boxes that hold the inner triangles wherever these vertices may go.
 void box_in(GrowState& s, const std::vector<double>& longest)
 {
-    std::vector<Box> boxes = inner_boxes(s);
+    std::vector<FloatBox> boxes(s.mesh->faces.size());
     for_each_index(boxes.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
         double reach = 0;
         for (int k = 0; k < 3; ++k)
             reach = std::max(reach, longest[s.mesh->corner(f, k)]);
-        if (reach > 0)
-            boxes[i].inflate(1.01 * reach + s.rounding);
+        boxes[i] = inner_box(s, f, reach > 0 ? 1.01 * reach + s.rounding : 0);
     });
     s.inner_tree.refit(boxes);
 }

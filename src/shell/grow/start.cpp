@@ -56,14 +56,14 @@ void mark(std::atomic<std::uint8_t>& entry)
 /// and are not marked yet.
 void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
 {
-    std::vector<Box> boxes(changed.size());
+    std::vector<FloatBox> boxes(changed.size());
     std::vector<std::uint8_t> ask(changed.size());
     for_each_index(ask.size(), [&](std::size_t f) {
         if (changed[f])
-            boxes[f] = box_of(inner_corners(s, static_cast<int>(f)));
+            boxes[f] = inner_box(s, static_cast<int>(f));
         ask[f] = changed[f] && !bad[f];
     });
-    first ? s.inner_tree.build(boxes) : s.inner_tree.refit(boxes, changed);
+    first ? s.inner_tree.build(std::move(boxes)) : s.inner_tree.refit(boxes, changed);
     const auto asked = [&](int f) { return ask[f] != 0; };
     for_each_range(
         s.inner_tree.groups(),

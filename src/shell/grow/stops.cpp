@@ -20,17 +20,6 @@ struct Near {
     BoxTree::Near inner, outer;
 };
 
-/// Whether one of those near the box that is not `left_out` meets the triangle.
-template <class LeftOut, class Meets>
-bool any_meets(const BoxTree::Near& near, const FloatBox& box, const LeftOut& left_out,
-               const Meets& meets)
-{
-    for (std::size_t i = 0; i < near.item.size(); ++i)
-        if (box.overlaps(near.box[i]) && !left_out(near.item[i]) && meets(near.item[i]))
-            return true;
-    return false;
-}
-
 /// What the triangles around v meet first, with b_v = x.
 StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
 {
@@ -54,11 +43,9 @@ StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
         const auto asked = [&](int g) {
             return s.mesh->incident_to(g, v) || (kin_apart && s.mesh->share_a_corner(at.face, g));
         };
-        if (any_meets(near.inner, box, asked, [&](int g) { return moved.meets_inner(g); }))
+        if (near.inner.any_overlap(box, [&](int g) { return !asked(g) && moved.meets_inner(g); }))
             return StopReason::inner_contact;
-        if (any_meets(
-                near.outer, box, [](int) { return false; },
-                [&](int g) { return moved.meets_outer(g); }))
+        if (near.outer.any_overlap(box, [&](int g) { return moved.meets_outer(g); }))
             return StopReason::outer_contact;
     }
     return StopReason::none;
@@ -83,7 +70,10 @@ StopReason reason_at(const GrowState& s, int v, double step, Near& near)
 std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = kProbe * s.diagonal;
-    s.inner_tree.build(inner_boxes(s));
+    std::vector<FloatBox> boxes(s.mesh->faces.size());
+    for_each_index(boxes.size(),
+                   [&](std::size_t f) { boxes[f] = inner_box(s, static_cast<int>(f)); });
+    s.inner_tree.build(std::move(boxes));
     std::vector<StopReason> stop(s.b.size());
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
         Near near;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shell/grow/box_tree.h"
+#include "core/box_tree.h"
 
 #include "core/counter_random.h"
 
@@ -10,47 +10,44 @@
 namespace
 {
 
-using openvdb::Vec3d;
-using vdb_shell::growth::Box;
-using vdb_shell::growth::BoxTree;
+using openvdb::Vec3s;
+using vdb_shell::BoxTree;
+using vdb_shell::FloatBox;
 
-std::vector<Box> random_boxes(int count, std::uint64_t seed)
+std::vector<FloatBox> random_boxes(int count, std::uint64_t seed)
 {
-    std::vector<Box> boxes(static_cast<std::size_t>(count));
+    std::vector<FloatBox> boxes(static_cast<std::size_t>(count));
     const vdb_shell::CounterRandom random(seed);
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        for (std::uint64_t corner = 0; corner < 2; ++corner) {
-            Vec3d p;
-            for (std::uint64_t k = 0; k < 3; ++k) {
-                const double at = random.unit(9 * i + k);
-                p[static_cast<int>(k)] = at + 0.1 * random.unit(9 * i + 3 + 3 * corner + k);
-            }
-            boxes[i].add(p);
-        }
+    const auto corner_of = [&](std::size_t i, std::uint64_t corner) {
+        Vec3s p;
+        for (std::uint64_t k = 0; k < 3; ++k)
+            p[int(k)] = static_cast<float>(random.unit(9 * i + k) +
+                                           0.1 * random.unit(9 * i + 3 + 3 * corner + k));
+        return p;
+    };
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        boxes[i] = FloatBox::around(corner_of(i, 0));
+        boxes[i].add(corner_of(i, 1));
+    }
     return boxes;
 }
 
-/// All that overlap, and besides these at most what does so once it has grown by a float's
-/// rounding.
-void expect_overlaps(std::vector<int> found, const std::vector<Box>& boxes, std::size_t query)
+void expect_overlaps(std::vector<int> found, const std::vector<FloatBox>& boxes, std::size_t query)
 {
-    constexpr double kRounding = 1e-6; // of coordinates below 2
-    Box wide = boxes[query];
-    wide.inflate(kRounding);
-    std::sort(found.begin(), found.end());
-    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << "query " << query;
+    std::vector<int> wanted;
     for (std::size_t k = 0; k < boxes.size(); ++k) {
-        const bool there = std::binary_search(found.begin(), found.end(), static_cast<int>(k));
-        if (boxes[query].overlaps(boxes[k])) {
-            EXPECT_TRUE(there) << "query " << query << ", box " << k << " of " << boxes.size();
-        }
-        if (!wide.overlaps(boxes[k])) {
-            EXPECT_FALSE(there) << "query " << query << ", box " << k << " of " << boxes.size();
-        }
+        bool common = true;
+        for (int axis = 0; axis < 3; ++axis)
+            common = common && boxes[query].lo[axis] <= boxes[k].hi[axis] &&
+                     boxes[k].lo[axis] <= boxes[query].hi[axis];
+        if (common)
+            wanted.push_back(static_cast<int>(k));
     }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, wanted) << "query " << query << " of " << boxes.size();
 }
 
-void expect_same_as_all_pairs(const BoxTree& tree, const std::vector<Box>& boxes)
+void expect_same_as_all_pairs(const BoxTree& tree, const std::vector<FloatBox>& boxes)
 {
     for (std::size_t i = 0; i < boxes.size(); i += 7) {
         std::vector<int> found;
@@ -63,7 +60,7 @@ void expect_same_as_all_pairs(const BoxTree& tree, const std::vector<Box>& boxes
 TEST(BoxTree, FindsWhatAllPairsFind)
 {
     for (const int count : {1, 2, 4, 5, 8, 9, 10, 11, 17, 100, 9001}) {
-        const std::vector<Box> boxes = random_boxes(count, 1);
+        const std::vector<FloatBox> boxes = random_boxes(count, 1);
         BoxTree tree;
         tree.build(boxes);
         expect_same_as_all_pairs(tree, boxes);
@@ -74,7 +71,7 @@ TEST(BoxTree, AGroupFindsWhatItsBoxesFindOneByOne)
 {
     const auto wanted = [](int i) { return i % 3 != 0; };
     for (const int count : {1, 15, 16, 17, 500}) {
-        const std::vector<Box> boxes = random_boxes(count, 1);
+        const std::vector<FloatBox> boxes = random_boxes(count, 1);
         BoxTree tree;
         tree.build(boxes);
         std::vector<std::vector<int>> found(boxes.size());
@@ -96,18 +93,18 @@ TEST(BoxTree, FindsTheSameAfterItsBoxesHaveMoved)
 {
     BoxTree tree;
     tree.build(random_boxes(500, 1));
-    const std::vector<Box> moved = random_boxes(500, 2);
+    const std::vector<FloatBox> moved = random_boxes(500, 2);
     tree.refit(moved);
     expect_same_as_all_pairs(tree, moved);
 }
 
 TEST(BoxTree, LooksOnlyAtBoxesThatAreSaidToHaveChanged)
 {
-    const std::vector<Box> before = random_boxes(500, 1), elsewhere = random_boxes(500, 2);
+    const std::vector<FloatBox> before = random_boxes(500, 1), elsewhere = random_boxes(500, 2);
     BoxTree tree;
     tree.build(before);
     std::vector<std::uint8_t> changed(before.size(), 0);
-    std::vector<Box> now = before;
+    std::vector<FloatBox> now = before;
     for (std::size_t i = 0; i < now.size(); i += 3) {
         changed[i] = 1;
         now[i] = elsewhere[i];
@@ -120,7 +117,7 @@ TEST(BoxTree, IsEmptyWithoutBoxes)
 {
     BoxTree tree;
     tree.build({});
-    tree.for_each_overlap(Box(), [](int) { FAIL(); });
+    tree.for_each_overlap(FloatBox{}, [](int) { FAIL(); });
 }
 
 } // namespace
