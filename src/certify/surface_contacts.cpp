@@ -59,28 +59,6 @@ int shared_corners(const Vec3I& first, const Vec3I& second)
     return shared;
 }
 
-bool is_corner_of(const Vec3I& face, std::uint32_t point)
-{
-    return face[0] == point || face[1] == point || face[2] == point;
-}
-
-/// Whether all corners of `other` that are not shared lie strictly on one side of the plane of
-/// `face`: then the two meet in shared corners and edges only.
-bool plane_separates(const std::vector<Vec3s>& points, const Vec3I& face, const Vec3I& other)
-{
-    int side = 0;
-    for (int k = 0; k < 3; ++k) {
-        if (is_corner_of(face, other[k]))
-            continue;
-        const int sign =
-            exact::orient3d(points[face[0]], points[face[1]], points[face[2]], points[other[k]]);
-        if (sign == 0 || sign == -side)
-            return false;
-        side = sign;
-    }
-    return side != 0;
-}
-
 std::vector<char> find_degenerate(const TwoSurfaces& both)
 {
     std::vector<char> degenerate(both.faces.size());
@@ -117,24 +95,16 @@ check_surfaces(const PrismShell& shell, const std::vector<char>& pinned, Certifi
             add_to(both.inner(f) ? certificate.inner_folds : certificate.outer_contacts,
                    {both.source[f], both.source[f]});
 
-    const auto pairs = overlapping_pairs(triangle_boxes(both.points, both.faces));
-    std::vector<char> touching(pairs.size());
-    for_each_index(pairs.size(), [&](std::size_t i) {
-        const auto [f, g] = pairs[i];
+    const auto touch = [&](std::uint32_t f, std::uint32_t g) {
         const Vec3I &first = both.faces[f], &second = both.faces[g];
         // A triangle of no area has no plane; the shell has failed by it already.
-        touching[i] = !degenerate[f] && !degenerate[g] &&
-                      !exact::apart_in_projection(both.points, first, second) &&
-                      !plane_separates(both.points, first, second) &&
-                      !plane_separates(both.points, second, first) &&
-                      exact::triangles_touch(both.points, first, second);
-    });
+        return !degenerate[f] && !degenerate[g] &&
+               exact::triangles_touch(both.points, first, second);
+    };
     std::vector<std::array<std::uint32_t, 2>> contacts;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (!touching[i])
-            continue;
-        list_contact(both, pairs[i][0], pairs[i][1], certificate);
-        contacts.push_back({both.source[pairs[i][0]], both.source[pairs[i][1]]});
+    for (const auto& [f, g] : overlapping_pairs(triangle_boxes(both.points, both.faces), touch)) {
+        list_contact(both, f, g, certificate);
+        contacts.push_back({both.source[f], both.source[g]});
     }
     return contacts;
 }

@@ -139,10 +139,39 @@ bool apart_in_projection(const std::vector<openvdb::Vec3s>& points, const openvd
     return edge_separates(s, first, t, second) || edge_separates(t, second, s, first);
 }
 
+namespace
+{
+
+bool is_corner_of(const openvdb::Vec3I& face, std::uint32_t point)
+{
+    return face[0] == point || face[1] == point || face[2] == point;
+}
+
+/// Whether all corners of `other` that are not shared lie strictly on one side of the plane of
+/// `face`: then the two meet in shared corners and edges only.
+bool plane_separates(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& face,
+                     const openvdb::Vec3I& other)
+{
+    int side = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (is_corner_of(face, other[k]))
+            continue;
+        const int sign =
+            orient3d(points[face[0]], points[face[1]], points[face[2]], points[other[k]]);
+        if (sign == 0 || sign == -side)
+            return false;
+        side = sign;
+    }
+    return side != 0;
+}
+
+} // namespace
+
 bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
                      const openvdb::Vec3I& second)
 {
-    if (apart_in_projection(points, first, second))
+    if (apart_in_projection(points, first, second) || plane_separates(points, first, second) ||
+        plane_separates(points, second, first))
         return false;
     const SharedCorners shared = match_corners(first, second);
     auto p = [&](std::size_t slot) { return point3(points[first[shared.in_first[slot]]]); };

@@ -2,10 +2,12 @@
 #include "mesh/surface_defects.h"
 
 #include "core/box_pairs.h"
+#include "core/deal_out.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -108,11 +110,14 @@ std::array<std::uint32_t, 3> sorted_corners(const openvdb::Vec3I& triangle)
 
 std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
 {
-    std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> sorted;
-    sorted.reserve(mesh.triangles.size());
+    using Entry = std::pair<std::array<std::uint32_t, 3>, std::uint32_t>;
+    std::vector<Entry> entries;
+    entries.reserve(mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-        sorted.emplace_back(sorted_corners(mesh.triangles[t]), t);
-    std::sort(sorted.begin(), sorted.end());
+        entries.emplace_back(sorted_corners(mesh.triangles[t]), t);
+    const std::vector<Entry> sorted = deal_out<Entry>(
+        std::array{std::move(entries)}, mesh.points.size(),
+        [](const Entry& entry) { return entry.first[0]; }, std::less<>());
     std::vector<char> duplicate(mesh.triangles.size());
     for (std::size_t i = 1; i < sorted.size(); ++i)
         duplicate[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
@@ -122,22 +127,13 @@ std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
 std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
                                                   const std::vector<char>& degenerate)
 {
-    const std::vector<TrianglePair> pairs =
-        overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles));
-    std::vector<char> touching(pairs.size());
-    for_each_index(pairs.size(), [&](std::size_t i) {
-        const auto [first, second] = pairs[i];
+    const auto touch = [&](std::uint32_t first, std::uint32_t second) {
         const openvdb::Vec3I &a = mesh.triangles[first], &b = mesh.triangles[second];
         // Degenerate and duplicate triangles are listed as what they are.
-        touching[i] = !degenerate[first] && !degenerate[second] &&
-                      sorted_corners(a) != sorted_corners(b) &&
-                      exact::triangles_touch(mesh.points, a, b);
-    });
-    std::vector<TrianglePair> found;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (touching[i])
-            found.push_back(pairs[i]);
-    return found;
+        return !degenerate[first] && !degenerate[second] &&
+               exact::triangles_touch(mesh.points, a, b) && sorted_corners(a) != sorted_corners(b);
+    };
+    return overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch);
 }
 
 } // namespace

@@ -85,19 +85,16 @@ std::vector<char> find_rags(const TriangleMesh& mesh)
 /// Triangles that cross or touch another one.
 std::vector<char> crossing_triangles(const TriangleMesh& mesh)
 {
-    const auto pairs = overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles));
     const auto flat = [&](const Vec3I& t) {
         return exact::collinear(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
     };
-    std::vector<char> touch(pairs.size());
-    for_each_index(pairs.size(), [&](std::size_t i) {
-        const Vec3I &a = mesh.triangles[pairs[i][0]], &b = mesh.triangles[pairs[i][1]];
-        touch[i] = flat(a) || flat(b) || exact::triangles_touch(mesh.points, a, b);
-    });
+    const auto touch = [&](std::uint32_t first, std::uint32_t second) {
+        const Vec3I &a = mesh.triangles[first], &b = mesh.triangles[second];
+        return flat(a) || flat(b) || exact::triangles_touch(mesh.points, a, b);
+    };
     std::vector<char> crossing(mesh.triangles.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-        for (const std::uint32_t t : pairs[i])
-            crossing[t] |= touch[i];
+    for (const auto& [a, b] : overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch))
+        crossing[a] = crossing[b] = 1;
     return crossing;
 }
 
