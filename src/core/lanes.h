@@ -22,6 +22,10 @@ inline constexpr std::size_t kLanes = 8;
 using Lanes __attribute__((vector_size(4 * kLanes))) = float;
 using LaneIndices __attribute__((vector_size(4 * kLanes))) = std::int32_t;
 
+// Four doubles, not eight: what the processor does not have in one piece goes through memory.
+inline constexpr std::size_t kDoubleLanes = 4;
+using DoubleLanes __attribute__((vector_size(8 * kDoubleLanes))) = double;
+
 /// Memory for lanes is aligned by hand: without AVX the compiler takes less for enough.
 inline constexpr std::size_t kLanesAlignment = 4 * kLanes;
 

@@ -21,7 +21,7 @@ constexpr double kFar = 1e300;
 
 Slab slab(const Corners& s, const Corners& t, double enough = kFar)
 {
-    const vdb_shell::growth::SlabQuery query{s, t, enough};
+    const vdb_shell::growth::SlabQuery query{&s, &t, enough};
     Slab found;
     vdb_shell::growth::slabs_between(&query, 1, &found);
     return found;
@@ -139,19 +139,22 @@ TEST(Separation, StopsLookingBeyondEnough)
 TEST(Separation, OfAPairIsTheSameInAnyCompany)
 {
     const vdb_shell::CounterRandom random(11);
-    std::vector<vdb_shell::growth::SlabQuery> queries;
+    std::vector<Corners> triangles;
     for (std::uint64_t i = 0; i < 64; ++i) {
         const Vec3d by(random.unit(5000 + i), random.unit(6000 + i), random.unit(7000 + i));
-        queries.push_back({random_triangle(random, 2 * i, Vec3d(0.0)),
-                           random_triangle(random, 2 * i + 1, by), i % 3 == 0 ? 0.2 : kFar});
+        triangles.push_back(random_triangle(random, 2 * i, Vec3d(0.0)));
+        triangles.push_back(random_triangle(random, 2 * i + 1, by));
     }
+    std::vector<vdb_shell::growth::SlabQuery> queries;
+    for (std::size_t i = 0; i < 64; ++i)
+        queries.push_back({&triangles[2 * i], &triangles[2 * i + 1], i % 3 == 0 ? 0.2 : kFar});
     for (const std::size_t at_once : {2U, 5U, 8U})
         for (std::size_t first = 0; first + at_once <= queries.size(); first += at_once) {
             std::array<Slab, vdb_shell::growth::kSlabsAtOnce> found;
             vdb_shell::growth::slabs_between(&queries[first], at_once, found.data());
             for (std::size_t i = 0; i < at_once; ++i) {
                 const auto& [s, t, enough] = queries[first + i];
-                const Slab alone = slab(s, t, enough);
+                const Slab alone = slab(*s, *t, enough);
                 EXPECT_EQ(found[i].n, alone.n);
                 EXPECT_EQ(found[i].lo, alone.lo);
                 EXPECT_EQ(found[i].gap, alone.gap);

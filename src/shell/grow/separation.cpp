@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/separation.h"
 
-#include "core/two_targets.h"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -13,58 +11,23 @@ namespace vdb_shell::growth
 namespace
 {
 
-/// All corners relative to the first triangle's first: an object far from the origin keeps its
-/// digits.
-struct Pair {
-    std::array<Vec3d, 3> s, t;
+using FloatsOfDoubles __attribute__((vector_size(4 * kDoubleLanes))) = float;
+using DoublePoint = std::array<DoubleLanes, 3>;
+
+/// A point or a direction to a lane, by axis.
+struct alignas(kLanesAlignment) PointRow {
+    std::array<std::array<double, kLanes>, 3> at;
+    void set(std::size_t lane, const Vec3d& p)
+    {
+        at[0][lane] = p[0], at[1][lane] = p[1], at[2][lane] = p[2];
+    }
+    Vec3d get(std::size_t lane) const { return {at[0][lane], at[1][lane], at[2][lane]}; }
 };
 
-Pair relative(const Corners& s, const Corners& t)
-{
-    return {{Vec3d(0.0), s[1] - s[0], s[2] - s[0]}, {t[0] - s[0], t[1] - s[0], t[2] - s[0]}};
-}
-
-Slab slab_across(const Vec3d& axis, const Pair& p)
-{
-    Slab slab;
-    const double length = axis.length();
-    if (!(length > 0))
-        return slab;
-    // The wall is made of this rounded normal, so its slab has to be measured with it.
-    const Vec3s n(axis / length);
-    const Vec3d m(n);
-    const double s1 = m.dot(p.s[1]), s2 = m.dot(p.s[2]);
-    const double t0 = m.dot(p.t[0]), t1 = m.dot(p.t[1]), t2 = m.dot(p.t[2]);
-    const double s_lo = std::min({0.0, s1, s2}), s_hi = std::max({0.0, s1, s2});
-    const double t_lo = std::min({t0, t1, t2}), t_hi = std::max({t0, t1, t2});
-    return s_lo - t_hi > t_lo - s_hi ? Slab{n, s_lo, t_hi, s_lo - t_hi}
-                                     : Slab{-n, -s_hi, -t_lo, t_lo - s_hi};
-}
-
-/// From the closest point of the segment p + [0, 1] d to that of q + [0, 1] e (Ericson 2005,
-/// "Real-Time Collision Detection", 5.1.9).
-Vec3d between_segments(const Vec3d& p, const Vec3d& d, const Vec3d& q, const Vec3d& e)
-{
-    constexpr double kParallel = 1e-12;
-    const Vec3d r = p - q;
-    const double dd = d.lengthSqr(), ee = e.lengthSqr(), de = d.dot(e), dr = d.dot(r),
-                 er = e.dot(r);
-    const double denominator = dd * ee - de * de;
-    const auto from = [&](double start) {
-        const double t = ee > 0 ? std::clamp((de * start + er) / ee, 0.0, 1.0) : 0.0;
-        const double s = dd > 0 ? std::clamp((de * t - dr) / dd, 0.0, 1.0) : 0.0;
-        return (q + t * e) - (p + s * d);
-    };
-    if (denominator > kParallel * dd * ee)
-        return from(std::clamp((de * er - dr * ee) / denominator, 0.0, 1.0));
-    const Vec3d one = from(0.0), other = from(1.0);
-    return one.lengthSqr() < other.lengthSqr() ? one : other;
-}
-
-/// Corners 1 and 2 of the first triangles and all of the second, relative to corner 0 of the first,
-/// by axis; a pair to a lane.
+/// The corners of the pairs, a pair to a lane: those of the first triangles, then of the second,
+/// relative to corner 0 of the first.
 struct PairLanes {
-    alignas(kLanesAlignment) std::array<std::array<std::array<float, kLanes>, 3>, 5> at;
+    std::array<PointRow, 6> corner;
     alignas(kLanesAlignment) std::array<float, kLanes> enough;
 };
 
@@ -202,7 +165,14 @@ VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
     Lanes size{};
     for (std::size_t i = 0; i < 5; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
-            std::memcpy(&c[i][k], pairs.at[i][k].data(), sizeof(Lanes));
+            std::array<FloatsOfDoubles, 2> half;
+            for (std::size_t h = 0; h < 2; ++h) {
+                DoubleLanes wide;
+                std::memcpy(&wide, pairs.corner[1 + i].at[k].data() + h * kDoubleLanes,
+                            sizeof wide);
+                half[h] = __builtin_convertvector(wide, FloatsOfDoubles);
+            }
+            c[i][k] = __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 4, 5, 6, 7);
             raise_to(size, c[i][k]);
             raise_to(size, -c[i][k]);
         }
@@ -239,81 +209,230 @@ VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
     std::memcpy(sight.across_second.data(), &across_second, sizeof edges);
 }
 
-Vec3d between_edges(const Pair& p, int i, int j)
+VDB_SHELL_LANES_PART void load(const PointRow& row, std::size_t first, DoublePoint& out)
 {
-    return between_segments(p.s[i], p.s[(i + 1) % 3] - p.s[i], p.t[j], p.t[(j + 1) % 3] - p.t[j]);
+    for (std::size_t k = 0; k < 3; ++k)
+        std::memcpy(&out[k], row.at[k].data() + first, sizeof(DoubleLanes));
 }
 
-/// The same in doubles, for edges so close that floats cannot choose.
-Vec3d between_closest_edges(const Pair& p)
+VDB_SHELL_LANES_PART void dot(const DoublePoint& a, const DoublePoint& b, DoubleLanes& out)
 {
-    Vec3d least;
-    double distance2 = std::numeric_limits<double>::max();
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-            const Vec3d between = between_edges(p, i, j);
-            if (between.lengthSqr() < distance2)
-                least = between, distance2 = between.lengthSqr();
+    out = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+VDB_SHELL_LANES_PART void clamp_to_one(DoubleLanes& x)
+{
+    x = x < 0.0 ? DoubleLanes{} : x;
+    x = x > 1.0 ? DoubleLanes{} + 1.0 : x;
+}
+
+/// Edges from p and from q to their ends.
+struct EdgeRows {
+    const PointRow &p, &p_end, &q, &q_end;
+};
+
+/// From the closest point of each first edge to that of the second (Ericson 2005, "Real-Time
+/// Collision Detection", 5.1.9).
+VDB_SHELL_TWO_TARGETS void between_edges(const EdgeRows& edges, PointRow& between)
+{
+    constexpr double kParallelInDoubles = 1e-12;
+    for (std::size_t first = 0; first < kLanes; first += kDoubleLanes) {
+        DoublePoint p, d, q, e, r;
+        load(edges.p, first, p), load(edges.p_end, first, d);
+        load(edges.q, first, q), load(edges.q_end, first, e);
+        for (std::size_t k = 0; k < 3; ++k)
+            d[k] -= p[k], e[k] -= q[k], r[k] = p[k] - q[k];
+        DoubleLanes dd, ee, de, dr, er;
+        dot(d, d, dd), dot(e, e, ee), dot(d, e, de), dot(d, r, dr), dot(e, r, er);
+        const DoubleLanes denominator = dd * ee - de * de;
+        const auto parallel = !(denominator > kParallelInDoubles * dd * ee);
+        const auto from = [&](const DoubleLanes& start, DoublePoint& way, DoubleLanes& squared) {
+            DoubleLanes t = (de * start + er) / ee;
+            t = ee > 0.0 ? t : DoubleLanes{};
+            clamp_to_one(t);
+            DoubleLanes s = (de * t - dr) / dd;
+            s = dd > 0.0 ? s : DoubleLanes{};
+            clamp_to_one(s);
+            for (std::size_t k = 0; k < 3; ++k)
+                way[k] = (q[k] + t * e[k]) - (p[k] + s * d[k]);
+            dot(way, way, squared);
+        };
+        DoubleLanes start = (de * er - dr * ee) / denominator;
+        start = parallel ? DoubleLanes{} : start;
+        clamp_to_one(start);
+        DoublePoint way, other;
+        DoubleLanes squared, other_squared;
+        from(start, way, squared);
+        from(DoubleLanes{} + 1.0, other, other_squared);
+        const auto rather = parallel & !(squared < other_squared);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const DoubleLanes chosen = rather ? other[k] : way[k];
+            std::memcpy(between.at[k].data() + first, &chosen, sizeof chosen);
         }
-    return least;
+    }
 }
 
-Vec3d normal_of(const Vec3d& a, const Vec3d& b, const Vec3d& c)
+/// The slabs of the pairs across a direction each, and that one's length, squared.
+struct SlabLanes {
+    alignas(kLanesAlignment) std::array<std::array<float, kLanes>, 3> n;
+    alignas(kLanesAlignment) std::array<double, kLanes> lo, hi, gap, squared;
+};
+
+VDB_SHELL_TWO_TARGETS void slabs_across(const PairLanes& pairs, const PointRow& ways,
+                                        SlabLanes& slabs)
 {
-    return (b - a).cross(c - a);
+    for (std::size_t first = 0; first < kLanes; first += kDoubleLanes) {
+        DoublePoint way, m;
+        load(ways, first, way);
+        DoubleLanes squared, length;
+        dot(way, way, squared);
+        for (std::size_t i = 0; i < kDoubleLanes; ++i)
+            length[i] = std::sqrt(squared[i]);
+        std::array<FloatsOfDoubles, 3> n;
+        for (std::size_t k = 0; k < 3; ++k) {
+            // The wall is made of this rounded normal, so its slab has to be measured with it.
+            n[k] = __builtin_convertvector(way[k] / length, FloatsOfDoubles);
+            m[k] = __builtin_convertvector(n[k], DoubleLanes);
+        }
+        std::array<DoubleLanes, 5> at;
+        for (std::size_t i = 0; i < 5; ++i) {
+            DoublePoint corner;
+            load(pairs.corner[1 + i], first, corner);
+            dot(m, corner, at[i]);
+        }
+        DoubleLanes s_lo{}, s_hi{}, t_lo = at[2], t_hi = at[2];
+        for (std::size_t i = 0; i < 2; ++i) {
+            s_lo = at[i] < s_lo ? at[i] : s_lo, s_hi = at[i] > s_hi ? at[i] : s_hi;
+            t_lo = at[3 + i] < t_lo ? at[3 + i] : t_lo, t_hi = at[3 + i] > t_hi ? at[3 + i] : t_hi;
+        }
+        const DoubleLanes along = s_lo - t_hi, against = t_lo - s_hi;
+        const auto plain = along > against;
+        const DoubleLanes lo = plain ? s_lo : -s_hi, hi = plain ? t_hi : -t_lo;
+        DoubleLanes gap = plain ? along : against;
+        gap = length > 0.0 ? gap : DoubleLanes{} - std::numeric_limits<double>::max();
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t i = 0; i < kDoubleLanes; ++i)
+                slabs.n[k][first + i] = plain[i] ? n[k][i] : -n[k][i];
+        std::memcpy(slabs.lo.data() + first, &lo, sizeof lo);
+        std::memcpy(slabs.hi.data() + first, &hi, sizeof hi);
+        std::memcpy(slabs.gap.data() + first, &gap, sizeof gap);
+        std::memcpy(slabs.squared.data() + first, &squared, sizeof squared);
+    }
 }
 
-/// The widest slab, of which floats have seen which edges are closest and what other axes there
-/// are.
-Slab widest_slab(const Pair& p, const Sight& sight, std::size_t lane)
+Slab slab_in(const SlabLanes& slabs, std::size_t lane)
 {
-    const auto edges = static_cast<int>(sight.edges[lane]);
-    const Vec3d between = (sight.close >> lane & 1U) != 0U ? between_closest_edges(p)
-                                                           : between_edges(p, edges / 3, edges % 3);
-    const Slab across = slab_across(between, p);
-    // No slab is wider than two points are apart: most pairs end here.
-    constexpr double kAll = 1 - 1e-6;
-    if (across.gap > kAll * between.length())
-        return across;
-    // A corner of one against the inside of the other: across that one's own plane. Or whatever
-    // keeps them apart.
+    return {{slabs.n[0][lane], slabs.n[1][lane], slabs.n[2][lane]},
+            slabs.lo[lane],
+            slabs.hi[lane],
+            slabs.gap[lane]};
+}
+
+/// Other directions that keep the triangles of a pair apart: a corner of one may be next to the
+/// inside of the other, across whose own plane they are then. Of these the widest that floats have
+/// seen; false where it is no wider than `gap`.
+bool other_way(const PairLanes& lanes, const Sight& sight, std::size_t lane, double gap, Vec3d& way)
+{
     const auto first = static_cast<double>(sight.across_first[lane]),
                second = static_cast<double>(sight.across_second[lane]),
                middles = static_cast<double>(sight.across_middles[lane]);
     const double widest = std::max({first, second, middles});
-    if (across.gap >= widest)
-        return across;
-    const Slab other = slab_across(widest == first    ? normal_of(p.s[0], p.s[1], p.s[2])
-                                   : widest == second ? normal_of(p.t[0], p.t[1], p.t[2])
-                                                      : p.t[0] + p.t[1] + p.t[2] - p.s[1] - p.s[2],
-                                   p);
-    return other.gap > across.gap ? other : across;
+    if (gap >= widest)
+        return false;
+    const auto corner = [&](std::size_t i) { return lanes.corner[i].get(lane); };
+    way = widest == first    ? corner(1).cross(corner(2))
+          : widest == second ? (corner(4) - corner(3)).cross(corner(5) - corner(3))
+                             : corner(3) + corner(4) + corner(5) - corner(1) - corner(2);
+    return true;
+}
+
+void lay_out(const SlabQuery* query, std::size_t count, PairLanes& lanes)
+{
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        // The last one fills the lanes that are left.
+        const SlabQuery& pair = query[std::min(lane, count - 1)];
+        const Vec3d& origin = (*pair.first)[0];
+        for (std::size_t k = 0; k < 3; ++k) {
+            lanes.corner[k].set(lane, (*pair.first)[k] - origin);
+            lanes.corner[3 + k].set(lane, (*pair.second)[k] - origin);
+        }
+        lanes.enough[lane] = static_cast<float>(pair.enough);
+    }
+}
+
+/// The closest of all pairs of edges, for lanes whose edges are too close for floats to choose.
+void between_all_edges(const PairLanes& lanes, unsigned which, PointRow& between)
+{
+    std::array<double, kLanes> least;
+    least.fill(std::numeric_limits<double>::max());
+    PointRow here;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            between_edges({lanes.corner[i], lanes.corner[(i + 1) % 3], lanes.corner[3 + j],
+                           lanes.corner[3 + (j + 1) % 3]},
+                          here);
+            for (unsigned bits = which; bits != 0; bits &= bits - 1) {
+                const auto lane = static_cast<std::size_t>(__builtin_ctz(bits));
+                const double squared = here.get(lane).lengthSqr();
+                if (squared < least[lane])
+                    between.set(lane, here.get(lane)), least[lane] = squared;
+            }
+        }
+}
+
+/// From the closest point of the first triangle's edges to that of the second's.
+void between_closest_edges(const PairLanes& lanes, const Sight& sight, PointRow& between)
+{
+    PointRow p, p_end, q, q_end;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const auto which = static_cast<std::size_t>(sight.edges[lane]);
+        const std::size_t i = which / 3, j = which % 3;
+        p.set(lane, lanes.corner[i].get(lane));
+        p_end.set(lane, lanes.corner[(i + 1) % 3].get(lane));
+        q.set(lane, lanes.corner[3 + j].get(lane));
+        q_end.set(lane, lanes.corner[3 + (j + 1) % 3].get(lane));
+    }
+    between_edges({p, p_end, q, q_end}, between);
+    if (const unsigned close = sight.close & ~sight.wide)
+        between_all_edges(lanes, close, between);
 }
 
 } // namespace
 
 void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab)
 {
-    assert(count <= kSlabsAtOnce);
-    std::array<Pair, kLanes> pair;
-    PairLanes lanes{};
-    for (std::size_t i = 0; i < count; ++i) {
-        pair[i] = relative(query[i].first, query[i].second);
-        const Pair& p = pair[i];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto at = [&](const Vec3d& x) { return static_cast<float>(x[int(k)]); };
-            lanes.at[0][k][i] = at(p.s[1]), lanes.at[1][k][i] = at(p.s[2]);
-            for (std::size_t j = 0; j < 3; ++j)
-                lanes.at[2 + j][k][i] = at(p.t[j]);
-        }
-        lanes.enough[i] = static_cast<float>(query[i].enough);
-    }
+    assert(count <= kLanes);
+    if (count == 0)
+        return;
+    PairLanes lanes;
+    lay_out(query, count, lanes);
     Sight sight;
     look_at(lanes, sight);
-    Slab wide;
-    wide.gap = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < count; ++i)
-        slab[i] = (sight.wide >> i & 1U) != 0U ? wide : widest_slab(pair[i], sight, i);
+    PointRow ways;
+    between_closest_edges(lanes, sight, ways);
+    SlabLanes across, other;
+    slabs_across(lanes, ways, across);
+    unsigned doubtful = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        // No slab is wider than two points are apart: most pairs end here.
+        constexpr double kAll = 1 - 1e-6;
+        const double gap = across.gap[i];
+        Vec3d way;
+        if ((sight.wide >> i & 1U) != 0U ||
+            (gap > 0 && gap * gap > kAll * kAll * across.squared[i]) ||
+            !other_way(lanes, sight, i, gap, way))
+            continue;
+        ways.set(i, way);
+        doubtful |= 1U << i;
+    }
+    if (doubtful != 0)
+        slabs_across(lanes, ways, other);
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool rather = (doubtful >> i & 1U) != 0U && other.gap[i] > across.gap[i];
+        slab[i] = slab_in(rather ? other : across, i);
+        if ((sight.wide >> i & 1U) != 0U)
+            slab[i].gap = std::numeric_limits<double>::infinity();
+    }
 }
 
 } // namespace vdb_shell::growth

@@ -20,7 +20,7 @@ struct Slab {
 
 /// Two triangles, and how wide a slab between them need be.
 struct SlabQuery {
-    Corners first, second;
+    const Corners *first, *second;
     double enough;
 };
 

@@ -4,6 +4,7 @@
 #include "core/lanes.h"
 #include "core/parallel.h"
 #include "shell/grow/move_tests.h"
+#include "shell/grow/prism_lanes.h"
 
 #include <openvdb/math/Mat3.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace vdb_shell::growth
@@ -32,15 +32,10 @@ constexpr double kPositive = 1e-3;
 constexpr double kStay = 1.0, kStayAcross = 10.0;
 constexpr int kSteps = 6; ///< while the bounds that are not kept change
 
-// Doubles: what is still positive is decided by less than floats can tell.
-// Four, not eight: what the processor does not have in one piece goes through memory.
-constexpr std::size_t kDoubles = 4;
-using Doubles __attribute__((vector_size(8 * kDoubles))) = double;
-
 /// The bounds of half the tets of one prism, lane by lane: n.(x - here) + value, unit n. A tet that
 /// does not count has n = 0 and a value that is always enough.
-struct alignas(8 * kDoubles) Bounds4 {
-    Doubles x, y, z, value;
+struct alignas(8 * kDoubleLanes) Bounds4 {
+    DoubleLanes x, y, z, value;
 };
 
 double shortest_inner_edge(const GrowState& s, int v)
@@ -58,63 +53,35 @@ Vec3d inner_normal(const GrowState& s, int v)
     return length > 0 ? gradient / length : Vec3d(0.0);
 }
 
-/// Corners of the bases of four tets relative to the vertex, by corner and axis, and 0 for a tet
-/// that does not count.
-struct alignas(8 * kDoubles) Bases {
-    std::array<std::array<std::array<double, kDoubles>, 3>, 3> corner;
-    std::array<double, kDoubles> counts;
-};
-
-VDB_SHELL_LANES_PART void load(const std::array<double, kDoubles>& from, Doubles& lanes)
-{
-    std::memcpy(&lanes, from.data(), sizeof lanes);
-}
-
-VDB_SHELL_LANES_PART void bound(const Bases& bases, Bounds4& out)
+/// The bounds of four tets of a prism; `counts` is 0 for a tet that does not.
+VDB_SHELL_LANES_PART void bound(const Bases& bases, const DoubleLanes& counts, Bounds4& out)
 {
     constexpr double kEnough = std::numeric_limits<double>::infinity();
-    std::array<Doubles, 3> p, u, w;
-    for (std::size_t k = 0; k < 3; ++k) {
-        load(bases.corner[0][k], p[k]);
-        load(bases.corner[1][k], u[k]);
-        load(bases.corner[2][k], w[k]);
-        u[k] -= p[k], w[k] -= p[k];
-    }
-    const Doubles x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
-                  z = u[0] * w[1] - u[1] * w[0], value = -(x * p[0] + y * p[1] + z * p[2]);
-    Doubles counts;
-    load(bases.counts, counts);
-    const Doubles squared = (x * x + y * y + z * z) * counts;
-    Doubles length;
-    for (std::size_t i = 0; i < kDoubles; ++i)
+    const LanePoint64& p = bases.p;
+    LanePoint64 u, w;
+    for (std::size_t k = 0; k < 3; ++k)
+        u[k] = bases.u[k] - p[k], w[k] = bases.w[k] - p[k];
+    const DoubleLanes x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
+                      z = u[0] * w[1] - u[1] * w[0], value = -(x * p[0] + y * p[1] + z * p[2]);
+    const DoubleLanes squared = (x * x + y * y + z * z) * counts;
+    DoubleLanes length;
+    for (std::size_t i = 0; i < kDoubleLanes; ++i)
         length[i] = std::sqrt(squared[i]);
-    const Doubles inverse = squared > 0 ? 1 / length : Doubles{};
+    const DoubleLanes inverse = squared > 0 ? 1 / length : DoubleLanes{};
     out.x = x * inverse, out.y = y * inverse, out.z = z * inverse;
-    out.value = squared > 0 ? value * inverse : Doubles{} + kEnough;
+    out.value = squared > 0 ? value * inverse : DoubleLanes{} + kEnough;
 }
 
 VDB_SHELL_LANES_PART void bound_prism(const GrowState& s, const FaceCorner& at, Bounds4* out)
 {
-    const Vec3I& face = s.mesh->faces[at.face];
-    const Vec3d& here = s.b[face[at.local]];
-    std::array<Vec3d, 6> corner;
-    std::array<double, 3> counts;
-    for (int k = 0; k < 3; ++k) {
-        corner[k] = s.a[face[k]] - here;
-        corner[3 + k] = s.b[face[k]] - here;
-        counts[k] = s.pinned[face[k]] ? 0.0 : 1.0;
-    }
-    const TetFromInner* tet = tables().from_b[kTwelve][at.local].data();
-    for (std::size_t half = 0; half < 2; ++half, tet += kDoubles) {
-        Bases bases;
-        for (std::size_t i = 0; i < kDoubles; ++i) {
-            bases.counts[i] = counts[tet[i].pillar];
-            for (std::size_t c = 0; c < 3; ++c)
-                for (int k = 0; k < 3; ++k)
-                    bases.corner[c][k][i] = corner[tet[i].base[c]][k];
-        }
-        bound(bases, out[half]);
-    }
+    const int v = s.mesh->corner(at.face, at.local);
+    const int next = s.mesh->corner(at.face, (at.local + 1) % 3),
+              last = s.mesh->corner(at.face, (at.local + 2) % 3);
+    std::array<Bases, 2> half;
+    bases_around(s, at, s.b[v], half);
+    const double of_next = s.pinned[next] ? 0 : 1, of_last = s.pinned[last] ? 0 : 1;
+    bound(half[0], DoubleLanes{1, of_next, of_last, 1}, out[0]);
+    bound(half[1], DoubleLanes{of_last, 1, of_next, 1}, out[1]);
 }
 
 /// The bounds of the twelve tets of each prism around v; gives back the least value of one.
@@ -122,7 +89,7 @@ VDB_SHELL_TWO_TARGETS double list_bounds(const GrowState& s, int v, std::vector<
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
     out.resize(2 * static_cast<std::size_t>(fan.size()));
-    Doubles least = Doubles{} + std::numeric_limits<double>::infinity();
+    DoubleLanes least = DoubleLanes{} + std::numeric_limits<double>::infinity();
     for (int f = 0; f < fan.size(); ++f) {
         Bounds4* const of_prism = out.data() + 2 * static_cast<std::size_t>(f);
         bound_prism(s, fan.first[f], of_prism);
@@ -132,7 +99,7 @@ VDB_SHELL_TWO_TARGETS double list_bounds(const GrowState& s, int v, std::vector<
     return std::min({least[0], least[1], least[2], least[3]});
 }
 
-VDB_SHELL_LANES_PART double sum(const Doubles& lanes)
+VDB_SHELL_LANES_PART double sum(const DoubleLanes& lanes)
 {
     return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
 }
@@ -140,15 +107,15 @@ VDB_SHELL_LANES_PART double sum(const Doubles& lanes)
 /// Gradient and curvature, by columns of the lower triangle, of half the squares of what the bounds
 /// lack of `room` at x.
 struct Lack {
-    Doubles gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+    DoubleLanes gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
 };
 
 VDB_SHELL_LANES_PART void add_lack(const Bounds4& b, const Vec3d& x, double room, Lack& lack)
 {
-    const Doubles open = room - b.value - (b.x * x[0] + b.y * x[1] + b.z * x[2]);
-    const Doubles by = open > 0 ? open : Doubles{};
-    const Doubles nx = open > 0 ? b.x : Doubles{}, ny = open > 0 ? b.y : Doubles{},
-                  nz = open > 0 ? b.z : Doubles{};
+    const DoubleLanes open = room - b.value - (b.x * x[0] + b.y * x[1] + b.z * x[2]);
+    const DoubleLanes by = open > 0 ? open : DoubleLanes{};
+    const DoubleLanes nx = open > 0 ? b.x : DoubleLanes{}, ny = open > 0 ? b.y : DoubleLanes{},
+                      nz = open > 0 ? b.z : DoubleLanes{};
     lack.gx += by * nx, lack.gy += by * ny, lack.gz += by * nz;
     lack.xx += nx * nx, lack.xy += nx * ny, lack.xz += nx * nz;
     lack.yy += ny * ny, lack.yz += ny * nz, lack.zz += nz * nz;

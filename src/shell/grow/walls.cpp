@@ -32,10 +32,10 @@ struct Chunk {
 };
 
 struct Stock {
-    std::vector<Corners> corner;
+    std::vector<Corners> corner, outer;
     std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
     std::vector<double> reach;               ///< the longest of a face's corners
-    std::vector<Box> box;
+    std::vector<FloatBox> box;
     std::vector<std::uint8_t> still; ///< by face: none of its corners will move
 };
 
@@ -68,9 +68,10 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
 {
     const std::size_t count = s.mesh->faces.size();
     s.home = s.b;
-    Stock stock{std::vector<Corners>(count), std::vector<Vec3d>(count),
-                std::vector<Vec3d>(count),   std::vector<double>(count),
-                std::vector<Box>(count),     std::vector<std::uint8_t>(count)};
+    Stock stock{std::vector<Corners>(count),     std::vector<Corners>(count),
+                std::vector<Vec3d>(count),       std::vector<Vec3d>(count),
+                std::vector<double>(count),      std::vector<FloatBox>(count),
+                std::vector<std::uint8_t>(count)};
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -86,10 +87,10 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
             }
             stock.corner[f] = inner_corners(s, f);
             stock.normal[f] = unit_normal(stock.corner[f]);
-            stock.outer_normal[f] = unit_normal(outer_corners(s, f));
+            stock.outer[f] = outer_corners(s, f);
+            stock.outer_normal[f] = unit_normal(stock.outer[f]);
             stock.reach[f] = reach;
-            stock.box[f] = box_of(stock.corner[f]);
-            stock.box[f].inflate(reach);
+            stock.box[f] = inner_box(s, f, reach);
         },
         256);
     return stock;
@@ -130,13 +131,13 @@ public:
             // Each pair once: from its smaller face, or from the one that moves.
             if (g == f || (g < f && moves(g)) || s_.mesh->share_a_corner(f, g))
                 return;
-            add({stock_.corner[f], stock_.corner[g], stock_.reach[f] + stock_.reach[g]},
+            add({&stock_.corner[f], &stock_.corner[g], stock_.reach[f] + stock_.reach[g]},
                 stock_.normal[g], {f, g}, waiting, out);
         });
         s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, moves, [&](int f, int g) {
             if (!share_a_pin(s_, f, g))
-                add({stock_.corner[f], outer_corners(s_, g), stock_.reach[f]},
-                    stock_.outer_normal[g], {f, -1}, waiting, out);
+                add({&stock_.corner[f], &stock_.outer[g], stock_.reach[f]}, stock_.outer_normal[g],
+                    {f, -1}, waiting, out);
         });
     }
 
@@ -156,8 +157,8 @@ private:
     {
         constexpr double kAboveRounding = 1 + 1e-9;
         const double enough = kAboveRounding * query.enough;
-        if (beyond(stock_.normal[owners.f], query.first[0], query.second, enough) ||
-            beyond(normal_of_second, query.second[0], query.first, enough))
+        if (beyond(stock_.normal[owners.f], (*query.first)[0], *query.second, enough) ||
+            beyond(normal_of_second, (*query.second)[0], *query.first, enough))
             return;
         waiting.query[waiting.count] = query;
         waiting.owners[waiting.count] = owners;
@@ -179,7 +180,7 @@ private:
         // The share of the gap that goes to the other triangle.
         const double share = g < 0 || stock_.still[g] ? 0.0 : 0.5;
         const double at = slab.hi + std::max(share * slab.gap, 2 * slack_);
-        const Wall wall{slab.n, Vec3d(slab.n).dot(query.first[0]) + at};
+        const Wall wall{slab.n, Vec3d(slab.n).dot((*query.first)[0]) + at};
         for (int k = 0; k < 3; ++k) {
             owners.reached |= std::uint8_t(reaches(wall, f, k, 1.0) << k);
             if (share > 0)
