@@ -3,12 +3,14 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include "core/deal_out.h"
+#include "core/lanes.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
@@ -79,49 +81,82 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     return tet;
 }
 
-/// Which voxels of each of eight lines along z are inside, `first` above `last` where none is.
+constexpr std::size_t kHalves = std::size_t(kLeafSize) / kDoubleLanes;
+using Integers __attribute__((vector_size(4 * kDoubleLanes))) = std::int32_t;
+using Floats __attribute__((vector_size(4 * kDoubleLanes))) = float;
+
+/// Which voxels of each of the eight lines along z over x and y, y + 1 and so on are inside,
+/// `first` above `last` where none is.
 struct LineEnds {
     std::array<int, kLeafSize> first, last;
 };
 
-/// The lines over x and y, y + 1 and so on: eight at once, as the processor does several together.
-LineEnds line_ends(const IndexTet& tet, int x, int y, int count)
+/// Where lines along z enter and leave a tet.
+class LineClip
 {
-    std::array<double, kLeafSize> low, high, dy;
-    for (int k = 0; k < count; ++k) {
-        low[k] = tet.low.z();
-        high[k] = tet.high.z();
-        dy[k] = y + k - tet.origin[1];
+public:
+    explicit LineClip(const IndexTet& tet) : tet_(tet)
+    {
+        for (const Affine& weight : tet.barycentric) {
+            const double slope = weight.slope[2];
+            if (slope == 0.0)
+                side_[sides_++] = &weight;
+            else
+                (slope > 0.0 ? floor_[floors_++] : ceiling_[ceilings_++]) = {
+                    tet.origin[2] - (weight.value + kSlack) / slope, -weight.slope[0] / slope,
+                    -weight.slope[1] / slope};
+        }
     }
-    const double dx = x - tet.origin[0], z = tet.origin[2];
-    for (const Affine& weight : tet.barycentric) {
-        const double at_x = weight.value + weight.slope[0] * dx, of_y = weight.slope[1];
-        const double slope = weight.slope[2];
-        if (slope > 0.0)
-            for (int k = 0; k < count; ++k) {
-                const double bound = z - (at_x + of_y * dy[k] + kSlack) / slope;
-                low[k] = low[k] < bound ? bound : low[k];
+
+    /// The lines over x and y, y + 1 and so on.
+    VDB_SHELL_TWO_TARGETS void ends(int x, int y, LineEnds& out) const
+    {
+        const double dx = x - tet_.origin[0];
+        const DoubleLanes up_to_three{0, 1, 2, 3};
+        // Bounds outside of the tet's box stay next to it, where they are integers that exist.
+        const DoubleLanes least = tet_.low.z() - 1.0 + DoubleLanes{},
+                          most = tet_.high.z() + 1.0 + DoubleLanes{};
+        for (std::size_t half = 0; half < kHalves; ++half) {
+            const DoubleLanes dy = y + double(half * kDoubleLanes) - tet_.origin[1] + up_to_three;
+            DoubleLanes low = least + 1.0, high = most - 1.0;
+            for (std::size_t i = 0; i < floors_; ++i) {
+                const DoubleLanes height = floor_[i].at + floor_[i].by_x * dx + floor_[i].by_y * dy;
+                low = low < height ? height : low;
             }
-        else if (slope < 0.0)
-            for (int k = 0; k < count; ++k) {
-                const double bound = z - (at_x + of_y * dy[k] + kSlack) / slope;
-                high[k] = bound < high[k] ? bound : high[k];
+            for (std::size_t i = 0; i < ceilings_; ++i) {
+                const DoubleLanes height =
+                    ceiling_[i].at + ceiling_[i].by_x * dx + ceiling_[i].by_y * dy;
+                high = height < high ? height : high;
             }
-        else
-            for (int k = 0; k < count; ++k)
-                high[k] = at_x + of_y * dy[k] + kSlack < 0.0 ? low[k] - 1.0 : high[k];
+            for (std::size_t i = 0; i < sides_; ++i) {
+                const DoubleLanes weight =
+                    side_[i]->value + side_[i]->slope[0] * dx + kSlack + side_[i]->slope[1] * dy;
+                high = weight < 0.0 ? least : high;
+            }
+            low = low < most ? low : most;
+            high = high > least ? high : least;
+            Integers first = __builtin_convertvector(low, Integers),
+                     last = __builtin_convertvector(high, Integers);
+            // A comparison that is true is -1.
+            first -= __builtin_convertvector(__builtin_convertvector(first, DoubleLanes) < low,
+                                             Integers);
+            last += __builtin_convertvector(__builtin_convertvector(last, DoubleLanes) > high,
+                                            Integers);
+            std::memcpy(out.first.data() + half * kDoubleLanes, &first, sizeof first);
+            std::memcpy(out.last.data() + half * kDoubleLanes, &last, sizeof last);
+        }
     }
-    // Bounds outside of the tet's box stay next to it, where they are integers that exist.
-    const double least = tet.low.z() - 1.0, most = tet.high.z() + 1.0;
-    LineEnds ends;
-    for (int k = 0; k < count; ++k) {
-        const double up = low[k] < most ? low[k] : most, down = high[k] > least ? high[k] : least;
-        const int floor_of_up = int(up), ceiling_of_down = int(down);
-        ends.first[k] = floor_of_up + (floor_of_up < up ? 1 : 0);
-        ends.last[k] = ceiling_of_down - (ceiling_of_down > down ? 1 : 0);
-    }
-    return ends;
-}
+
+private:
+    /// Over the way from the tet's origin.
+    struct Height {
+        double at, by_x, by_y;
+    };
+    const IndexTet& tet_;
+    std::array<Height, 4> floor_, ceiling_;
+    std::array<const Affine*, 4> side_;
+    std::size_t floors_ = 0, ceilings_ = 0, sides_ = 0;
+};
 
 /// A column of leaves under construction, by the z of their origins.
 using LeafColumn = std::map<int, std::unique_ptr<Leaf>>;
@@ -142,10 +177,12 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
     const int y_begin = std::max(tet.low.y(), leaf_y);
     const int y_end = std::min(tet.high.y(), leaf_y + kLeafSize - 1);
+    const LineClip clip(tet);
+    LineEnds ends;
     for (int x = std::max(tet.low.x(), leaf_x); x <= x_end; ++x) {
-        const LineEnds ends = line_ends(tet, x, y_begin, y_end - y_begin + 1);
+        clip.ends(x, leaf_y, ends);
         for (int y = y_begin; y <= y_end; ++y) {
-            const int k = y - y_begin;
+            const auto k = std::size_t(y - leaf_y);
             if (ends.first[k] > ends.last[k])
                 continue;
             const double depth =
@@ -160,24 +197,29 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
 
 /// Overwrites what is there: to be called with the tets in descending order, so that the smallest
 /// index stays.
-void fill_leaf(Leaf& leaf, const IndexTet& tet, const TetInColumn& part)
+VDB_SHELL_TWO_TARGETS void fill_leaf(Leaf& leaf, const IndexTet& tet, const TetInColumn& part)
 {
     const int z = leaf.origin().z();
-    std::array<double, kLeafSize> along_z;
-    for (int k = 0; k < kLeafSize; ++k)
-        along_z[k] = tet.depth.slope[2] * (z + k - tet.origin[2]);
+    std::array<DoubleLanes, kHalves> along_z;
+    for (std::size_t half = 0; half < kHalves; ++half)
+        along_z[half] = tet.depth.slope[2] *
+                        (z + double(half * kDoubleLanes) - tet.origin[2] + DoubleLanes{0, 1, 2, 3});
     for (std::size_t i = 0; i < part.count; ++i) {
         const TetInColumn::Line& line = part.lines[i];
         const int begin = std::max(line.first - z, 0), end = std::min(line.last - z + 1, kLeafSize);
         if (begin >= end)
             continue;
-        float* const values = leaf.buffer().data() + std::ptrdiff_t(line.row) * kLeafSize + begin;
-        const int rows = end - begin;
-        for (int k = 0; k < rows; ++k) {
-            double depth = tet.depth.value + (line.depth + along_z[begin + k]);
-            depth = depth < 0.0 ? 0.0 : depth;
-            values[k] = float(depth > 1.0 ? 1.0 : depth);
+        std::array<float, kLeafSize> depths;
+        for (std::size_t half = 0; half < kHalves; ++half) {
+            DoubleLanes depth = tet.depth.value + (line.depth + along_z[half]);
+            depth = depth < 0.0 ? DoubleLanes{} : depth;
+            depth = depth > 1.0 ? DoubleLanes{} + 1.0 : depth;
+            const Floats rounded = __builtin_convertvector(depth, Floats);
+            std::memcpy(depths.data() + half * kDoubleLanes, &rounded, sizeof rounded);
         }
+        float* const values = leaf.buffer().data() + std::ptrdiff_t(line.row) * kLeafSize;
+        for (int k = begin; k < end; ++k)
+            values[k] = depths[std::size_t(k)];
         auto& bits = leaf.getValueMask().getWord<std::uint8_t>(openvdb::Index(line.row));
         bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
     }
@@ -253,17 +295,49 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
                 jobs.push_back({x, y, index});
 }
 
-std::vector<Job> in_order(const std::vector<std::vector<Job>>& parts)
+/// Some successive tets, and what there is to do for them.
+struct Part {
+    std::vector<IndexTet> tets;
+    std::vector<Job> jobs;
+};
+
+constexpr std::size_t kTetsInPart = 256;
+
+std::vector<Part> make_parts(const TetMesh& mesh, double voxel_size, double layers)
+{
+    std::vector<Part> parts((mesh.tets.size() + kTetsInPart - 1) / kTetsInPart);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t i) {
+            const std::size_t end = std::min((i + 1) * kTetsInPart, mesh.tets.size());
+            for (std::size_t t = i * kTetsInPart; t < end; ++t) {
+                parts[i].tets.push_back(index_tet(mesh, t, voxel_size, layers));
+                add_jobs(parts[i].tets.back(), std::uint32_t(t), parts[i].jobs);
+            }
+        },
+        1);
+    return parts;
+}
+
+const IndexTet& tet_of(const std::vector<Part>& parts, const Job& job)
+{
+    return parts[job.tet / kTetsInPart].tets[job.tet % kTetsInPart];
+}
+
+std::vector<Job> in_order(std::vector<Part>& parts)
 {
     constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
     std::int64_t x_low = kNone, y_low = kNone, x_high = -x_low, y_high = -y_low;
-    for (const std::vector<Job>& part : parts)
-        for (const Job& job : part) {
+    std::vector<std::vector<Job>> jobs;
+    for (Part& part : parts) {
+        for (const Job& job : part.jobs) {
             x_low = std::min<std::int64_t>(x_low, job.x),
             x_high = std::max<std::int64_t>(x_high, job.x);
             y_low = std::min<std::int64_t>(y_low, job.y),
             y_high = std::max<std::int64_t>(y_high, job.y);
         }
+        jobs.push_back(std::move(part.jobs));
+    }
     if (x_low > x_high)
         return {};
     // Columns by number, many far apart sharing one.
@@ -271,26 +345,11 @@ std::vector<Job> in_order(const std::vector<std::vector<Job>>& parts)
     const std::int64_t width = y_high - y_low + 1, columns = (x_high - x_low + 1) * width;
     const std::int64_t columns_to_a_key = 1 + columns / kMostKeys;
     return deal_out<Job>(
-        parts, std::size_t(columns / columns_to_a_key + 1),
+        jobs, std::size_t(columns / columns_to_a_key + 1),
         [&](const Job& job) {
             return ((job.x - x_low) * width + (job.y - y_low)) / columns_to_a_key;
         },
         std::less<>());
-}
-
-std::vector<Job> make_jobs(const std::vector<IndexTet>& tets)
-{
-    constexpr std::size_t kTetsInPart = 256;
-    std::vector<std::vector<Job>> parts((tets.size() + kTetsInPart - 1) / kTetsInPart);
-    for_each_index(
-        parts.size(),
-        [&](std::size_t i) {
-            const std::size_t end = std::min((i + 1) * kTetsInPart, tets.size());
-            for (std::size_t t = i * kTetsInPart; t < end; ++t)
-                add_jobs(tets[t], std::uint32_t(t), parts[i]);
-        },
-        1);
-    return in_order(parts);
 }
 
 /// Where each column's jobs begin, and the end of all.
@@ -335,17 +394,15 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     require_voxels_in_range(tets, voxel_size);
     const StageProgress progress(interrupter, "Shell depth");
     auto grid = empty_depth_grid(voxel_size);
-    std::vector<IndexTet> placed(tets.tets.size());
     const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
     const double layers = deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
-    for_each_index(placed.size(),
-                   [&](std::size_t t) { placed[t] = index_tet(tets, t, voxel_size, layers); });
-    const std::vector<Job> jobs = make_jobs(placed);
+    std::vector<Part> parts = make_parts(tets, voxel_size, layers);
+    const std::vector<Job> jobs = in_order(parts);
     const std::vector<std::size_t> starts = column_starts(jobs);
     const std::size_t columns = starts.size() - 1;
     std::vector<LeafColumn> filled(columns);
 
-    constexpr std::size_t kBatches = 20;
+    constexpr std::size_t kBatches = 5;
     for (std::size_t batch = 0; batch < kBatches; ++batch) {
         progress.stop_if_interrupted(int(100 * batch / kBatches));
         const std::size_t begin = columns * batch / kBatches;
@@ -355,7 +412,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
             [&](std::size_t i) {
                 const std::size_t column = begin + i;
                 for (std::size_t j = starts[column + 1]; j-- > starts[column];)
-                    fill_column(filled[column], placed[jobs[j].tet], jobs[j].x * kLeafSize,
+                    fill_column(filled[column], tet_of(parts, jobs[j]), jobs[j].x * kLeafSize,
                                 jobs[j].y * kLeafSize);
             },
             1);
