@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/field/narrow_band.h"
 
+#include "core/deal_out.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "field/eight_distances.h"
@@ -9,11 +10,11 @@
 
 #include <openvdb/tools/SignedFloodFill.h>
 
-#include <tbb/parallel_sort.h>
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -53,6 +54,9 @@ struct LeafTriangle {
                 8 * (static_cast<int>(place >> (2 - axis) * kBits & (2 * kOffset - 1)) - kOffset);
         return first;
     }
+    /// Of the leaf, and more than nothing.
+    std::uint64_t x() const { return place >> 2 * kBits; }
+    std::uint64_t y() const { return place >> kBits & (2 * kOffset - 1); }
     bool operator<(const LeafTriangle& o) const
     {
         return place != o.place ? place < o.place : triangle < o.triangle;
@@ -121,24 +125,42 @@ std::array<Vec3d, 3> index_corners(const SignedDistance& surface, std::uint32_t 
     return corner;
 }
 
+/// Sorted by leaf, then by triangle.
+std::vector<LeafTriangle> in_order(const std::vector<std::vector<LeafTriangle>>& parts)
+{
+    constexpr std::uint64_t kNone = ~std::uint64_t(0);
+    std::uint64_t x_low = kNone, x_high = 0, y_low = kNone, y_high = 0;
+    for (const std::vector<LeafTriangle>& part : parts)
+        for (const LeafTriangle& pair : part) {
+            x_low = std::min(x_low, pair.x()), x_high = std::max(x_high, pair.x());
+            y_low = std::min(y_low, pair.y()), y_high = std::max(y_high, pair.y());
+        }
+    if (x_low > x_high)
+        return {};
+    const std::uint64_t width = y_high - y_low + 1;
+    return deal_out<LeafTriangle>(
+        parts, (x_high - x_low + 1) * width,
+        [&](const LeafTriangle& pair) { return (pair.x() - x_low) * width + pair.y() - y_low; },
+        std::less<>());
+}
+
 std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::size_t count,
                                          double voxel, double reach)
 {
-    std::vector<std::size_t> start(count + 1, 0);
-    for_each_index(count, [&](std::size_t t) {
-        for_each_leaf_near(index_corners(surface, std::uint32_t(t), voxel), reach,
-                           [&](const Coord&) { ++start[t + 1]; });
-    });
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<LeafTriangle> pairs(start.back());
-    for_each_index(count, [&](std::size_t t) {
-        std::size_t next = start[t];
-        for_each_leaf_near(
-            index_corners(surface, std::uint32_t(t), voxel), reach,
-            [&](const Coord& leaf) { pairs[next++] = LeafTriangle(leaf, std::uint32_t(t)); });
-    });
-    tbb::parallel_sort(pairs.begin(), pairs.end());
-    return pairs;
+    constexpr std::size_t kTrianglesInPart = 256;
+    std::vector<std::vector<LeafTriangle>> parts((count + kTrianglesInPart - 1) / kTrianglesInPart);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t i) {
+            const std::size_t end = std::min((i + 1) * kTrianglesInPart, count);
+            for (std::size_t n = i * kTrianglesInPart; n < end; ++n) {
+                const auto t = static_cast<std::uint32_t>(n);
+                for_each_leaf_near(index_corners(surface, t, voxel), reach,
+                                   [&](const Coord& leaf) { parts[i].emplace_back(leaf, t); });
+            }
+        },
+        1);
+    return in_order(parts);
 }
 
 /// The nearest of some triangles to each of eight points.
@@ -172,6 +194,23 @@ VDB_SHELL_TWO_TARGETS void nearest_of(const std::vector<PreparedTriangle>& trian
     nearest.triangle = triangle;
 }
 
+using List = std::vector<std::uint32_t>;
+
+/// Gives each of eight points those of the list that are no farther from it than its limit.
+VDB_SHELL_TWO_TARGETS void deal_out(const List& list, const float* squared, const Lanes& limit,
+                                    std::array<List, kLanes>& of_point)
+{
+    for (List& near : of_point)
+        near.clear();
+    for (const std::uint32_t t : list) {
+        Lanes d;
+        std::memcpy(&d, squared, sizeof d);
+        squared += kLanes;
+        for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1)
+            of_point[std::size_t(__builtin_ctz(bits))].push_back(t);
+    }
+}
+
 /// The triangles that matter to a block of voxels, thinned out from leaf to half to quarter.
 class LeafFill
 {
@@ -193,17 +232,17 @@ public:
                 c -= middle;
             prepared_.push_back(prepare_triangle(corner));
         }
-        lists_[0].resize(prepared_.size());
-        std::iota(lists_[0].begin(), lists_[0].end(), 0U);
+        all_.resize(prepared_.size());
+        std::iota(all_.begin(), all_.end(), 0U);
         leaf_.reset();
         pairs_ = first;
-        descend(0, Coord(0));
+        descend(0, Coord(0), all_);
         return std::move(leaf_);
     }
 
 private:
     /// Blocks of 8, 4 and 2 voxels a side, from their least corner in the leaf.
-    void descend(std::size_t level, const Coord& corner)
+    void descend(std::size_t level, const Coord& corner, const List& list)
     {
         const int eighth = 4 >> level; // voxels a side
         EightPoints points;
@@ -214,30 +253,28 @@ private:
             points.y[i] = static_cast<float>(least[1]) + to_middle;
             points.z[i] = static_cast<float>(least[2]) + to_middle;
         }
-        const std::vector<std::uint32_t>& list = lists_[level];
-        std::vector<float>& squared = squared_[level];
         EightNearest nearest;
         if (level == 2) {
             nearest_of(prepared_, list, points, nullptr, nearest);
             store(corner, nearest);
             return;
         }
-        squared.resize(list.size() * kLanes);
-        nearest_of(prepared_, list, points, squared.data(), nearest);
+        squared_.resize(list.size() * kLanes);
+        nearest_of(prepared_, list, points, squared_.data(), nearest);
         // From an eighth's middle to its farthest voxel centre.
         const float radius = std::sqrt(3.0F) * 0.5F * static_cast<float>(eighth - 1);
+        Lanes limit{};
         for (std::size_t i = 0; i < kLanes; ++i) {
             const float closest = std::sqrt(nearest.squared[i]);
-            if (closest > reach_ + radius)
-                continue;
-            const float limit =
+            const float most =
                 std::min(closest + 2 * radius, reach_ + radius) + static_cast<float>(kSlackVoxels);
-            lists_[level + 1].clear();
-            for (std::size_t n = 0; n < list.size(); ++n)
-                if (squared[n * kLanes + i] <= limit * limit)
-                    lists_[level + 1].push_back(list[n]);
-            descend(level + 1, corner_of_eighth(corner, eighth, i));
+            limit[i] = closest > reach_ + radius ? -1.0F : most * most;
         }
+        std::array<List, kLanes>& of_eighth = lists_[level];
+        deal_out(list, squared_.data(), limit, of_eighth);
+        for (std::size_t i = 0; i < kLanes; ++i)
+            if (!of_eighth[i].empty())
+                descend(level + 1, corner_of_eighth(corner, eighth, i), of_eighth[i]);
     }
 
     static Coord corner_of_eighth(const Coord& corner, int eighth, std::size_t i)
@@ -272,8 +309,9 @@ private:
     const LeafTriangle* pairs_ = nullptr;
     std::unique_ptr<Leaf> leaf_;
     std::vector<PreparedTriangle> prepared_;
-    std::array<std::vector<std::uint32_t>, 3> lists_;
-    std::array<std::vector<float>, 2> squared_;
+    List all_;
+    std::array<std::array<List, kLanes>, 2> lists_; ///< by level, of each eighth
+    std::vector<float> squared_;
 };
 
 void fill_leaves(openvdb::FloatTree& tree, const SignedDistance& surface, double voxel,
