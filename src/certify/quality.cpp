@@ -24,12 +24,23 @@ double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& 
     return (b - a).cross(c - a).dot(d - a);
 }
 
-/// Angle at the edge between the two faces that meet there, 0 to pi, whatever the orientation.
-double dihedral(const Vec3d& from, const Vec3d& to, const Vec3d& left, const Vec3d& right)
+/// The angle at an edge between the two faces that meet there, 0 to pi whatever the orientation.
+struct Dihedral {
+    double sine, cosine; ///< times any length
+    /// Falls where the angle grows, and is sooner found.
+    double rank() const
+    {
+        const double both = sine + std::abs(cosine);
+        return both > 0 ? cosine / both : 1.0;
+    }
+    double angle() const { return std::atan2(sine, cosine); }
+};
+
+Dihedral dihedral(const Vec3d& from, const Vec3d& to, const Vec3d& left, const Vec3d& right)
 {
     const Vec3d edge = to - from;
     const Vec3d first = edge.cross(left - from), second = edge.cross(right - from);
-    return std::atan2(first.cross(second).length(), first.dot(second));
+    return {first.cross(second).length(), first.dot(second)};
 }
 
 struct DihedralRange {
@@ -37,14 +48,15 @@ struct DihedralRange {
 };
 DihedralRange dihedral_range(const Corners& p)
 {
-    DihedralRange range{M_PI, 0};
+    std::array<Dihedral, 6> at;
+    std::array<double, 6> rank;
     for (std::size_t e = 0; e < 6; ++e) {
-        const double angle =
-            dihedral(p[kEdges[e][0]], p[kEdges[e][1]], p[kOpposite[e][0]], p[kOpposite[e][1]]);
-        range.min = std::min(range.min, angle);
-        range.max = std::max(range.max, angle);
+        at[e] = dihedral(p[kEdges[e][0]], p[kEdges[e][1]], p[kOpposite[e][0]], p[kOpposite[e][1]]);
+        rank[e] = at[e].rank();
     }
-    return range;
+    const auto [most, least] = std::minmax_element(rank.begin(), rank.end());
+    return {at[std::size_t(least - rank.begin())].angle(),
+            at[std::size_t(most - rank.begin())].angle()};
 }
 
 double height_ratio(const Corners& p)
