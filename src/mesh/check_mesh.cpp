@@ -92,6 +92,8 @@ MeshCheck check_mesh(const TriangleMesh& mesh)
 
 TriangleMesh turn_outward(TriangleMesh mesh, const MeshCheck& check)
 {
+    if (check.inside_out_components() == 0)
+        return mesh;
     const std::vector<std::uint32_t> component =
         component_of_triangles(sorted_edge_uses(mesh.triangles), mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

@@ -110,9 +110,11 @@ private:
     bool round(std::size_t triangles)
     {
         around_ = triangles_around_vertices(points_.size(), triangles_);
-        for_each_index(points_.size(), [&](std::size_t v) {
-            if (touched_[v] || touched_[best_[v].onto])
-                best_[v] = best_collapse(static_cast<std::uint32_t>(v));
+        for_each_range(points_.size(), [&](std::size_t begin, std::size_t end) {
+            Scratch scratch;
+            for (std::size_t v = begin; v < end; ++v)
+                if (touched_[v] || touched_[best_[v].onto])
+                    best_[v] = best_collapse(static_cast<std::uint32_t>(v), scratch);
         });
         std::fill(touched_.begin(), touched_.end(), 0);
         std::size_t done = 0;
@@ -168,9 +170,16 @@ private:
         best_[v] = {};
     }
 
-    Collapse best_collapse(std::uint32_t v) const
-    {
+    /// What a thread needs to look at one vertex after another.
+    struct Scratch {
         std::vector<std::uint32_t> ring;
+        std::vector<Collapse> candidates;
+    };
+
+    Collapse best_collapse(std::uint32_t v, Scratch& scratch) const
+    {
+        auto& [ring, candidates] = scratch;
+        ring.clear(), candidates.clear();
         double worst_aspect = kWorstAspect * kWorstAspect;
         for (const std::uint32_t t : around_.around(v)) {
             const Vec3I& c = triangles_[t];
@@ -180,7 +189,6 @@ private:
             worst_aspect =
                 std::max(worst_aspect, squared_aspect(p, q, r, cross_of(p, q, r).lengthSqr()));
         }
-        std::vector<Collapse> candidates;
         for (const std::uint32_t u : ring) {
             const double error = quadric_[v].at(points_[u]) + quadric_[u].at(points_[u]);
             const double length2 = (points_[u] - points_[v]).lengthSqr();

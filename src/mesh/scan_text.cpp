@@ -13,7 +13,11 @@ namespace vdb_shell
 namespace
 {
 
-constexpr std::string_view kBlanks = " \t\r\n\v\f";
+/// Space, or one of \t \n \v \f \r, which follow each other.
+bool is_blank(char c)
+{
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
 
 [[noreturn]] void refuse_infinite(const std::string& name, const Place& place,
                                   const std::string& value)
@@ -104,11 +108,26 @@ std::int64_t parse_integer(const std::string& name, const Place& place, std::str
     return value;
 }
 
+namespace
+{
+
+/// The first place from `begin` on where is_end(character) holds; the size where none is.
+/// std::string_view's own search calls a function for every character.
+template <typename IsEnd>
+std::size_t find_end(std::string_view text, std::size_t begin, const IsEnd& is_end)
+{
+    while (begin < text.size() && !is_end(text[begin]))
+        ++begin;
+    return begin;
+}
+
+} // namespace
+
 bool Lines::next(std::string_view& line)
 {
     if (text_.empty())
         return false;
-    const std::size_t end = std::min(text_.find_first_of("\r\n"), text_.size());
+    const std::size_t end = find_end(text_, 0, [](char c) { return c == '\n' || c == '\r'; });
     line = text_.substr(0, end);
     const bool crlf = text_.substr(end, 2) == "\r\n";
     text_.remove_prefix(std::min(end + (crlf ? 2 : 1), text_.size()));
@@ -118,12 +137,8 @@ bool Lines::next(std::string_view& line)
 
 std::string_view cut_word(std::string_view& text)
 {
-    const std::size_t begin = text.find_first_not_of(kBlanks);
-    if (begin == text.npos) {
-        text = {};
-        return {};
-    }
-    const std::size_t end = std::min(text.find_first_of(kBlanks, begin), text.size());
+    const std::size_t begin = find_end(text, 0, [](char c) { return !is_blank(c); });
+    const std::size_t end = find_end(text, begin, is_blank);
     const std::string_view word = text.substr(begin, end - begin);
     text.remove_prefix(end);
     return word;

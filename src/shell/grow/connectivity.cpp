@@ -75,24 +75,26 @@ void label_components(Connectivity& c)
 /// one read nothing that another moves.
 void colour_vertices(Connectivity& c)
 {
-    std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1), used;
+    std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1);
+    std::vector<int> taken_for; // by colour: the last vertex that cannot have it
+    const auto take = [&](int u, int v) {
+        if (colour[u] >= 0)
+            taken_for[colour[u]] = v;
+    };
     for (int v = 0; v < c.vertices; ++v) {
-        used.clear();
         for (const int u : neighbours(c, v)) {
-            if (colour[u] >= 0)
-                used.push_back(colour[u]);
+            take(u, v);
             for (const int w : neighbours(c, u))
-                if (colour[w] >= 0)
-                    used.push_back(colour[w]);
+                take(w, v);
         }
-        sort_unique(used);
-        int smallest_free = 0;
-        for (const int u : used)
-            smallest_free += u == smallest_free;
-        colour[v] = smallest_free;
-        if (smallest_free >= static_cast<int>(c.colour.size()))
-            c.colour.resize(static_cast<std::size_t>(smallest_free) + 1);
-        c.colour[smallest_free].push_back(v);
+        const auto free =
+            std::find_if(taken_for.begin(), taken_for.end(), [&](int u) { return u != v; });
+        colour[v] = static_cast<int>(free - taken_for.begin());
+        if (free == taken_for.end()) {
+            taken_for.push_back(-1);
+            c.colour.emplace_back();
+        }
+        c.colour[colour[v]].push_back(v);
     }
 }
 
