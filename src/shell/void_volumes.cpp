@@ -35,8 +35,8 @@ void for_each_place(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Visit&
 }
 
 /// The length of the ray up to where it leaves the inner surface; 0 where it never does.
-double chord(const TriangleMesh& inner, const BoxTree& tree, std::uint32_t from,
-             const Ray& ray, double longest)
+double chord(const TriangleMesh& inner, const BoxTree& tree, std::uint32_t from, const Ray& ray,
+             double longest)
 {
     double nearest = longest;
     tree.for_each_on_ray(ray.from, ray.along, nearest, [&](int other) {

@@ -73,7 +73,8 @@ TEST(overlapping_pairs, tell_the_last_bit)
 
 TEST(overlapping_pairs, find_equal_boxes_and_boxes_far_away)
 {
-    EXPECT_EQ(overlapping_pairs(std::vector<FloatBox>(20, box_between(Vec3s(1), Vec3s(2)))).size(), 190U);
+    EXPECT_EQ(overlapping_pairs(std::vector<FloatBox>(20, box_between(Vec3s(1), Vec3s(2)))).size(),
+              190U);
     const std::vector<FloatBox> far{box_between(Vec3s(1e15F), Vec3s(2e15F)),
                                     box_between(Vec3s(2e15F), Vec3s(3e15F))};
     EXPECT_EQ(overlapping_pairs(far), (Pairs{{0, 1}}));

@@ -93,9 +93,9 @@ public:
     std::size_t count_crossings(const BoxTree& rest) const
     {
         const TriangleMesh& mesh = surface_.mesh;
-        const std::vector<FloatBox> boxes = triangle_boxes(
-            mesh.points,
-            {mesh.triangles.begin() + std::ptrdiff_t(triangles_), mesh.triangles.end()});
+        const std::vector<FloatBox> boxes =
+            triangle_boxes(mesh.points, {mesh.triangles.begin() + std::ptrdiff_t(triangles_),
+                                         mesh.triangles.end()});
         const BoxTree fresh = tree_over(boxes);
         std::size_t crossings = 0;
         for (std::size_t t = triangles_; t < mesh.triangles.size(); ++t) {
@@ -154,8 +154,7 @@ Patch make_patch(const Rim& rim, FillMethod method)
 void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, HoleFill& fill)
 {
     const Rim rim = look_around(surface.mesh, hole);
-    const BoxTree rest =
-        tree_over(triangle_boxes(surface.mesh.points, surface.mesh.triangles));
+    const BoxTree rest = tree_over(triangle_boxes(surface.mesh.points, surface.mesh.triangles));
     // A flat rim gets a flat lid, also where the surface around it meets the lid at an edge.
     std::vector<FillMethod> methods{FillMethod::smooth, FillMethod::membrane, FillMethod::dihedral,
                                     FillMethod::area};
