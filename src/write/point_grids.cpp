@@ -304,9 +304,9 @@ PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets)
 {
     const ShellPoints points = number_points(stack, tets);
     PointGrids grids;
-    run_together([&] { grids.points = make_points(stack, points); },
-                 [&] { grids.prisms = make_prisms(stack, points); },
-                 [&] { grids.tets = make_tet_points(stack, tets, points); });
+    run_together([&] { grids.tets = make_tet_points(stack, tets, points); },
+                 [&] { grids.points = make_points(stack, points); },
+                 [&] { grids.prisms = make_prisms(stack, points); });
     return grids;
 }
 

@@ -213,8 +213,14 @@ void write_vdb_archive(const std::filesystem::path& path, const openvdb::GridPtr
 {
     const Archive archive;
     std::vector<GridBytes> bytes(grids.size());
+    // The last first: it is the tets' where there are points, which one thread writes the longest.
     for_each_index(
-        grids.size(), [&](std::size_t i) { bytes[i] = archive.bytes_of(*grids[i]); }, 1);
+        grids.size(),
+        [&](std::size_t i) {
+            const std::size_t grid = grids.size() - 1 - i;
+            bytes[grid] = archive.bytes_of(*grids[grid]);
+        },
+        1);
 
     std::ofstream out(path, std::ios::binary);
     archive.write_start(out, metadata, grids.size());
