@@ -54,7 +54,7 @@ struct LeafTriangle {
                 8 * (static_cast<int>(place >> (2 - axis) * kBits & (2 * kOffset - 1)) - kOffset);
         return first;
     }
-    /// Of the leaf, and more than nothing.
+    /// Coordinates of the leaf, counted from the first there can be.
     std::uint64_t x() const { return place >> 2 * kBits; }
     std::uint64_t y() const { return place >> kBits & (2 * kOffset - 1); }
     bool operator<(const LeafTriangle& o) const
@@ -197,7 +197,7 @@ VDB_SHELL_TWO_TARGETS void nearest_of(const std::vector<PreparedTriangle>& trian
 using List = std::vector<std::uint32_t>;
 
 /// Gives each of eight points those of the list that are no farther from it than its limit.
-VDB_SHELL_TWO_TARGETS void deal_out(const List& list, const float* squared, const Lanes& limit,
+VDB_SHELL_TWO_TARGETS void thin_out(const List& list, const float* squared, const Lanes& limit,
                                     std::array<List, kLanes>& of_point)
 {
     for (List& near : of_point)
@@ -271,7 +271,7 @@ private:
             limit[i] = closest > reach_ + radius ? -1.0F : most * most;
         }
         std::array<List, kLanes>& of_eighth = lists_[level];
-        deal_out(list, squared_.data(), limit, of_eighth);
+        thin_out(list, squared_.data(), limit, of_eighth);
         for (std::size_t i = 0; i < kLanes; ++i)
             if (!of_eighth[i].empty())
                 descend(level + 1, corner_of_eighth(corner, eighth, i), of_eighth[i]);

@@ -113,6 +113,27 @@ TEST(BoxTree, LooksOnlyAtBoxesThatAreSaidToHaveChanged)
     expect_same_as_all_pairs(tree, now);
 }
 
+// Through the middle of each box, and away from it.
+TEST(BoxTree, FindsTheBoxesOnARayAndNoneBehindIt)
+{
+    const std::vector<FloatBox> boxes = random_boxes(300, 4);
+    BoxTree tree;
+    tree.build(boxes);
+    const openvdb::Vec3d from(-1.0, 0.4, 0.3);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        openvdb::Vec3d way;
+        for (int k = 0; k < 3; ++k)
+            way[k] = 0.5 * (double(boxes[i].lo[k]) + double(boxes[i].hi[k])) - from[k];
+        const double middle = 1.0, short_of_all = 0.5;
+        bool found = false;
+        tree.for_each_on_ray(from, way, middle, [&](int k) { found |= k == static_cast<int>(i); });
+        EXPECT_TRUE(found) << i;
+        tree.for_each_on_ray(from, -way, middle, [](int k) { ADD_FAILURE() << "behind: " << k; });
+        tree.for_each_on_ray(from, way * short_of_all, short_of_all,
+                             [](int k) { ADD_FAILURE() << "too far: " << k; });
+    }
+}
+
 TEST(BoxTree, IsEmptyWithoutBoxes)
 {
     BoxTree tree;

@@ -12,8 +12,8 @@
 namespace vdb_shell
 {
 
-/// Coordinates over this are refused: beyond 1.8e18 the broad phase of the exact tests drops
-/// triangles without a word.
+/// Coordinates over this are refused: from 1.8e18 on squares leave float32, in which much of growth
+/// and the trees over triangles compute.
 inline constexpr double kLargestCoordinate = 1e18;
 
 /// How many elements have a defect, and the first of them by index (at most kFirstShown).
