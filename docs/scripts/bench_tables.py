@@ -155,7 +155,7 @@ def large_exponent(points):
 
 
 def write_faces(page, runs):
-    bouts = list(those(runs, "faces, ").values())
+    bouts = sorted(those(runs, "faces, ").values(), key=lambda found: found["faces"])
     rivals = [LEVEL_SET, TETGEN, GMSH]
     series, fits = {}, []
     for name in [OURS, *rivals]:
