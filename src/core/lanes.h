@@ -3,6 +3,7 @@
 
 #include "core/two_targets.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,6 +26,7 @@ using LaneIndices __attribute__((vector_size(4 * kLanes))) = std::int32_t;
 // Four doubles, not eight: what the processor does not have in one piece goes through memory.
 inline constexpr std::size_t kDoubleLanes = 4;
 using DoubleLanes __attribute__((vector_size(8 * kDoubleLanes))) = double;
+using DoublePoint = std::array<DoubleLanes, 3>; ///< by axis
 
 /// Memory for lanes is aligned by hand: without AVX the compiler takes less for enough.
 inline constexpr std::size_t kLanesAlignment = 4 * kLanes;

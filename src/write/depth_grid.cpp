@@ -3,6 +3,7 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include "core/deal_out.h"
+#include "core/four_floats.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
@@ -83,7 +84,6 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
 
 constexpr std::size_t kHalves = std::size_t(kLeafSize) / kDoubleLanes;
 using Integers __attribute__((vector_size(4 * kDoubleLanes))) = std::int32_t;
-using Floats __attribute__((vector_size(4 * kDoubleLanes))) = float;
 
 /// Which voxels of each of the eight lines along z over x and y, y + 1 and so on are inside,
 /// `first` above `last` where none is.
@@ -214,7 +214,7 @@ VDB_SHELL_TWO_TARGETS void fill_leaf(Leaf& leaf, const IndexTet& tet, const TetI
             DoubleLanes depth = tet.depth.value + (line.depth + along_z[half]);
             depth = depth < 0.0 ? DoubleLanes{} : depth;
             depth = depth > 1.0 ? DoubleLanes{} + 1.0 : depth;
-            const Floats rounded = __builtin_convertvector(depth, Floats);
+            const FourFloats rounded = __builtin_convertvector(depth, FourFloats);
             std::memcpy(depths.data() + half * kDoubleLanes, &rounded, sizeof rounded);
         }
         float* const values = leaf.buffer().data() + std::ptrdiff_t(line.row) * kLeafSize;

@@ -11,12 +11,10 @@
 namespace vdb_shell::growth
 {
 
-using LanePoint64 = std::array<DoubleLanes, 3>; ///< by axis
-
 /// Bases of four tets, by corner and relative to their apex: the apex lies where
 /// p.(u x w) is negative if they are positive.
 struct Bases {
-    LanePoint64 p, u, w;
+    DoublePoint p, u, w;
 };
 
 /// As PrismTables has them, in an order of their own: those of half 0 belong to the pillars of v,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/separation.h"
 
+#include "core/four_floats.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -10,9 +12,6 @@ namespace vdb_shell::growth
 {
 namespace
 {
-
-using FloatsOfDoubles __attribute__((vector_size(4 * kDoubleLanes))) = float;
-using DoublePoint = std::array<DoubleLanes, 3>;
 
 /// A point or a direction to a lane, by axis.
 struct alignas(kLanesAlignment) PointRow {
@@ -165,12 +164,12 @@ VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
     Lanes size{};
     for (std::size_t i = 0; i < 5; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
-            std::array<FloatsOfDoubles, 2> half;
+            std::array<FourFloats, 2> half;
             for (std::size_t h = 0; h < 2; ++h) {
                 DoubleLanes wide;
                 std::memcpy(&wide, pairs.corner[1 + i].at[k].data() + h * kDoubleLanes,
                             sizeof wide);
-                half[h] = __builtin_convertvector(wide, FloatsOfDoubles);
+                half[h] = __builtin_convertvector(wide, FourFloats);
             }
             c[i][k] = __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 4, 5, 6, 7);
             raise_to(size, c[i][k]);
@@ -288,10 +287,10 @@ VDB_SHELL_TWO_TARGETS void slabs_across(const PairLanes& pairs, const PointRow& 
         dot(way, way, squared);
         for (std::size_t i = 0; i < kDoubleLanes; ++i)
             length[i] = std::sqrt(squared[i]);
-        std::array<FloatsOfDoubles, 3> n;
+        std::array<FourFloats, 3> n;
         for (std::size_t k = 0; k < 3; ++k) {
             // The wall is made of this rounded normal, so its slab has to be measured with it.
-            n[k] = __builtin_convertvector(way[k] / length, FloatsOfDoubles);
+            n[k] = __builtin_convertvector(way[k] / length, FourFloats);
             m[k] = __builtin_convertvector(n[k], DoubleLanes);
         }
         std::array<DoubleLanes, 5> at;

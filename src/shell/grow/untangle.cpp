@@ -57,8 +57,8 @@ Vec3d inner_normal(const GrowState& s, int v)
 VDB_SHELL_LANES_PART void bound(const Bases& bases, const DoubleLanes& counts, Bounds4& out)
 {
     constexpr double kEnough = std::numeric_limits<double>::infinity();
-    const LanePoint64& p = bases.p;
-    LanePoint64 u, w;
+    const DoublePoint& p = bases.p;
+    DoublePoint u, w;
     for (std::size_t k = 0; k < 3; ++k)
         u[k] = bases.u[k] - p[k], w[k] = bases.w[k] - p[k];
     const DoubleLanes x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
