@@ -244,7 +244,7 @@ VDB_SHELL_TWO_TARGETS void between_edges(const EdgeRows& edges, PointRow& betwee
         DoubleLanes dd, ee, de, dr, er;
         dot(d, d, dd), dot(e, e, ee), dot(d, e, de), dot(d, r, dr), dot(e, r, er);
         const DoubleLanes denominator = dd * ee - de * de;
-        const auto parallel = !(denominator > kParallelInDoubles * dd * ee);
+        const auto crossed = denominator > kParallelInDoubles * dd * ee;
         const auto from = [&](const DoubleLanes& start, DoublePoint& way, DoubleLanes& squared) {
             DoubleLanes t = (de * start + er) / ee;
             t = ee > 0.0 ? t : DoubleLanes{};
@@ -257,15 +257,16 @@ VDB_SHELL_TWO_TARGETS void between_edges(const EdgeRows& edges, PointRow& betwee
             dot(way, way, squared);
         };
         DoubleLanes start = (de * er - dr * ee) / denominator;
-        start = parallel ? DoubleLanes{} : start;
+        start = crossed ? start : DoubleLanes{};
         clamp_to_one(start);
         DoublePoint way, other;
         DoubleLanes squared, other_squared;
         from(start, way, squared);
         from(DoubleLanes{} + 1.0, other, other_squared);
-        const auto rather = parallel & !(squared < other_squared);
+        // Of parallel edges one of the ends is among the closest points.
+        const auto good = crossed | (squared < other_squared);
         for (std::size_t k = 0; k < 3; ++k) {
-            const DoubleLanes chosen = rather ? other[k] : way[k];
+            const DoubleLanes chosen = good ? way[k] : other[k];
             std::memcpy(between.at[k].data() + first, &chosen, sizeof chosen);
         }
     }
