@@ -15,13 +15,27 @@ using Pair = std::array<std::uint32_t, 2>;
 
 constexpr std::size_t kGroupsInPart = 16;
 
-bool any_pair(std::uint32_t, std::uint32_t)
+} // namespace
+
+std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
+                                     const std::vector<openvdb::Vec3I>& triangles)
 {
-    return true;
+    std::vector<FloatBox> boxes(triangles.size());
+    for_each_index(triangles.size(), [&](std::size_t t) {
+        FloatBox box = FloatBox::around(points[triangles[t][0]]);
+        for (int corner = 1; corner < 3; ++corner)
+            box.add(points[triangles[t][corner]]);
+        boxes[t] = box;
+    });
+    return boxes;
 }
 
-template <class Keep>
-std::vector<Pair> pairs_to_keep(const std::vector<FloatBox>& boxes, const Keep& keep)
+std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes)
+{
+    return overlapping_pairs(boxes, [](std::uint32_t, std::uint32_t) { return true; });
+}
+
+std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const KeepPair& keep)
 {
     BoxTree tree;
     tree.build(boxes);
@@ -46,31 +60,6 @@ std::vector<Pair> pairs_to_keep(const std::vector<FloatBox>& boxes, const Keep& 
     return deal_out<Pair>(
         parts, boxes.size(), [](const Pair& pair) { return pair[0]; },
         [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
-}
-
-} // namespace
-
-std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
-                                     const std::vector<openvdb::Vec3I>& triangles)
-{
-    std::vector<FloatBox> boxes(triangles.size());
-    for_each_index(triangles.size(), [&](std::size_t t) {
-        FloatBox box = FloatBox::around(points[triangles[t][0]]);
-        for (int corner = 1; corner < 3; ++corner)
-            box.add(points[triangles[t][corner]]);
-        boxes[t] = box;
-    });
-    return boxes;
-}
-
-std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes)
-{
-    return pairs_to_keep(boxes, any_pair);
-}
-
-std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const KeepPair& keep)
-{
-    return pairs_to_keep(boxes, keep);
 }
 
 } // namespace vdb_shell

@@ -4,7 +4,10 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace vdb_shell
@@ -33,6 +36,35 @@ std::vector<Item> deal_out(const Parts& parts, std::size_t keys, const Key& key,
                   items.begin() + std::ptrdiff_t(ends[k]), less);
     });
     return items;
+}
+
+/// The same where place(item), two whole numbers, says over which column an item stands: by the
+/// first, the second and `less`, which has to put items in that order by itself.
+template <typename Item, typename Parts, typename Place, typename Less>
+std::vector<Item> deal_out_by_column(const Parts& parts, const Place& place, const Less& less)
+{
+    using Column = std::array<std::int64_t, 2>;
+    constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+    Column low{kNone, kNone}, high{-kNone, -kNone};
+    for (const std::vector<Item>& part : parts)
+        for (const Item& item : part) {
+            const Column at = place(item);
+            for (std::size_t k = 0; k < 2; ++k)
+                low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
+        }
+    if (low[0] > high[0])
+        return {};
+    // Columns by number, many far apart sharing one.
+    constexpr std::int64_t kMostKeys = 1 << 16;
+    const std::int64_t width = high[1] - low[1] + 1, columns = (high[0] - low[0] + 1) * width;
+    const std::int64_t columns_to_a_key = 1 + columns / kMostKeys;
+    return deal_out<Item>(
+        parts, std::size_t(columns / columns_to_a_key + 1),
+        [&](const Item& item) {
+            const Column at = place(item);
+            return ((at[0] - low[0]) * width + (at[1] - low[1])) / columns_to_a_key;
+        },
+        less);
 }
 
 } // namespace vdb_shell

@@ -54,9 +54,11 @@ struct LeafTriangle {
                 8 * (static_cast<int>(place >> (2 - axis) * kBits & (2 * kOffset - 1)) - kOffset);
         return first;
     }
-    /// Coordinates of the leaf, counted from the first there can be.
-    std::uint64_t x() const { return place >> 2 * kBits; }
-    std::uint64_t y() const { return place >> kBits & (2 * kOffset - 1); }
+    /// The leaf's x and y, counted from the first there can be.
+    std::array<std::int64_t, 2> column() const
+    {
+        return {std::int64_t(place >> 2 * kBits), std::int64_t(place >> kBits & (2 * kOffset - 1))};
+    }
     bool operator<(const LeafTriangle& o) const
     {
         return place != o.place ? place < o.place : triangle < o.triangle;
@@ -126,24 +128,6 @@ std::array<Vec3d, 3> index_corners(const SignedDistance& surface, std::uint32_t 
 }
 
 /// Sorted by leaf, then by triangle.
-std::vector<LeafTriangle> in_order(const std::vector<std::vector<LeafTriangle>>& parts)
-{
-    constexpr std::uint64_t kNone = ~std::uint64_t(0);
-    std::uint64_t x_low = kNone, x_high = 0, y_low = kNone, y_high = 0;
-    for (const std::vector<LeafTriangle>& part : parts)
-        for (const LeafTriangle& pair : part) {
-            x_low = std::min(x_low, pair.x()), x_high = std::max(x_high, pair.x());
-            y_low = std::min(y_low, pair.y()), y_high = std::max(y_high, pair.y());
-        }
-    if (x_low > x_high)
-        return {};
-    const std::uint64_t width = y_high - y_low + 1;
-    return deal_out<LeafTriangle>(
-        parts, (x_high - x_low + 1) * width,
-        [&](const LeafTriangle& pair) { return (pair.x() - x_low) * width + pair.y() - y_low; },
-        std::less<>());
-}
-
 std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::size_t count,
                                          double voxel, double reach)
 {
@@ -160,7 +144,8 @@ std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::siz
             }
         },
         1);
-    return in_order(parts);
+    return deal_out_by_column<LeafTriangle>(
+        parts, [](const LeafTriangle& pair) { return pair.column(); }, std::less<>());
 }
 
 /// The nearest of some triangles to each of eight points.

@@ -295,61 +295,34 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
                 jobs.push_back({x, y, index});
 }
 
-/// Some successive tets, and what there is to do for them.
-struct Part {
-    std::vector<IndexTet> tets;
-    std::vector<Job> jobs;
-};
-
 constexpr std::size_t kTetsInPart = 256;
 
-std::vector<Part> make_parts(const TetMesh& mesh, double voxel_size, double layers)
+/// Tets in parts of so many, and what there is to do for those of each.
+struct Parts {
+    std::vector<std::vector<IndexTet>> tets;
+    std::vector<std::vector<Job>> jobs;
+
+    const IndexTet& tet_of(const Job& job) const
+    {
+        return tets[job.tet / kTetsInPart][job.tet % kTetsInPart];
+    }
+};
+
+Parts make_parts(const TetMesh& mesh, double voxel_size, double layers)
 {
-    std::vector<Part> parts((mesh.tets.size() + kTetsInPart - 1) / kTetsInPart);
+    const std::size_t count = (mesh.tets.size() + kTetsInPart - 1) / kTetsInPart;
+    Parts parts{std::vector<std::vector<IndexTet>>(count), std::vector<std::vector<Job>>(count)};
     for_each_index(
-        parts.size(),
+        count,
         [&](std::size_t i) {
             const std::size_t end = std::min((i + 1) * kTetsInPart, mesh.tets.size());
             for (std::size_t t = i * kTetsInPart; t < end; ++t) {
-                parts[i].tets.push_back(index_tet(mesh, t, voxel_size, layers));
-                add_jobs(parts[i].tets.back(), std::uint32_t(t), parts[i].jobs);
+                parts.tets[i].push_back(index_tet(mesh, t, voxel_size, layers));
+                add_jobs(parts.tets[i].back(), std::uint32_t(t), parts.jobs[i]);
             }
         },
         1);
     return parts;
-}
-
-const IndexTet& tet_of(const std::vector<Part>& parts, const Job& job)
-{
-    return parts[job.tet / kTetsInPart].tets[job.tet % kTetsInPart];
-}
-
-std::vector<Job> in_order(std::vector<Part>& parts)
-{
-    constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
-    std::int64_t x_low = kNone, y_low = kNone, x_high = -x_low, y_high = -y_low;
-    std::vector<std::vector<Job>> jobs;
-    for (Part& part : parts) {
-        for (const Job& job : part.jobs) {
-            x_low = std::min<std::int64_t>(x_low, job.x),
-            x_high = std::max<std::int64_t>(x_high, job.x);
-            y_low = std::min<std::int64_t>(y_low, job.y),
-            y_high = std::max<std::int64_t>(y_high, job.y);
-        }
-        jobs.push_back(std::move(part.jobs));
-    }
-    if (x_low > x_high)
-        return {};
-    // Columns by number, many far apart sharing one.
-    constexpr std::int64_t kMostKeys = 1 << 16;
-    const std::int64_t width = y_high - y_low + 1, columns = (x_high - x_low + 1) * width;
-    const std::int64_t columns_to_a_key = 1 + columns / kMostKeys;
-    return deal_out<Job>(
-        jobs, std::size_t(columns / columns_to_a_key + 1),
-        [&](const Job& job) {
-            return ((job.x - x_low) * width + (job.y - y_low)) / columns_to_a_key;
-        },
-        std::less<>());
 }
 
 /// Where each column's jobs begin, and the end of all.
@@ -396,8 +369,13 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     auto grid = empty_depth_grid(voxel_size);
     const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
     const double layers = deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
-    std::vector<Part> parts = make_parts(tets, voxel_size, layers);
-    const std::vector<Job> jobs = in_order(parts);
+    const Parts parts = make_parts(tets, voxel_size, layers);
+    const auto jobs = deal_out_by_column<Job>(
+        parts.jobs,
+        [](const Job& job) {
+            return std::array<std::int64_t, 2>{job.x, job.y};
+        },
+        std::less<>());
     const std::vector<std::size_t> starts = column_starts(jobs);
     const std::size_t columns = starts.size() - 1;
     std::vector<LeafColumn> filled(columns);
@@ -412,7 +390,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
             [&](std::size_t i) {
                 const std::size_t column = begin + i;
                 for (std::size_t j = starts[column + 1]; j-- > starts[column];)
-                    fill_column(filled[column], tet_of(parts, jobs[j]), jobs[j].x * kLeafSize,
+                    fill_column(filled[column], parts.tet_of(jobs[j]), jobs[j].x * kLeafSize,
                                 jobs[j].y * kLeafSize);
             },
             1);

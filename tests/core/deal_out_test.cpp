@@ -28,6 +28,31 @@ std::vector<Item> dealt(const std::vector<std::vector<Item>>& parts, std::size_t
         parts, keys, [](const Item& item) { return item[0]; }, std::less<>());
 }
 
+// Few columns, and so many that far ones share a number.
+TEST(DealOut, SortsWhatStandsOverColumns)
+{
+    for (const std::int64_t apart : {1, 1000, 1000000}) {
+        std::vector<std::array<std::int64_t, 3>> items;
+        for (std::int64_t i = 0; i < 3000; ++i)
+            items.push_back({(i * 7919 % 50 - 25) * apart, (i * 104729 % 70 - 35) * apart, i % 11});
+        const auto found = deal_out_by_column<std::array<std::int64_t, 3>>(
+            std::array{items},
+            [](const auto& item) {
+                return std::array{item[0], item[1]};
+            },
+            std::less<>());
+        std::sort(items.begin(), items.end());
+        EXPECT_EQ(found, items) << apart;
+    }
+    EXPECT_TRUE(deal_out_by_column<Item>(
+                    std::vector<std::vector<Item>>(),
+                    [](const Item& item) {
+                        return std::array<std::int64_t, 2>{item[0], item[1]};
+                    },
+                    std::less<>())
+                    .empty());
+}
+
 TEST(DealOut, Sorts)
 {
     for (const std::uint32_t keys : {1U, 2U, 100U, 5000U}) {

@@ -58,7 +58,7 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     std::vector<FloatBox> boxes(mesh.faces.size());
     for_each_index(
         boxes.size(),
-        [&](std::size_t f) { boxes[f] = float_box(box_of(outer_corners(s, static_cast<int>(f)))); },
+        [&](std::size_t f) { boxes[f] = float_box_of(outer_corners(s, static_cast<int>(f))); },
         256);
     s.outer_tree.build(std::move(boxes));
     const Box all = bounds_of(s.a);

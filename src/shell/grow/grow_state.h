@@ -66,6 +66,13 @@ inline Box box_of(const Corners& c)
         b.add(p);
     return b;
 }
+/// The same in floats, wider by `reach`.
+inline FloatBox float_box_of(const Corners& c, double reach = 0)
+{
+    Box b = box_of(c);
+    b.inflate(reach);
+    return float_box(b);
+}
 /// Ids of the corners: outer vertex v is v, inner vertex v is V + v, or v where it is pinned.
 inline CornerIds outer_ids(const GrowState& s, int f)
 {
@@ -77,14 +84,6 @@ inline CornerIds inner_ids(const GrowState& s, int f)
     for (int& v : id)
         v += s.pinned[v] ? 0 : s.mesh->vertices;
     return id;
-}
-
-/// The box of an inner triangle as it is, wider by `reach`.
-inline FloatBox inner_box(const GrowState& s, int f, double reach = 0)
-{
-    Box box = box_of(inner_corners(s, f));
-    box.inflate(reach);
-    return float_box(box);
 }
 
 /// Six times the signed volume enclosed.

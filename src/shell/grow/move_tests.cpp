@@ -222,7 +222,7 @@ bool prism_valid(const GrowState& s, int f)
 bool inner_triangle_clear(const GrowState& s, int f)
 {
     const InnerTriangle triangle(s, f);
-    const FloatBox box = float_box(box_of(triangle.corners()));
+    const FloatBox box = float_box_of(triangle.corners());
     bool clear = true;
     s.inner_tree.for_each_overlap(
         box, [&](int g) { clear = clear && (g == f || !triangle.meets_inner(g)); });

@@ -80,7 +80,7 @@ void box_in(GrowState& s, const std::vector<double>& longest)
         double reach = 0;
         for (int k = 0; k < 3; ++k)
             reach = std::max(reach, longest[s.mesh->corner(f, k)]);
-        boxes[i] = inner_box(s, f, reach > 0 ? 1.01 * reach + s.rounding : 0);
+        boxes[i] = float_box_of(inner_corners(s, f), reach > 0 ? 1.01 * reach + s.rounding : 0);
     });
     s.inner_tree.refit(boxes);
 }

@@ -60,7 +60,7 @@ void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool 
     std::vector<std::uint8_t> ask(changed.size());
     for_each_index(ask.size(), [&](std::size_t f) {
         if (changed[f])
-            boxes[f] = inner_box(s, static_cast<int>(f));
+            boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
         ask[f] = changed[f] && !bad[f];
     });
     first ? s.inner_tree.build(std::move(boxes)) : s.inner_tree.refit(boxes, changed);

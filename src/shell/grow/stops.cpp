@@ -35,7 +35,7 @@ StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
     s.outer_tree.list_overlaps(float_box(all), near.outer);
     for (const FaceCorner& at : fan) {
         const InnerTriangle moved(s, at, x);
-        const FloatBox box = float_box(box_of(moved.corners()));
+        const FloatBox box = float_box_of(moved.corners());
         for (const FaceCorner& other : fan)
             if (!kin_apart && other.face > at.face &&
                 moved.meets_inner(other.face, moved_corners(s, other, x)))
@@ -71,8 +71,9 @@ std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = kProbe * s.diagonal;
     std::vector<FloatBox> boxes(s.mesh->faces.size());
-    for_each_index(boxes.size(),
-                   [&](std::size_t f) { boxes[f] = inner_box(s, static_cast<int>(f)); });
+    for_each_index(boxes.size(), [&](std::size_t f) {
+        boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
+    });
     s.inner_tree.build(std::move(boxes));
     std::vector<StopReason> stop(s.b.size());
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {

@@ -90,7 +90,7 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
             stock.outer[f] = outer_corners(s, f);
             stock.outer_normal[f] = unit_normal(stock.outer[f]);
             stock.reach[f] = reach;
-            stock.box[f] = inner_box(s, f, reach);
+            stock.box[f] = float_box_of(stock.corner[f], reach);
         },
         256);
     return stock;
