@@ -30,10 +30,11 @@ public:
 private:
     struct Probe {
         double distance, slope;
+        openvdb::Vec3d foot; ///< the nearest point, from the line's start
     };
     Probe probe(const Line& line, double length, TriangleTree::Seed& seed) const;
     bool chain_holds(const Line& line, double low, double high, double slope,
-                     TriangleTree::Seed& seed) const;
+                     TriangleTree::Seed& seed, Probe& at_high) const;
     template <typename Holds>
     double search(const Line& line, double from, const Holds& holds) const;
 
