@@ -53,7 +53,7 @@ constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
 // smaller one; from lines, all of them together. And what a round has to win for each vertex asked,
 // as a share of that, for another to follow.
 constexpr double kGainForVertex = 1e-6, kDear = 6500, kGainForAll = 3e-4;
-constexpr double kGainForAsked = 0.54;
+constexpr double kGainForAsked = 0.45;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;

@@ -24,10 +24,12 @@ constexpr double kStale = 5e-4;    ///< share of the solid: a round that wins le
 constexpr int kSweepsPerRound = 2; ///< between the same walls
 constexpr int kHalvings = 5;
 constexpr double kReachOfEdges = 3; ///< first reach over the shortest edge, nearly full
+/// Share of the first reach that is worth its walls, nearly full: most vertices move less.
+constexpr double kFirstReachNearlyFull = 0.6;
 constexpr double kReachAhead = 1.5; ///< next reach over the last move
 constexpr double kReachKept = 0.3;  ///< least share of a reach that is left for the next round
 /// How far from a vertex walls steer it, as a share of its reach; the others only stop it.
-constexpr double kSoftRange = 0.4;
+constexpr double kSoftRange = 0.6;
 constexpr float kWallWeight = 4; ///< of all near walls, where a tet has 1
 // The barrier knows the cap as a ball a little wider, so that a vertex on the cap has room on every
 // side; without it a vertex that only the cap holds would be sent far away, sideways as well.
@@ -104,7 +106,8 @@ double first_reach(const GrowState& s, int v, bool nearly_full)
     }
     const int count = std::max(1, neighbours(*s.mesh, v).size());
     const double inner = nearly_full ? std::min(longest, kReachOfEdges * shortest) : longest;
-    return std::max(std::min(0.3 * outer / count, inner), 200 * s.rounding);
+    const double share = nearly_full ? kFirstReachNearlyFull : 1.0;
+    return std::max(share * std::min(0.3 * outer / count, inner), 200 * s.rounding);
 }
 
 /// Half as far again as the vertex went, for short reaches keep the walls few. The floor keeps the
