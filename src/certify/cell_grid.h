@@ -98,24 +98,32 @@ private:
     double height_slack_ = 0; ///< the same for a height
 };
 
+/// Shortens the run of cells [first, last] of the column (i, j), counted from the lowest, to those
+/// that `shape` may meet; false when there are none.
+inline bool clip_run(const CellGrid& grid, std::uint32_t i, std::uint32_t j,
+                     const HalfSpaces& shape, std::uint32_t& first, std::uint32_t& last)
+{
+    const std::vector<float>&x = grid.planes[0], &y = grid.planes[1], &z = grid.planes[2];
+    double bottom = z[first], top = z[last + 1];
+    if (!shape.clip_column({x[i], y[j]}, {x[i + 1], y[j + 1]}, bottom, top))
+        return false;
+    while (first <= last && z[first + 1] < bottom)
+        ++first;
+    while (first < last && z[last] > top)
+        --last;
+    return first <= last && z[last] <= top;
+}
+
 /// visit(first, last) for each run of cells, one above the other, of the range that `shape` may
 /// meet.
 template <typename Visit>
 void visit_runs(const CellGrid& grid, const CellRange& range, const HalfSpaces& shape,
                 const Visit& visit)
 {
-    const std::vector<float>&x = grid.planes[0], &y = grid.planes[1], &z = grid.planes[2];
     for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
         for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j) {
-            double bottom = z[range.first[2]], top = z[range.last[2] + 1];
-            if (!shape.clip_column({x[i], y[j]}, {x[i + 1], y[j + 1]}, bottom, top))
-                continue;
             std::uint32_t first = range.first[2], last = range.last[2];
-            while (first <= last && z[first + 1] < bottom)
-                ++first;
-            while (first < last && z[last] > top)
-                --last;
-            if (first <= last && z[last] <= top)
+            if (clip_run(grid, i, j, shape, first, last))
                 visit(grid.cell(i, j, first), grid.cell(i, j, last));
         }
 }

@@ -239,6 +239,31 @@ PointsByCell sort_by_cell(const std::vector<Point>& points, std::size_t cells)
     return sorted;
 }
 
+/// visit(begin, end) for runs of places in `sorted` that together hold all points in the tet.
+template <typename Visit>
+void visit_points_near(const Scene& scene, const PointsByCell& sorted, std::size_t tet,
+                       const std::array<Vec3s, 4>& corners, const FloatBox& box, const Visit& visit)
+{
+    // So many points are looked at sooner than the column of cells that holds them is clipped.
+    constexpr std::uint32_t kFew = 8;
+    const CellRange range = scene.grid.overlapped(box.low, box.high);
+    std::optional<HalfSpaces> shape;
+    const auto clipped = [&](std::uint32_t i, std::uint32_t j, std::uint32_t& first,
+                             std::uint32_t& last) {
+        if (!shape)
+            shape = HalfSpaces::of_tet(corners, scene.sign[tet], scene.span);
+        return clip_run(scene.grid, i, j, *shape, first, last);
+    };
+    for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
+        for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j) {
+            std::uint32_t first = range.first[2], last = range.last[2];
+            const auto begin = [&] { return sorted.offset[scene.grid.cell(i, j, first)]; };
+            const auto end = [&] { return sorted.offset[scene.grid.cell(i, j, last) + 1]; };
+            if (end() - begin() <= kFew || clipped(i, j, first, last))
+                visit(begin(), end());
+        }
+}
+
 /// In how many tets each point lies, as far as it matters. Integer increments, and no point that
 /// falls short of `enough` is skipped: the order of the tets does not change what is reported.
 std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
@@ -247,25 +272,28 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
     const PointsByCell sorted = sort_by_cell(points, scene.grid.cells());
     std::vector<std::atomic<std::uint32_t>> hits(points.size());
     for_each_index(scene.tets.tets.size(), [&](std::size_t tet) {
+        if (scene.sign[tet] == 0)
+            return;
         const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
         const FloatBox box = box_of(corners);
         std::optional<TetInside> inside;
-        visit_runs_of_tet(scene, tet, [&](std::uint32_t first, std::uint32_t last) {
-            for (std::uint32_t i = sorted.offset[first]; i < sorted.offset[last + 1]; ++i) {
-                std::atomic<std::uint32_t>& count = hits[sorted.point[i]];
-                if (count.load(std::memory_order_relaxed) >= sorted.enough[i])
-                    continue;
+        const auto look = [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end; ++i) {
                 const Vec3s& p = sorted.position[i];
                 const bool in_box = box.low[0] < p[0] && p[0] < box.high[0] && box.low[1] < p[1] &&
                                     p[1] < box.high[1] && box.low[2] < p[2] && p[2] < box.high[2];
                 if (!in_box)
+                    continue;
+                std::atomic<std::uint32_t>& count = hits[sorted.point[i]];
+                if (count.load(std::memory_order_relaxed) >= sorted.enough[i])
                     continue;
                 if (!inside)
                     inside.emplace(corners, scene.sign[tet]);
                 if (inside->strictly_holds(p))
                     count.fetch_add(1, std::memory_order_relaxed);
             }
-        });
+        };
+        visit_points_near(scene, sorted, tet, corners, box, look);
     });
     return hits;
 }

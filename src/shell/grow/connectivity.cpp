@@ -170,8 +170,8 @@ void list_kin_of(const Connectivity& c, int v, Places& places, KinLists& out)
         for (std::size_t o = m + 1; o < faces; ++o) {
             const std::uint64_t own = corners[o] & ~corners[m];
             // Beside the star a face has v's bit nowhere: one that shares nothing has three.
-            const int count = __builtin_popcountll(own);
-            if (count > 0 && count < 3)
+            const std::uint64_t but_lowest = own & (own - 1);
+            if (own != 0 && (but_lowest & (but_lowest - 1)) == 0)
                 out.pair.push_back({static_cast<std::uint8_t>(m), static_cast<std::uint8_t>(o),
                                     static_cast<std::uint8_t>(__builtin_ctzll(own)),
                                     static_cast<std::uint8_t>(63 - __builtin_clzll(own))});
