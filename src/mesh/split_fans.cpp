@@ -3,7 +3,6 @@
 
 #include "mesh/topology.h"
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -36,17 +35,17 @@ std::vector<std::vector<std::uint32_t>> fans_at(const TriangleMesh& mesh, const 
     std::vector<std::vector<std::uint32_t>> fans;
     std::vector<std::uint32_t> rest(star.begin(), star.end());
     while (!rest.empty()) {
-        std::vector<std::uint32_t> fan{rest.front()};
-        rest.erase(rest.begin());
+        std::vector<std::uint32_t> fan{rest.front()}, left(rest.begin() + 1, rest.end());
         for (std::size_t i = 0; i < fan.size(); ++i) {
-            const auto joins = [&](std::uint32_t t) {
-                return share_an_edge_at(vertex, mesh.triangles[fan[i]], mesh.triangles[t]);
-            };
-            const auto joined = std::stable_partition(rest.begin(), rest.end(),
-                                                      [&](std::uint32_t t) { return !joins(t); });
-            fan.insert(fan.end(), joined, rest.end());
-            rest.erase(joined, rest.end());
+            rest.swap(left);
+            left.clear();
+            for (const std::uint32_t t : rest) {
+                const bool joins =
+                    share_an_edge_at(vertex, mesh.triangles[fan[i]], mesh.triangles[t]);
+                (joins ? fan : left).push_back(t);
+            }
         }
+        rest.swap(left);
         fans.push_back(std::move(fan));
     }
     return fans;
