@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 namespace
@@ -168,6 +169,46 @@ TEST(Coverage, IsTheSameForAnyNumberOfThreads)
     EXPECT_EQ(counts(results[0]), counts(results[1]));
     EXPECT_EQ(counts(results[0]), counts(results[2]));
     EXPECT_NE(counts(results[0]), counts(estimate_coverage(torus, tets, {30000, 10})));
+}
+
+/// The unit cube in cubes of edge 1 / `parts`, each cut into the six tets between its corners whose
+/// coordinates are ordered alike (Kuhn).
+TetMesh tets_of_cube(int parts)
+{
+    TetMesh mesh;
+    const auto corner = [parts](const openvdb::Coord& at) {
+        return std::uint32_t((at[0] * (parts + 1) + at[1]) * (parts + 1) + at[2]);
+    };
+    openvdb::CoordBBox corners(openvdb::Coord(0), openvdb::Coord(parts));
+    for (const openvdb::Coord& at : corners)
+        mesh.points.emplace_back(at.asVec3d() / parts);
+    openvdb::CoordBBox cubes(openvdb::Coord(0), openvdb::Coord(parts - 1));
+    for (const openvdb::Coord& cube : cubes) {
+        std::array<int, 3> axes{0, 1, 2};
+        do {
+            openvdb::Coord at = cube;
+            openvdb::Vec4I tet(corner(at), 0, 0, 0);
+            for (int i = 0; i < 3; ++i) {
+                ++at[axes[std::size_t(i)]];
+                tet[i + 1] = corner(at);
+            }
+            mesh.tets.push_back(tet);
+        } while (std::next_permutation(axes.begin(), axes.end()));
+    }
+    return mesh;
+}
+
+TEST(Coverage, FewLargeTetsAndManySmallOnesHoldEachPointOfTheSolidOnce)
+{
+    const TriangleMesh cube = test::box({0, 0, 0}, {1, 1, 1});
+    for (const int parts : {1, 3, 16}) {
+        const TetMesh tets = tets_of_cube(parts);
+        EXPECT_EQ(tets.tets.size(), std::size_t(6 * parts * parts * parts));
+        // A point on a common face, one of some hundred thousand, would be in none: here none is.
+        const Coverage c = estimate_coverage(cube, tets, {20000, 3});
+        EXPECT_EQ(c.in_none, 0U) << parts;
+        EXPECT_EQ(c.in_one, c.samples) << parts;
+    }
 }
 
 TEST(Coverage, DoesNotDependOnHowATetIsTurned)
