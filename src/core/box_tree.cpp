@@ -14,28 +14,9 @@ namespace vdb_shell
 namespace
 {
 
-constexpr int kLeaf = 4;
+constexpr int kLeaf = 4; ///< boxes of one at most
 // Below this many boxes a second thread costs more than it saves.
 constexpr int kParallel = 512;
-
-/// How many nodes a tree over `count` boxes has. On each level there are two sizes at most, `size`
-/// and `size` + 1.
-int node_count(int count)
-{
-    int size = count, of_size = 1, of_more = 0, nodes = 0;
-    while (true) {
-        nodes += of_size + of_more;
-        if (size + 1 <= kLeaf)
-            return nodes;
-        if (size <= kLeaf)
-            return nodes + 2 * of_more;
-        if (size % 2 == 0)
-            of_size = 2 * of_size + of_more;
-        else
-            of_more = of_size + 2 * of_more;
-        size /= 2;
-    }
-}
 
 } // namespace
 
@@ -78,8 +59,7 @@ void BoxTree::build(std::vector<FloatBox> boxes)
             items[i] = {{sum[0], sum[1], sum[2]}, static_cast<int>(i)};
         },
         1024);
-    nodes_.resize(static_cast<std::size_t>(node_count(static_cast<int>(count))));
-    split(items, 0, 0, static_cast<int>(count));
+    split(items, 0, static_cast<int>(count));
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -87,13 +67,18 @@ void BoxTree::build(std::vector<FloatBox> boxes)
             boxes_[i] = boxes[static_cast<std::size_t>(items[i].box)];
         },
         1024);
+    add_node(0, static_cast<int>(count));
     fit_nodes();
 }
 
-void BoxTree::split(std::vector<Item>& items, int id, int begin, int end)
+/// Where a range of more than kLeaf boxes is split.
+int BoxTree::middle_of(int begin, int end)
 {
-    Node& node = nodes_[static_cast<std::size_t>(id)];
-    node.begin = begin, node.end = end, node.right = -1;
+    return begin + (end - begin) / 2;
+}
+
+void BoxTree::split(std::vector<Item>& items, int begin, int end)
+{
     if (end - begin <= kLeaf)
         return;
     const auto first = items.begin() + begin, last = items.begin() + end;
@@ -106,22 +91,47 @@ void BoxTree::split(std::vector<Item>& items, int id, int begin, int end)
     });
     const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
     const std::size_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    const int middle = begin + (end - begin) / 2;
+    const int middle = middle_of(begin, end);
     // Ties by index: the tree, and with it the order of all candidate lists, is the same
     // everywhere.
     std::nth_element(first, items.begin() + middle, last, [axis](const Item& a, const Item& b) {
         const float ca = a.twice_middle[axis], cb = b.twice_middle[axis];
         return ca != cb ? ca < cb : a.box < b.box;
     });
-    const int left = id + 1, right = left + node_count(middle - begin);
-    node.right = right;
     if (end - begin < kParallel) {
-        split(items, left, begin, middle);
-        split(items, right, middle, end);
+        split(items, begin, middle);
+        split(items, middle, end);
         return;
     }
-    tbb::parallel_invoke([&] { split(items, left, begin, middle); },
-                         [&] { split(items, right, middle, end); });
+    tbb::parallel_invoke([&] { split(items, begin, middle); }, [&] { split(items, middle, end); });
+}
+
+int BoxTree::add_node(int begin, int end)
+{
+    const auto id = nodes_.size();
+    nodes_.push_back({FourBoxes::none(), {}, 0, end - begin <= kLeaf});
+    unsigned lane = 0;
+    if (nodes_[id].leaf) {
+        for (int place = begin; place < end; ++place)
+            nodes_[id].child[lane++] = place;
+        nodes_[id].children = lane;
+        return static_cast<int>(id);
+    }
+    const auto add = [&](int from, int to) {
+        const int child = add_node(from, to);
+        nodes_[id].child[lane++] = child;
+    };
+    const int middle = middle_of(begin, end);
+    for (const auto& [from, to] : {std::pair(begin, middle), std::pair(middle, end)}) {
+        if (to - from <= kLeaf) {
+            add(from, to);
+            continue;
+        }
+        add(from, middle_of(from, to));
+        add(middle_of(from, to), to);
+    }
+    nodes_[id].children = lane;
+    return static_cast<int>(id);
 }
 
 void BoxTree::refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed)
@@ -140,39 +150,38 @@ void BoxTree::refit(const std::vector<FloatBox>& boxes, const std::vector<std::u
 
 void BoxTree::fit_nodes()
 {
-    // Children stand behind their parents.
+    std::vector<FloatBox> around(nodes_.size());
     for (std::size_t i = nodes_.size(); i-- > 0;) {
         Node& n = nodes_[i];
-        if (n.right >= 0) {
-            n.box = nodes_[i + 1].box;
-            n.box.add(nodes_[static_cast<std::size_t>(n.right)].box);
-            continue;
+        for (unsigned lane = 0; lane < n.children; ++lane) {
+            const auto child = static_cast<std::size_t>(n.child[lane]);
+            const FloatBox& box = n.leaf ? boxes_[child] : around[child];
+            n.box.set(lane, box);
+            lane == 0 ? void(around[i] = box) : around[i].add(box);
         }
-        n.box = boxes_[static_cast<std::size_t>(n.begin)];
-        for (int k = n.begin; k < n.end; ++k)
-            n.box.add(boxes_[static_cast<std::size_t>(k)]);
     }
+}
+
+FourBoxes FourBoxes::none()
+{
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    return {{four(kFar), four(kFar), four(kFar)}, {four(-kFar), four(-kFar), four(-kFar)}};
 }
 
 void BoxTree::Near::add(const FloatBox& box, int item)
 {
-    const std::size_t lane = item_.size() % kInBlock;
-    if (lane == 0) {
-        // What is not there overlaps nothing.
-        const FourFloats none = four(std::numeric_limits<float>::quiet_NaN());
-        block_.push_back({{none, none, none}, {none, none, none}});
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-        block_.back().lo[k][lane] = box.lo[k];
-        block_.back().hi[k][lane] = box.hi[k];
-    }
+    const std::size_t lane = item_.size() % kWide;
+    if (lane == 0)
+        block_.push_back(FourBoxes::none());
+    block_.back().set(lane, box);
     item_.push_back(item);
 }
 
 void BoxTree::list_overlaps(const FloatBox& box, Near& near) const
 {
     near.clear();
-    descend([&](const FloatBox& other) { return box.overlaps(other); },
+    const FourBoxes wanted = FourBoxes::same(box);
+    descend([&](const FourBoxes& boxes) { return boxes.overlaps(wanted); },
             [&](std::size_t at) { near.add(boxes_[at], item_[at]); });
 }
 

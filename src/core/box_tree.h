@@ -35,10 +35,45 @@ struct FloatBox {
     bool meets_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, double limit) const;
 };
 
+/// Four boxes, by axis.
+struct FourBoxes {
+    std::array<FourFloats, 3> lo, hi;
+
+    /// Four that overlap nothing.
+    static FourBoxes none();
+    static FourBoxes same(const FloatBox& box)
+    {
+        return {{four(box.lo[0]), four(box.lo[1]), four(box.lo[2])},
+                {four(box.hi[0]), four(box.hi[1]), four(box.hi[2])}};
+    }
+    void set(std::size_t lane, const FloatBox& box)
+    {
+        for (std::size_t k = 0; k < 3; ++k)
+            lo[k][lane] = box.lo[k], hi[k][lane] = box.hi[k];
+    }
+    FloatBox get(std::size_t lane) const
+    {
+        FloatBox box{};
+        for (std::size_t k = 0; k < 3; ++k)
+            box.lo[k] = lo[k][lane], box.hi[k] = hi[k][lane];
+        return box;
+    }
+    /// A bit for each that overlaps the other's.
+    unsigned overlaps(const FourBoxes& o) const
+    {
+        auto within = (lo[0] <= o.hi[0]) & (o.lo[0] <= hi[0]);
+        for (std::size_t k = 1; k < 3; ++k)
+            within &= (lo[k] <= o.hi[k]) & (o.lo[k] <= hi[k]);
+        return bits_of(within);
+    }
+};
+
 /// A tree over boxes that may be rebuilt every round, and is queried in parallel: for a box, a ray,
 /// or all boxes of a group at a time. Same order of what is found for any number of threads.
 class BoxTree
 {
+    static constexpr std::size_t kWide = 4;
+
 public:
     void build(std::vector<FloatBox> boxes);
     /// Same boxes, moved: the tree keeps its shape. Precondition: as many boxes as in build().
@@ -48,7 +83,8 @@ public:
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const FloatBox& query, Visit&& visit) const
     {
-        descend([&](const FloatBox& other) { return query.overlaps(other); },
+        const FourBoxes wanted = FourBoxes::same(query);
+        descend([&](const FourBoxes& boxes) { return boxes.overlaps(wanted); },
                 [&](std::size_t at) { visit(item_[at]); });
     }
 
@@ -58,8 +94,14 @@ public:
     void for_each_on_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, const double& limit,
                          Visit&& visit) const
     {
-        descend([&](const FloatBox& box) { return box.meets_ray(p, d, limit); },
-                [&](std::size_t at) { visit(item_[at]); });
+        descend(
+            [&](const FourBoxes& boxes) {
+                unsigned met = 0;
+                for (std::size_t lane = 0; lane < kWide; ++lane)
+                    met |= unsigned(boxes.get(lane).meets_ray(p, d, limit)) << lane;
+                return met;
+            },
+            [&](std::size_t at) { visit(item_[at]); });
     }
 
     /// Boxes that lie together, for those who ask about all of them: one walk serves a group.
@@ -74,33 +116,16 @@ public:
         /// one did.
         template <class Visit> bool any_overlap(const FloatBox& box, Visit&& visit) const
         {
-            const Block wanted = {spread(box.lo), spread(box.hi)};
+            const FourBoxes wanted = FourBoxes::same(box);
             for (std::size_t b = 0; b < block_.size(); ++b)
                 for (unsigned hits = block_[b].overlaps(wanted); hits != 0; hits &= hits - 1)
-                    if (visit(item_[kInBlock * b + std::size_t(__builtin_ctz(hits))]))
+                    if (visit(item_[kWide * b + std::size_t(__builtin_ctz(hits))]))
                         return true;
             return false;
         }
 
     private:
-        static constexpr std::size_t kInBlock = 4;
-        using ByAxis = std::array<FourFloats, 3>;
-        struct Block {
-            ByAxis lo, hi;
-            unsigned overlaps(const Block& o) const
-            {
-                auto within = (lo[0] <= o.hi[0]) & (o.lo[0] <= hi[0]);
-                for (std::size_t k = 1; k < 3; ++k)
-                    within &= (lo[k] <= o.hi[k]) & (o.lo[k] <= hi[k]);
-                return bits_of(within);
-            }
-        };
-        static ByAxis spread(const FourFloats& at)
-        {
-            return {four(at[0]), four(at[1]), four(at[2])};
-        }
-
-        std::vector<Block> block_;
+        std::vector<FourBoxes> block_;
         std::vector<int> item_;
     };
     /// The boxes that overlap this one, for those who go on to look at parts of it.
@@ -133,21 +158,25 @@ public:
     }
 
 private:
+    /// Up to four nodes, or in a leaf boxes.
     struct Node {
-        FloatBox box;
-        int begin, end;
-        int right; ///< negative: a leaf; the left child follows its parent
+        FourBoxes box;
+        std::array<int, kWide> child; ///< a node; in a leaf a place among the boxes
+        unsigned children;
+        bool leaf;
     };
     struct Item;
-    // The tree is split at medians, so its depth stays below 32.
+    // The tree is split at medians, twice a node, so its depth stays below 17.
     static constexpr int kStack = 64;
     static constexpr std::size_t kGroup = 16;
 
-    void split(std::vector<Item>& items, int id, int begin, int end);
+    static int middle_of(int begin, int end);
+    static void split(std::vector<Item>& items, int begin, int end);
+    int add_node(int begin, int end);
     void fit_nodes();
 
     /// Calls visit(place) for every box that is met, leaving out what lies under boxes that are
-    /// not.
+    /// not: meets(four boxes) has a bit for each that is.
     template <class Meets, class Visit> void descend(const Meets& meets, Visit&& visit) const
     {
         if (nodes_.empty())
@@ -157,22 +186,21 @@ private:
         stack[top++] = 0;
         while (top > 0) {
             const Node& n = nodes_[static_cast<std::size_t>(stack[--top])];
-            if (!meets(n.box))
+            unsigned met = meets(n.box) & ((1U << n.children) - 1U);
+            if (n.leaf) {
+                for (; met != 0; met &= met - 1)
+                    visit(static_cast<std::size_t>(n.child[std::size_t(__builtin_ctz(met))]));
                 continue;
-            if (n.right < 0) {
-                for (int i = n.begin; i < n.end; ++i)
-                    if (meets(boxes_[static_cast<std::size_t>(i)]))
-                        visit(static_cast<std::size_t>(i));
-            } else {
-                stack[top++] = n.right;
-                stack[top++] = static_cast<int>(&n - nodes_.data()) + 1;
             }
+            for (std::size_t lane = kWide; lane-- > 0;)
+                if ((met >> lane & 1U) != 0)
+                    stack[top++] = n.child[lane];
         }
     }
 
     std::vector<int> item_;       ///< in the order of the leaves
     std::vector<FloatBox> boxes_; ///< of the items, in that order
-    std::vector<Node> nodes_;
+    std::vector<Node> nodes_;     ///< each before its children
 };
 
 } // namespace vdb_shell
