@@ -94,7 +94,7 @@ void Bounds::add_unit(const Vec3s& n, double value)
     const std::size_t lane = size_++ % kLanes;
     if (lane == 0) {
         Block empty{};
-        empty.value.fill(1.0f);
+        empty.value += 1.0f;
         block_.push_back(empty);
     }
     Block& b = block_.back();
@@ -178,11 +178,8 @@ public:
     }
 
 private:
-    using Lane = Bounds::Lane;
-
-    static double sum(const Lane& lane)
+    static double sum(const Lanes& lane)
     {
-        static_assert(Bounds::kLanes == 8);
         std::array<float, 4> four;
         for (std::size_t i = 0; i < 4; ++i)
             four[i] = lane[i] + lane[i + 4];
@@ -191,16 +188,15 @@ private:
 
     void slope(Vec3d& gradient, Curvature& h) const
     {
-        Lane gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
-        for (const Bounds::Block& b : bounds_.block_)
-            for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
-                const float inverse = 1.0f / b.value[i];
-                const float x = b.x[i] * inverse, y = b.y[i] * inverse, z = b.z[i] * inverse;
-                const float wx = b.weight[i] * x, wy = b.weight[i] * y, wz = b.weight[i] * z;
-                gx[i] += wx, gy[i] += wy, gz[i] += wz;
-                xx[i] += wx * x, xy[i] += wx * y, xz[i] += wx * z;
-                yy[i] += wy * y, yz[i] += wy * z, zz[i] += wz * z;
-            }
+        Lanes gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
+        for (const Bounds::Block& b : bounds_.block_) {
+            const Lanes inverse = 1.0f / b.value;
+            const Lanes x = b.x * inverse, y = b.y * inverse, z = b.z * inverse;
+            const Lanes wx = b.weight * x, wy = b.weight * y, wz = b.weight * z;
+            gx += wx, gy += wy, gz += wz;
+            xx += wx * x, xy += wx * y, xz += wx * z;
+            yy += wy * y, yz += wy * z, zz += wz * z;
+        }
         gradient = gradient_ - Vec3d(sum(gx), sum(gy), sum(gz));
         h = {sum(xx), sum(xy), sum(xz), sum(yy), sum(yz), sum(zz)};
         add_ball(ball_, x_, gradient, h);
@@ -210,29 +206,28 @@ private:
     double room_along(const Vec3d& dx) const
     {
         const Vec3s d(dx);
-        Lane least;
-        least.fill(std::numeric_limits<float>::max());
-        for (const Bounds::Block& b : bounds_.block_)
-            for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
-                const float down = -(b.x[i] * d[0] + b.y[i] * d[1] + b.z[i] * d[2]);
-                // Of the values over the slopes only the positive ones are ahead.
-                const float room = b.value[i] / std::max(down, 1e-30f);
-                least[i] = std::min(least[i], room);
-            }
-        const double room = static_cast<double>(*std::min_element(least.begin(), least.end()));
-        return std::min(room, room_in_ball(ball_, x_, dx));
+        Lanes least = Lanes{} + std::numeric_limits<float>::max();
+        for (const Bounds::Block& b : bounds_.block_) {
+            // Of the values over the slopes only the positive ones are ahead.
+            Lanes down = -(b.x * d[0] + b.y * d[1] + b.z * d[2]);
+            raise_to(down, Lanes{} + 1e-30f);
+            lower_to(least, b.value / down);
+        }
+        double room = room_in_ball(ball_, x_, dx);
+        for (std::size_t i = 0; i < kLanes; ++i)
+            room = std::min(room, static_cast<double>(least[i]));
+        return room;
     }
 
     void move_by(const Vec3d& dx)
     {
         const Vec3s d(dx);
-        for (Bounds::Block& b : bounds_.block_)
-            for (std::size_t i = 0; i < Bounds::kLanes; ++i) {
-                const float value = b.value[i] + (b.x[i] * d[0] + b.y[i] * d[1] + b.z[i] * d[2]);
-                // A bound overstepped by a damped step no longer counts.
-                b.weight[i] = value > 0 ? b.weight[i] : 0.0f;
-                b.value[i] = value > 0 ? value : 1.0f;
-            }
+        for (Bounds::Block& b : bounds_.block_) {
+            const Lanes value = b.value + (b.x * d[0] + b.y * d[1] + b.z * d[2]);
+            // A bound overstepped by a damped step no longer counts.
+            b.weight = value > 0 ? b.weight : Lanes{};
+            b.value = value > 0 ? value : Lanes{} + 1.0f;
+        }
     }
 
     Bounds& bounds_;

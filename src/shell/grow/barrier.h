@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/lanes.h"
 #include "shell/grow/grow_state.h"
 
 #include <array>
@@ -29,10 +30,8 @@ public:
 
 private:
     friend class Newton;
-    static constexpr std::size_t kLanes = 8;
-    using Lane = std::array<float, kLanes>;
-    struct Block {
-        Lane x, y, z, value, weight;
+    struct alignas(kLanesAlignment) Block {
+        Lanes x, y, z, value, weight;
     };
     std::vector<Block> block_;
     std::size_t size_ = 0;
