@@ -24,7 +24,7 @@ Vec3d lattice_point(const CounterRandom& random, std::uint64_t id)
     return p;
 }
 
-TEST(PlaneSides, AreThoseOfThePlaneFilterOneByOne)
+TEST(PlaneSides, HoldPointsTogetherThatThePlaneFilterHoldsToOneSide)
 {
     int open = 0, decided = 0;
     for (std::size_t points = 1; points <= PlaneSides::kMostPoints; ++points) {
@@ -45,10 +45,14 @@ TEST(PlaneSides, AreThoseOfThePlaneFilterOneByOne)
         sides.compute();
         for (std::size_t k = 0; k < planes; ++k) {
             const vdb_shell::exact::PlaneFilter filter(plane[k][0], plane[k][1], plane[k][2]);
-            for (std::size_t i = 0; i < points; ++i) {
-                EXPECT_EQ(sides.side(k, i), filter.side(point[i])) << k << " " << i;
-                ++(sides.side(k, i) == 0 ? open : decided);
-            }
+            for (std::size_t i = 0; i < points; ++i)
+                for (std::size_t j = 0; j <= i; ++j) {
+                    const int side = filter.side(point[i]);
+                    const bool together = side != 0 && filter.side(point[j]) == side;
+                    const std::uint32_t both = 1U << i | 1U << j;
+                    EXPECT_EQ(sides.on_one_side(k, both), together) << k << " " << i << " " << j;
+                    ++(together ? decided : open);
+                }
         }
     }
     EXPECT_GT(open, 100);

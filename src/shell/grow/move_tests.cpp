@@ -94,6 +94,18 @@ bool pair_meets(const GrowState& s, int v, const Vec3d& x, int f, int g)
                             inner_ids(s, g));
 }
 
+/// Whether doubles show for certain that inner triangle f, with these corners, and g have only the
+/// corner in common that g has besides `own`. Most that lie in a common fan can be told apart by
+/// the plane that halves the angle between their middles.
+bool kin_apart(const GrowState& s, const Corners& of_f, int f, int g, const std::array<int, 2>& own)
+{
+    const Connectivity& m = *s.mesh;
+    const int shared = m.corner(g, 0) ^ m.corner(g, 1) ^ m.corner(g, 2) ^ own[0] ^ own[1];
+    const std::size_t l = m.corner(f, 0) == shared ? 0 : m.corner(f, 1) == shared ? 1 : 2;
+    return apart_but_for_corner(of_f[l], {of_f[(l + 1) % 3], of_f[(l + 2) % 3]},
+                                {s.b[own[0]], s.b[own[1]]});
+}
+
 /// kin_clear_at, for vertices that Kin has nothing about or that have pins beside them.
 bool kin_clear_one_by_one(const GrowState& s, int v, const Vec3d& x)
 {
@@ -303,11 +315,14 @@ bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
     sides.compute();
     const int* const face = m.kin.face.data() + m.kin.first_face[v];
     for (const KinPair& pair : kin_pairs(m, v)) {
-        const std::int64_t side = sides.side(pair.moved, pair.i);
         // With all its other corners on one side of the plane the other cannot meet the first.
-        if (side != 0 && side == sides.side(pair.moved, pair.j))
+        if (sides.on_one_side(pair.moved, 1U << pair.i | 1U << pair.j))
             continue;
-        if (pair_meets(s, v, x, face[pair.moved], face[pair.other]))
+        const int f = face[pair.moved], g = face[pair.other];
+        if (pair.i != pair.j &&
+            kin_apart(s, sides.plane(pair.moved), f, g, {ring.first[pair.i], ring.first[pair.j]}))
+            continue;
+        if (pair_meets(s, v, x, f, g))
             return false;
     }
     return true;

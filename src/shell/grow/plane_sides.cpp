@@ -11,7 +11,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-using FourWords __attribute__((vector_size(32))) = long long;
+using FourWords __attribute__((vector_size(32))) = unsigned long long;
 
 } // namespace
 
@@ -27,6 +27,9 @@ VDB_SHELL_TWO_TARGETS void PlaneSides::compute()
         const double nx = yz - zy, ny = zx - xz, nz = xy - yx;
         const double sx = std::abs(yz) + std::abs(zy), sy = std::abs(zx) + std::abs(xz),
                      sz = std::abs(xy) + std::abs(yx);
+        // A bit a point: on the plus side in the lower half of a word, on the minus side above.
+        constexpr FourWords kPlus{1, 2, 4, 8}, kMinus = kPlus << kMostPoints;
+        FourWords sides{};
         for (std::size_t block = 0; block < blocks; ++block) {
             DoubleLanes x, y, z;
             std::memcpy(&x, &x_[block * kDoubleLanes], sizeof x);
@@ -37,9 +40,13 @@ VDB_SHELL_TWO_TARGETS void PlaneSides::compute()
             const DoubleLanes permanent =
                 (z < 0 ? -z : z) * sz + (x < 0 ? -x : x) * sx + (y < 0 ? -y : y) * sy;
             const DoubleLanes bound = exact::kOrientError * permanent + exact::kUnderflowGuard;
-            const FourWords side = (det < -bound) - (det > bound);
-            std::memcpy(&side_[k][block * kDoubleLanes], &side, sizeof side);
+            const FourWords side =
+                ((FourWords)(det > bound) & kPlus) | ((FourWords)(det < -bound) & kMinus);
+            sides |= side << (kDoubleLanes * block);
         }
+        const unsigned long long all = sides[0] | sides[1] | sides[2] | sides[3];
+        plus_[k] = static_cast<std::uint32_t>(all);
+        minus_[k] = static_cast<std::uint32_t>(all >> kMostPoints);
     }
 }
 

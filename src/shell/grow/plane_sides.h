@@ -22,16 +22,22 @@ public:
         ++points_;
     }
     void add_plane(const std::array<openvdb::Vec3d, 3>& corner) { plane_[planes_++] = corner; }
+    const std::array<openvdb::Vec3d, 3>& plane(std::size_t i) const { return plane_[i]; }
     /// Looks at all points and planes added so far.
     void compute();
-    /// Sign of det(b-a, c-a, p-a) where doubles decide it for certain, else 0.
-    std::int64_t side(std::size_t plane, std::size_t point) const { return side_[plane][point]; }
+    /// Whether doubles show for certain that the points, a bit for each, lie on one side of the
+    /// plane, none in it.
+    bool on_one_side(std::size_t plane, std::uint32_t points) const
+    {
+        return (plus_[plane] & points) == points || (minus_[plane] & points) == points;
+    }
 
 private:
     using Points = std::array<double, kMostPoints>;
     alignas(32) Points x_, y_, z_;
     std::array<std::array<openvdb::Vec3d, 3>, kMostPlanes> plane_;
-    alignas(32) std::array<std::array<std::int64_t, kMostPoints>, kMostPlanes> side_;
+    std::array<std::uint32_t, kMostPlanes> plus_,
+        minus_; ///< points with det(b-a, c-a, p-a) > 0, < 0
     std::size_t points_ = 0, planes_ = 0;
 };
 
