@@ -42,9 +42,10 @@ constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 // About the triangles of the coarsest surface that growth begins on, and those of each over those
 // of the next at most.
 constexpr double kCoarsest = 1200, kMostCoarser = 9;
-// The barrier's weight at which growth ends on one and goes on on the next, and how it falls on the
-// coarsest and after it.
-constexpr double kRoughUntil = 0.005, kRoughCoolFirst = 0.5, kRoughCool = 0.45;
+// The barrier's weight, and what a round wins for each vertex, share of the solid, at which growth
+// ends on one and goes on on the next; how the weight falls on the coarsest and after it.
+constexpr double kRoughUntil = 0.004, kRoughUntilGain = 5e-6;
+constexpr double kRoughCoolFirst = 0.5, kRoughCool = 0.35;
 // After it most is done: first weight over what is left to fill, and how it falls. Twice as much,
 // and kCool, where there is time.
 constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
@@ -53,7 +54,7 @@ constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
 // smaller one; from lines, all of them together. And what a round has to win for each vertex asked,
 // as a share of that, for another to follow.
 constexpr double kGainForVertex = 1e-6, kDear = 6500, kGainForAll = 3e-4;
-constexpr double kGainForAsked = 0.45;
+constexpr double kGainForAsked = 0.4;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;
@@ -222,7 +223,7 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         growth::move_freely(s, lines.visibility, options,
                             {rounds, first_softness(s, from_what, true),
                              from_what == Start::carried ? kRoughCool : kRoughCoolFirst, kLeastGain,
-                             kRoughUntil},
+                             kRoughUntil, kRoughUntilGain},
                             progress, ignored);
         inner = std::move(s.b);
     }
@@ -279,7 +280,7 @@ void move_off_the_lines(GrowState& s, const Directions& directions, const Starte
     const double enough = hasty ? kGainForAsked * worth : -1;
     growth::move_freely(s, directions.visibility, options,
                         {twelve_rounds, first_softness(s, started.from, hasty), cool, least_gain, 0,
-                         enough, worth, started.hope},
+                         0, enough, worth, started.hope},
                         progress, report);
     if (!thickest)
         return;

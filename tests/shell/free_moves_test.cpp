@@ -47,7 +47,7 @@ TEST(FreeMoves, AsksOnlyWhereSomethingIsToBeWonAndBeside)
     const int hopeful = 100;
     std::vector<double> hope(before.size(), 0.0);
     hope[hopeful] = 1.0;
-    sphere.move({1, kSoftness, 0.5, 0.0, 0.0, -1.0, 1e-3, hope});
+    sphere.move({1, kSoftness, 0.5, 0.0, 0.0, 0.0, -1.0, 1e-3, hope});
     int moved = 0;
     for (int v = 0; v < sphere.s.mesh->vertices; ++v) {
         if (sphere.s.b[v] == before[v])
@@ -65,7 +65,7 @@ TEST(FreeMoves, WithoutHopesAllAreAsked)
 {
     HalfFull sphere;
     const std::vector<Vec3d> before = sphere.s.b;
-    sphere.move({1, kSoftness, 0.5, 0.0, 0.0, -1.0, 1e-3});
+    sphere.move({1, kSoftness, 0.5, 0.0, 0.0, 0.0, -1.0, 1e-3});
     for (std::size_t v = 0; v < before.size(); ++v)
         EXPECT_NE(sphere.s.b[v], before[v]) << v;
 }
@@ -75,7 +75,7 @@ TEST(FreeMoves, EndsWhenNobodyHopes)
     HalfFull sphere;
     const std::vector<Vec3d> before = sphere.s.b;
     sphere.move(
-        {40, kSoftness, 0.5, 0.0, 0.0, 1e-6, 1e-3, std::vector<double>(before.size(), 0.0)});
+        {40, kSoftness, 0.5, 0.0, 0.0, 0.0, 1e-6, 1e-3, std::vector<double>(before.size(), 0.0)});
     EXPECT_EQ(sphere.s.b, before);
 }
 

@@ -27,7 +27,7 @@ TriangleMesh bent_disc()
 {
     TriangleMesh mesh = icosphere(1.0, 1);
     for (openvdb::Vec3s& p : mesh.points)
-        p = {2 * p[0], p[1], 0.4F * p[2] + 0.8F * p[0] * p[0]};
+        p = {2 * p[0], p[1], 0.4F * p[2] + 1.6F * p[0] * p[0]};
     return mesh;
 }
 

@@ -68,15 +68,8 @@ bool kin(const Connectivity& m, int f, int g)
     return false;
 }
 
-TEST(Walls, WhateverMovesBetweenThemNeverTouches)
+void expect_apart(const GrowState& s)
 {
-    const auto shell = thick_torus();
-    GrowState& s = shell->state;
-    Walls walls;
-    raise_walls(s, std::vector<std::uint8_t>(s.b.size(), 0), walls);
-    const std::size_t moved = shake(s, walls, 11);
-    EXPECT_GT(moved, s.b.size() / 10);
-    EXPECT_LT(moved, s.b.size()) << "no wall held anything: the test says nothing";
     const int faces = s.mesh->face_count();
     for (int f = 0; f < faces; ++f)
         for (int g = 0; g < faces; ++g) {
@@ -88,6 +81,70 @@ TEST(Walls, WhateverMovesBetweenThemNeverTouches)
                                           outer_ids(s, g)))
                 << f << " outer " << g;
         }
+}
+
+TEST(Walls, WhateverMovesBetweenThemNeverTouches)
+{
+    const auto shell = thick_torus();
+    GrowState& s = shell->state;
+    Walls walls;
+    raise_walls(s, std::vector<std::uint8_t>(s.b.size(), 0), walls);
+    const std::size_t moved = shake(s, walls, 11);
+    EXPECT_GT(moved, s.b.size() / 10);
+    EXPECT_LT(moved, s.b.size()) << "no wall held anything: the test says nothing";
+    expect_apart(s);
+}
+
+TEST(Walls, RecentredTheyStillKeepApartWhatMovesBetweenThem)
+{
+    const auto shell = thick_torus();
+    GrowState& s = shell->state;
+    Walls walls;
+    raise_walls(s, std::vector<std::uint8_t>(s.b.size(), 0), walls);
+    for (std::uint64_t round = 0; round < 4; ++round) {
+        const std::vector<Wall> before = walls.wall;
+        EXPECT_GT(shake(s, walls, 20 + round), s.b.size() / 10);
+        recentre_walls(s, walls);
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < before.size(); ++i)
+            moved += walls.wall[i].d != before[i].d;
+        EXPECT_GT(moved, before.size() / 10);
+        for (int v = 0; v < s.mesh->vertices; ++v)
+            EXPECT_TRUE(walls.locked[v] || between_walls(walls, v, s.b[v])) << v;
+        expect_apart(s);
+    }
+}
+
+TEST(Walls, RecentredTheyAreHalfwayWhereNothingElseHoldsThem)
+{
+    const auto shell = thick_torus();
+    GrowState& s = shell->state;
+    Walls walls;
+    raise_walls(s, std::vector<std::uint8_t>(s.b.size(), 0), walls);
+    shake(s, walls, 31);
+    recentre_walls(s, walls);
+    int halfway = 0, held = 0;
+    for (std::size_t i = 0; i < walls.wall.size(); ++i) {
+        const auto& [f, g, least_d, most_d] = walls.place[i];
+        if (g < 0)
+            continue;
+        const Wall& wall = walls.wall[i];
+        double of_f = std::numeric_limits<double>::max(), of_g = of_f;
+        for (int k = 0; k < 3; ++k) {
+            of_f = std::min(of_f, wall.value(s.b[s.mesh->corner(f, k)]));
+            of_g = std::min(of_g, -wall.value(s.b[s.mesh->corner(g, k)]));
+        }
+        EXPECT_GT(of_f, 0);
+        EXPECT_GT(of_g, 0);
+        if (wall.d == least_d || wall.d == most_d) {
+            ++held;
+            continue;
+        }
+        EXPECT_NEAR(of_f, of_g, 1e-9) << i;
+        ++halfway;
+    }
+    EXPECT_GT(halfway, 100);
+    EXPECT_GT(held, 100);
 }
 
 TEST(Walls, WithoutThemTheSameMovesDoTouch)
@@ -131,9 +188,12 @@ TEST(Walls, AreTheSameForAnyNumberOfThreads)
         ASSERT_EQ(walls.side, first.side);
         ASSERT_EQ(walls.locked, first.locked);
         ASSERT_EQ(walls.wall.size(), first.wall.size());
-        for (std::size_t i = 0; i < first.wall.size(); ++i)
+        for (std::size_t i = 0; i < first.wall.size(); ++i) {
             ASSERT_TRUE(walls.wall[i].n == first.wall[i].n && walls.wall[i].d == first.wall[i].d)
                 << i;
+            ASSERT_EQ(walls.place[i].f, first.place[i].f);
+            ASSERT_EQ(walls.place[i].least_d, first.place[i].least_d);
+        }
     }
 }
 

@@ -21,15 +21,17 @@ constexpr double kLeastSoftness = 1e-3;
 constexpr double kSettled = 0.05;  ///< above it a loss is the barrier undoing jams
 constexpr double kCoolFast = 0.3;  ///< factor per round where little is won
 constexpr double kStale = 5e-4;    ///< share of the solid: a round that wins less is such a round
-constexpr int kSweepsPerRound = 2; ///< between the same walls
+constexpr int kSweepsPerRound = 2; ///< between the same walls, but that they are recentred
+/// Share of what makes a vertex worth asking in the next round that makes it so in the next sweep.
+constexpr double kWorthAgain = 0.3;
 constexpr int kHalvings = 5;
 constexpr double kReachOfEdges = 3; ///< first reach over the shortest edge, nearly full
 /// Share of the first reach that is worth its walls, nearly full: most vertices move less.
-constexpr double kFirstReachNearlyFull = 0.6;
-constexpr double kReachAhead = 1.5; ///< next reach over the last move
-constexpr double kReachKept = 0.3;  ///< least share of a reach that is left for the next round
+constexpr double kFirstReachNearlyFull = 0.45;
+constexpr double kReachAhead = 1.1; ///< next reach over the last move
+constexpr double kReachKept = 0.6;  ///< least share of a reach that is left for the next round
 /// How far from a vertex walls steer it, as a share of its reach; the others only stop it.
-constexpr double kSoftRange = 0.6;
+constexpr double kSoftRange = 0.8;
 constexpr float kWallWeight = 4; ///< of all near walls, where a tet has 1
 // The barrier knows the cap as a ball a little wider, so that a vertex on the cap has room on every
 // side; without it a vertex that only the cap holds would be sent far away, sideways as well.
@@ -110,7 +112,7 @@ double first_reach(const GrowState& s, int v, bool nearly_full)
     return std::max(share * std::min(0.3 * outer / count, inner), 200 * s.rounding);
 }
 
-/// Half as far again as the vertex went, for short reaches keep the walls few. The floor keeps the
+/// Hardly farther than the vertex went, for short reaches keep the walls few. The floor keeps the
 /// rounding of a move within the hundredth that within_reach leaves.
 void adapt_reach(GrowState& s, const std::vector<std::uint8_t>& still)
 {
@@ -143,8 +145,8 @@ std::vector<std::uint8_t> find_still(const GrowState& s, const std::vector<int>&
     return still;
 }
 
-/// What the vertices asked have won or given way between the walls, as volume6, for one that gives
-/// way is not done either; nought for the others.
+/// What the vertices asked have won or given way since the walls were raised, as volume6, for one
+/// that gives way is not done either; nought for the others.
 void count_won(const GrowState& s, const std::vector<std::uint8_t>& still, std::vector<double>& won)
 {
     won.resize(still.size());
@@ -165,6 +167,15 @@ void leave_out(const GrowState& s, const std::vector<double>& hope, double worth
             std::none_of(around.begin(), around.end(), [&](int u) { return hope[u] > worth; }))
             still[i] = 1;
     });
+}
+
+/// Adds to `still` those that have won no more than `worth` since the walls were raised.
+void let_rest(const GrowState& s, double worth, std::vector<std::uint8_t>& still)
+{
+    std::vector<double> won;
+    count_won(s, still, won);
+    for (std::size_t v = 0; v < still.size(); ++v)
+        still[v] |= !(won[v] > worth);
 }
 
 /// Faster where little is left to give.
@@ -210,15 +221,22 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         if ((round & (round - 1)) == 0)
             report.released += static_cast<std::size_t>(release_pins(s, visibility));
         std::vector<std::uint8_t> still = find_still(s, quiet);
-        if (worth > 0 && softness < kSettled && !hope.empty())
+        const bool choosy = worth > 0 && softness < kSettled;
+        if (choosy && !hope.empty())
             leave_out(s, hope, worth, still);
         const std::ptrdiff_t asked = std::count(still.begin(), still.end(), 0);
         const bool near_the_last = round > 0 && softness < kSettled;
         raise_walls(s, still, walls, near_the_last ? Tree::kept : Tree::anew);
-        for (int i = 0; i < kSweepsPerRound; ++i)
-            sweep(s, walls, still, [&](int v, Vec3d& x) {
+        std::vector<std::uint8_t> resting = still;
+        for (int i = 0; i < kSweepsPerRound; ++i) {
+            if (i > 0)
+                recentre_walls(s, walls);
+            if (i > 0 && choosy)
+                let_rest(s, kWorthAgain * worth, resting);
+            sweep(s, walls, resting, [&](int v, Vec3d& x) {
                 return propose_move(s, walls, v, rules, scratch.local(), x);
             });
+        }
         if (worth > 0)
             count_won(s, still, hope);
         update_quiet(s, quiet);
@@ -228,7 +246,8 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         ++report.rounds;
         const double gain = fill_of(s) - fill;
         fill += gain;
-        if (softness < stage.until || gain <= stage.enough * double(asked) ||
+        if ((softness < stage.until && gain <= stage.until_gain * double(asked)) ||
+            gain <= stage.enough * double(asked) ||
             (softness <= kLeastSoftness && gain < stage.least_gain))
             break;
         softness = cooled(softness, gain, stage.cool);

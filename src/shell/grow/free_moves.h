@@ -23,7 +23,9 @@ struct FreeStage {
     double softness;   ///< at the first round
     double cool;       ///< factor on it per round: the slower, the thicker and the longer
     double least_gain; ///< share of the solid that a round must win to go on, at the end
-    double until = 0;  ///< ends as soon as the weight is below, units of softness
+    /// Ends as soon as the weight is below, units of softness, and a round has won no more than the
+    /// other, share of the solid for each vertex asked.
+    double until = 0, until_gain = 0;
     /// Share of the solid, for each vertex asked: ends with a round that wins less, whatever the
     /// weight. Below 0 not even a loss ends it: early on that is the barrier undoing jams.
     double enough = -1;

@@ -20,6 +20,24 @@ struct Near {
     BoxTree::Near inner, outer;
 };
 
+/// What b_v itself goes through on its way to x: most that are held up are held up by that, and it
+/// is found sooner than what the triangles around it meet.
+StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
+{
+    const FloatBox box = float_box(box_of({s.b[v], x, x}));
+    StopReason met = StopReason::none;
+    s.inner_tree.for_each_overlap(box, [&](int g) {
+        if (met == StopReason::none && !s.mesh->incident_to(g, v) &&
+            segment_touches_triangle(s.b[v], x, inner_corners(s, g)))
+            met = StopReason::inner_contact;
+    });
+    s.outer_tree.for_each_overlap(box, [&](int g) {
+        if (met == StopReason::none && segment_touches_triangle(s.b[v], x, outer_corners(s, g)))
+            met = StopReason::outer_contact;
+    });
+    return met;
+}
+
 /// What the triangles around v meet first, with b_v = x.
 StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
 {
@@ -62,7 +80,8 @@ StopReason reason_at(const GrowState& s, int v, double step, Near& near)
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
-    return contact_at(s, v, x, near);
+    const StopReason met = met_on_way(s, v, x);
+    return met == StopReason::none ? contact_at(s, v, x, near) : met;
 }
 
 } // namespace

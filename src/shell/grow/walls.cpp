@@ -16,6 +16,7 @@ namespace vdb_shell::growth
 namespace
 {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kChunk = 3; ///< groups of faces whose walls are listed together
 
 /// Whose wall it is: corners 0..2 of face f lie where value > 0, those of inner face g where it is
@@ -27,8 +28,9 @@ struct Owners {
 
 struct Chunk {
     std::vector<Wall> wall;
-    std::vector<Owners> owners; ///< of each wall
-    std::vector<int> locked;    ///< faces
+    std::vector<WallPlace> place; ///< of each wall
+    std::vector<Owners> owners;
+    std::vector<int> locked; ///< faces
 };
 
 struct Stock {
@@ -181,21 +183,29 @@ private:
         const double share = g < 0 || stock_.still[g] ? 0.0 : 0.5;
         const double at = slab.hi + std::max(share * slab.gap, 2 * slack_);
         const Wall wall{slab.n, Vec3d(slab.n).dot((*query.first)[0]) + at};
+        double room_of_f = kInfinity, room_of_g = kInfinity;
         for (int k = 0; k < 3; ++k) {
-            owners.reached |= std::uint8_t(reaches(wall, f, k, 1.0) << k);
+            owners.reached |= std::uint8_t(reaches(wall, f, k, 1.0, room_of_f) << k);
             if (share > 0)
-                owners.reached |= std::uint8_t(reaches(wall, g, k, -1.0) << (3 + k));
+                owners.reached |= std::uint8_t(reaches(wall, g, k, -1.0, room_of_g) << (3 + k));
         }
         if (!owners.reached)
             return;
         out.wall.push_back(wall);
+        out.place.push_back({f, share > 0 ? g : -1, wall.d - room_of_g, wall.d + room_of_f});
         out.owners.push_back(owners);
     }
 
-    bool reaches(const Wall& wall, int f, int k, double side) const
+    /// Lowers `room` to how far the wall is beyond the reach of a corner that does not reach it.
+    bool reaches(const Wall& wall, int f, int k, double side, double& room) const
     {
         const int v = s_.mesh->corner(f, k);
-        return !still_[v] && side * wall.value(s_.home[v]) < s_.reach[v] + 2 * slack_;
+        if (still_[v])
+            return false;
+        const double beyond = side * wall.value(s_.home[v]) - (s_.reach[v] + 2 * slack_);
+        if (beyond >= 0)
+            room = std::min(room, beyond);
+        return beyond < 0;
     }
 
     const GrowState& s_;
@@ -222,12 +232,16 @@ std::vector<std::size_t> gather_walls(std::vector<Chunk>& chunks, Walls& w)
         base[c + 1] = base[c] + chunks[c].wall.size();
     assert(base.back() < std::numeric_limits<std::uint32_t>::max() / 2);
     w.wall.resize(base.back());
+    w.place.resize(base.back());
     for_each_index(
         chunks.size(),
         [&](std::size_t c) {
             std::copy(chunks[c].wall.begin(), chunks[c].wall.end(),
                       w.wall.begin() + std::ptrdiff_t(base[c]));
+            std::copy(chunks[c].place.begin(), chunks[c].place.end(),
+                      w.place.begin() + std::ptrdiff_t(base[c]));
             chunks[c].wall = {};
+            chunks[c].place = {};
         },
         4);
     return base;
@@ -295,6 +309,27 @@ void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w,
             for (int k = 0; k < 3; ++k)
                 w.locked[s.mesh->corner(f, k)] = 1;
     hand_out(s, std::move(chunks), w);
+}
+
+void recentre_walls(const GrowState& s, Walls& w)
+{
+    for_each_index(
+        w.wall.size(),
+        [&](std::size_t i) {
+            const auto& [f, g, least_d, most_d] = w.place[i];
+            if (g < 0)
+                return;
+            Wall& wall = w.wall[i];
+            double of_f = kInfinity, of_g = kInfinity;
+            for (int k = 0; k < 3; ++k) {
+                of_f = std::min(of_f, wall.value(s.b[s.mesh->corner(f, k)]));
+                of_g = std::min(of_g, -wall.value(s.b[s.mesh->corner(g, k)]));
+            }
+            // Else the middle may be lost in the rounding.
+            if (of_f > 8 * w.slack && of_g > 8 * w.slack)
+                wall.d = std::clamp(wall.d + 0.5 * (of_f - of_g), least_d, most_d);
+        },
+        256);
 }
 
 } // namespace vdb_shell::growth

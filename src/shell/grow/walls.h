@@ -16,8 +16,17 @@ struct Wall {
     double value(const Vec3d& x) const { return n[0] * x[0] + n[1] * x[1] + n[2] * x[2] - d; }
 };
 
+/// What a wall stands between. Its d stays within bounds: beyond them it would come within reach of
+/// a corner whose vertex does not have it.
+struct WallPlace {
+    int f,
+        g; ///< faces: inner triangle f lies where value > 0; g: -1 if the other one does not move
+    double least_d, most_d;
+};
+
 struct Walls {
     std::vector<Wall> wall;
+    std::vector<WallPlace> place;    ///< of each wall
     std::vector<std::size_t> first;  ///< vertex -> its first side; one past the end
     std::vector<std::uint32_t> side; ///< of all vertices: twice the wall, one more where value < 0
     std::vector<std::uint8_t>
@@ -48,6 +57,12 @@ enum class Tree { anew, kept };
 /// Same walls for any number of threads.
 void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w,
                  Tree tree = Tree::anew);
+
+/// Moves each wall between two triangles that move halfway between where these are now, as far as
+/// its bounds allow: what one of them has left of its half serves both. Raised anew it would also
+/// be turned, which costs far more. Precondition: since the walls were raised every vertex has
+/// stayed between its own and within its reach. The walls keep apart what they kept apart before.
+void recentre_walls(const GrowState& s, Walls& w);
 
 /// On the right side of all its walls, for certain.
 inline bool between_walls(const Walls& w, int v, const Vec3d& x)
