@@ -23,14 +23,15 @@ struct FreeStage {
     double softness;   ///< at the first round
     double cool;       ///< factor on it per round: the slower, the thicker and the longer
     double least_gain; ///< share of the solid that a round must win to go on, at the end
-    /// Ends as soon as the weight is below, units of softness, and a round has won no more than the
-    /// other, share of the solid for each vertex asked.
+    /// Ends as soon as the weight is below the first, units of softness, and a round has won no
+    /// more than the second, share of the solid, for each vertex asked.
     double until = 0, until_gain = 0;
     /// Share of the solid, for each vertex asked: ends with a round that wins less, whatever the
     /// weight. Below 0 not even a loss ends it: early on that is the barrier undoing jams.
     double enough = -1;
     /// Share of the solid: only vertices that won more in the round before, and those beside them,
-    /// are asked, once most jams are undone. 0: all are.
+    /// are asked, once most jams are undone; in a round's later sweeps those that have won a part
+    /// of that. 0: all are.
     double worth = 0;
     /// What each is to win in the first round, as volume6. Empty: all are asked.
     std::vector<double> hope = {};

@@ -36,8 +36,8 @@ private:
     using Points = std::array<double, kMostPoints>;
     alignas(32) Points x_, y_, z_;
     std::array<std::array<openvdb::Vec3d, 3>, kMostPlanes> plane_;
-    std::array<std::uint32_t, kMostPlanes> plus_,
-        minus_; ///< points with det(b-a, c-a, p-a) > 0, < 0
+    /// Points with det(b-a, c-a, p-a) > 0, and with < 0.
+    std::array<std::uint32_t, kMostPlanes> plus_, minus_;
     std::size_t points_ = 0, planes_ = 0;
 };
 

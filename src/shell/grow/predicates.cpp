@@ -115,9 +115,7 @@ bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
         return separate_triangles_touch(s, t);
     // With one triangle but for the shared corner on one side of the other's plane, only that
     // corner lies in both.
-    if (shared == 1 && (rest_on_one_side(s, si, t) || rest_on_one_side(t, ti, s) ||
-                        apart_but_for_corner(s[si], {s[(si + 1) % 3], s[(si + 2) % 3]},
-                                             {t[(ti + 1) % 3], t[(ti + 2) % 3]})))
+    if (shared == 1 && (rest_on_one_side(s, si, t) || rest_on_one_side(t, ti, s)))
         return false;
     if (shared == 1)
         return segment_touches_triangle(s[(si + 1) % 3], s[(si + 2) % 3], t) ||
