@@ -6,13 +6,18 @@
 #include "certify/tet_faces.h"
 #include "core/counter_random.h"
 #include "core/exact.h"
+#include "core/lanes.h"
 #include "core/orient3d_filter.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "core/two_targets.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -35,6 +40,7 @@ struct Point {
 struct Scene {
     const TriangleMesh& surface;
     const TetMesh& tets;
+    Bounds bounds; ///< of surface and tets
     CellGrid grid;
     double span = 0;
     std::vector<std::int8_t> sign; ///< of each tet; flat ones have no inside
@@ -153,8 +159,9 @@ bool may_leave_solid(const Scene& scene, std::size_t tet,
 Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t samples)
 {
     const Bounds bounds = bounds_of_both(surface, tets);
-    Scene scene{surface, tets, make_cell_grid(bounds, cells_for(samples)), diagonal_of(bounds), {},
-                {},      {}};
+    Scene scene{
+        surface, tets, bounds, make_cell_grid(bounds, cells_for(samples)), diagonal_of(bounds),
+        {},      {},   {}};
     scene.sign.resize(tets.tets.size());
     for_each_index(scene.sign.size(), [&](std::size_t i) {
         const std::array<Vec3s, 4> p = corners_of(tets, i);
@@ -210,57 +217,100 @@ std::vector<Point> draw_batch(const Scene& scene, const CounterRandom& random, s
     return points;
 }
 
-struct PointsByCell {
+/// Points by the cell of a grid of their own, in one array for each axis, so that a tet looks at
+/// eight of them at a time.
+struct SortedPoints {
+    CellGrid grid;
+    openvdb::Vec3d middle{0.0};
     std::vector<std::uint32_t> offset; ///< points of cell c stand at [offset[c], offset[c+1])
     std::vector<std::uint32_t> point;
-    std::vector<Vec3s> position; ///< in the same order, so that a tet reads them in one go
+    std::array<std::vector<float>, 3> off; ///< from the middle; room to read beyond the last
     /// From how many tets on another one would not change what is reported of the point.
     std::vector<std::uint8_t> enough;
 };
 
-PointsByCell sort_by_cell(const std::vector<Point>& points, std::size_t cells)
+SortedPoints sort_points(const std::vector<Point>& points, const Bounds& bounds)
 {
-    PointsByCell sorted;
-    sorted.offset.assign(cells + 1, 0);
-    for (const Point& p : points)
-        ++sorted.offset[p.cell + 1];
-    for (std::size_t c = 0; c < cells; ++c)
-        sorted.offset[c + 1] += sorted.offset[c];
+    constexpr std::size_t kPointsInCell = 2;
+    SortedPoints sorted;
+    sorted.grid = make_cell_grid(bounds, points.size() / kPointsInCell + 1);
+    sorted.middle = 0.5 * (bounds.low + bounds.high);
+    std::vector<std::uint32_t> cell(points.size());
+    for_each_index(cell.size(), [&](std::size_t i) {
+        const CellRange at = sorted.grid.overlapped(points[i].position, points[i].position);
+        cell[i] = sorted.grid.cell(at.first[0], at.first[1], at.first[2]);
+    });
+    sorted.offset.assign(sorted.grid.cells() + 1, 0);
+    for (const std::uint32_t c : cell)
+        ++sorted.offset[c + 1];
+    std::partial_sum(sorted.offset.begin(), sorted.offset.end(), sorted.offset.begin());
     sorted.point.resize(points.size());
-    sorted.position.resize(points.size());
     sorted.enough.resize(points.size());
+    for (std::vector<float>& off : sorted.off)
+        off.resize(points.size() + kLanes);
     std::vector<std::uint32_t> next(sorted.offset.begin(), sorted.offset.end() - 1);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::uint32_t slot = next[points[i].cell]++;
+        const std::uint32_t slot = next[cell[i]]++;
         sorted.point[slot] = static_cast<std::uint32_t>(i);
-        sorted.position[slot] = points[i].position;
         sorted.enough[slot] = points[i].in_solid ? 2 : 1;
+        const Vec3s off(Vec3d(points[i].position) - sorted.middle);
+        for (int a = 0; a < 3; ++a)
+            sorted.off[std::size_t(a)][slot] = off[a];
     }
     return sorted;
 }
 
-/// visit(begin, end) for runs of places in `sorted` that together hold all points in the tet.
-template <typename Visit>
-void visit_points_near(const Scene& scene, const PointsByCell& sorted, std::size_t tet,
-                       const std::array<Vec3s, 4>& corners, const FloatBox& box, const Visit& visit)
+/// The tet by floats: which points lie outside for certain.
+struct RoughPlanes {
+    std::array<std::array<float, 3>, 4> outward; ///< unit normals
+    std::array<float, 4> most;                   ///< beyond it along the normal, a point is outside
+
+    RoughPlanes(const std::array<Vec3s, 4>& corners, int sign, const Vec3d& middle, double span)
+    {
+        // A normal's rounding is that of doubles times the edges over the area; then floats round a
+        // dozen terms that are not longer than the span. Four times as much each, and no less than
+        // floats can tell from nought.
+        constexpr double kOfNormal = 0x1p-48, kOfFloats = 0x1p-18;
+        constexpr double kLeast = std::numeric_limits<float>::min();
+        for (std::size_t face = 0; face < 4; ++face) {
+            const Vec3d p(corners[std::size_t(kTetFaces[face][0])]);
+            const Vec3d u = Vec3d(corners[std::size_t(kTetFaces[face][1])]) - p;
+            const Vec3d w = Vec3d(corners[std::size_t(kTetFaces[face][2])]) - p;
+            const Vec3d normal = double(sign) * u.cross(w);
+            const double size = normal.length();
+            const double slack = kOfNormal * std::sqrt(u.lengthSqr() * w.lengthSqr()) / size;
+            for (int a = 0; a < 3; ++a)
+                outward[face][std::size_t(a)] = static_cast<float>(normal[a] / size);
+            most[face] = static_cast<float>(normal.dot(p - middle) / size +
+                                            (slack + kOfFloats) * span + kLeast);
+        }
+    }
+};
+
+/// Puts the places in `sorted` of the points in a box of cells that may lie in the tet into `near`.
+/// A plane that is not a number, that of a tet next to flat, leaves all points in.
+VDB_SHELL_TWO_TARGETS void list_near(const SortedPoints& sorted, const CellRange& box,
+                                     const RoughPlanes& planes, std::vector<std::uint32_t>& near)
 {
-    // So many points are looked at sooner than the column of cells that holds them is clipped.
-    constexpr std::uint32_t kFew = 8;
-    const CellRange range = scene.grid.overlapped(box.low, box.high);
-    std::optional<HalfSpaces> shape;
-    const auto clipped = [&](std::uint32_t i, std::uint32_t j, std::uint32_t& first,
-                             std::uint32_t& last) {
-        if (!shape)
-            shape = HalfSpaces::of_tet(corners, scene.sign[tet], scene.span);
-        return clip_run(scene.grid, i, j, *shape, first, last);
-    };
-    for (std::uint32_t i = range.first[0]; i <= range.last[0]; ++i)
-        for (std::uint32_t j = range.first[1]; j <= range.last[1]; ++j) {
-            std::uint32_t first = range.first[2], last = range.last[2];
-            const auto begin = [&] { return sorted.offset[scene.grid.cell(i, j, first)]; };
-            const auto end = [&] { return sorted.offset[scene.grid.cell(i, j, last) + 1]; };
-            if (end() - begin() <= kFew || clipped(i, j, first, last))
-                visit(begin(), end());
+    near.clear();
+    for (std::uint32_t i = box.first[0]; i <= box.last[0]; ++i)
+        for (std::uint32_t j = box.first[1]; j <= box.last[1]; ++j) {
+            const std::uint32_t end = sorted.offset[sorted.grid.cell(i, j, box.last[2]) + 1];
+            std::uint32_t k = sorted.offset[sorted.grid.cell(i, j, box.first[2])];
+            for (; k < end; k += kLanes) {
+                Lanes x, y, z;
+                std::memcpy(&x, sorted.off[0].data() + k, sizeof x);
+                std::memcpy(&y, sorted.off[1].data() + k, sizeof y);
+                std::memcpy(&z, sorted.off[2].data() + k, sizeof z);
+                LaneIndices outside{};
+                for (std::size_t face = 0; face < 4; ++face) {
+                    const auto& [nx, ny, nz] = planes.outward[face];
+                    outside |= nx * x + ny * y + nz * z > planes.most[face];
+                }
+                const unsigned valid = end - k < kLanes ? (1U << (end - k)) - 1 : 0xFFU;
+                for (unsigned left = ~bits_of(outside) & valid; left != 0; left &= left - 1)
+                    near.push_back(k + unsigned(__builtin_ctz(left)));
+            }
         }
 }
 
@@ -269,31 +319,29 @@ void visit_points_near(const Scene& scene, const PointsByCell& sorted, std::size
 std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
                                                    const std::vector<Point>& points)
 {
-    const PointsByCell sorted = sort_by_cell(points, scene.grid.cells());
+    const SortedPoints sorted = sort_points(points, scene.bounds);
     std::vector<std::atomic<std::uint32_t>> hits(points.size());
-    for_each_index(scene.tets.tets.size(), [&](std::size_t tet) {
-        if (scene.sign[tet] == 0)
-            return;
-        const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
-        const FloatBox box = box_of(corners);
-        std::optional<TetInside> inside;
-        const auto look = [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end; ++i) {
-                const Vec3s& p = sorted.position[i];
-                const bool in_box = box.low[0] < p[0] && p[0] < box.high[0] && box.low[1] < p[1] &&
-                                    p[1] < box.high[1] && box.low[2] < p[2] && p[2] < box.high[2];
-                if (!in_box)
-                    continue;
-                std::atomic<std::uint32_t>& count = hits[sorted.point[i]];
-                if (count.load(std::memory_order_relaxed) >= sorted.enough[i])
+    for_each_range(scene.tets.tets.size(), [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> near;
+        for (std::size_t tet = begin; tet < end; ++tet) {
+            const int sign = scene.sign[tet];
+            if (sign == 0)
+                continue;
+            const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
+            const FloatBox box = box_of(corners);
+            list_near(sorted, sorted.grid.overlapped(box.low, box.high),
+                      RoughPlanes(corners, sign, sorted.middle, scene.span), near);
+            std::optional<TetInside> inside;
+            for (const std::uint32_t k : near) {
+                std::atomic<std::uint32_t>& count = hits[sorted.point[k]];
+                if (count.load(std::memory_order_relaxed) >= sorted.enough[k])
                     continue;
                 if (!inside)
-                    inside.emplace(corners, scene.sign[tet]);
-                if (inside->strictly_holds(p))
+                    inside.emplace(corners, sign);
+                if (inside->strictly_holds(points[sorted.point[k]].position))
                     count.fetch_add(1, std::memory_order_relaxed);
             }
-        };
-        visit_points_near(scene, sorted, tet, corners, box, look);
+        }
     });
     return hits;
 }
