@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -299,9 +298,9 @@ VDB_SHELL_TWO_TARGETS void list_near(const SortedPoints& sorted, const CellRange
             std::uint32_t k = sorted.offset[sorted.grid.cell(i, j, box.first[2])];
             for (; k < end; k += kLanes) {
                 Lanes x, y, z;
-                std::memcpy(&x, sorted.off[0].data() + k, sizeof x);
-                std::memcpy(&y, sorted.off[1].data() + k, sizeof y);
-                std::memcpy(&z, sorted.off[2].data() + k, sizeof z);
+                load_lanes(sorted.off[0].data() + k, x);
+                load_lanes(sorted.off[1].data() + k, y);
+                load_lanes(sorted.off[2].data() + k, z);
                 LaneIndices outside{};
                 for (std::size_t face = 0; face < 4; ++face) {
                     const auto& [nx, ny, nz] = planes.outward[face];

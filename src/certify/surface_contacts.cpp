@@ -5,6 +5,7 @@
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
 {
@@ -95,11 +96,10 @@ check_surfaces(const PrismShell& shell, const std::vector<char>& pinned, Certifi
             add_to(both.inner(f) ? certificate.inner_folds : certificate.outer_contacts,
                    {both.source[f], both.source[f]});
 
+    const TriangleContacts triangles(both.points, both.faces);
     const auto touch = [&](std::uint32_t f, std::uint32_t g) {
-        const Vec3I &first = both.faces[f], &second = both.faces[g];
         // A triangle of no area has no plane; the shell has failed by it already.
-        return !degenerate[f] && !degenerate[g] &&
-               exact::triangles_touch(both.points, first, second);
+        return !degenerate[f] && !degenerate[g] && triangles.touch(f, g);
     };
     std::vector<std::array<std::uint32_t, 2>> contacts;
     for (const auto& [f, g] : overlapping_pairs(triangle_boxes(both.points, both.faces), touch)) {

@@ -76,6 +76,7 @@ class BoxTree
 
 public:
     void build(std::vector<FloatBox> boxes);
+    std::size_t size() const { return item_.size(); }
     /// Same boxes, moved: the tree keeps its shape. Precondition: as many boxes as in build().
     /// Only those marked in `changed` are looked at; empty: all.
     void refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed = {});

@@ -31,6 +31,31 @@ using DoublePoint = std::array<DoubleLanes, 3>; ///< by axis
 /// Memory for lanes is aligned by hand: without AVX the compiler takes less for enough.
 inline constexpr std::size_t kLanesAlignment = 4 * kLanes;
 
+// Not by memcpy: GCC makes two halves of it that go through the stack, and the processor waits for
+// them there.
+using LanesAnywhere __attribute__((vector_size(4 * kLanes), aligned(4), may_alias)) = float;
+using DoubleLanesAnywhere __attribute__((vector_size(8 * kDoubleLanes), aligned(8), may_alias)) =
+    double;
+
+/// From memory of any alignment.
+VDB_SHELL_LANES_PART void load_lanes(const float* from, Lanes& lanes)
+{
+    lanes = *reinterpret_cast<const LanesAnywhere*>(from);
+}
+VDB_SHELL_LANES_PART void load_lanes(const double* from, DoubleLanes& lanes)
+{
+    lanes = *reinterpret_cast<const DoubleLanesAnywhere*>(from);
+}
+/// To memory of any alignment.
+VDB_SHELL_LANES_PART void store_lanes(const Lanes& lanes, float* to)
+{
+    *reinterpret_cast<LanesAnywhere*>(to) = lanes;
+}
+VDB_SHELL_LANES_PART void store_lanes(const DoubleLanes& lanes, double* to)
+{
+    *reinterpret_cast<DoubleLanesAnywhere*>(to) = lanes;
+}
+
 VDB_SHELL_LANES_PART void lower_to(Lanes& least, const Lanes& other)
 {
     least = other < least ? other : least;
@@ -48,6 +73,16 @@ VDB_SHELL_LANES_PART unsigned bits_of(const LaneIndices& comparison)
     bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
     bits |= __builtin_shufflevector(bits, bits, 1, 0, 3, 2, 5, 4, 7, 6);
     return static_cast<unsigned>(bits[0]);
+}
+
+/// What comparing doubles gives.
+using DoubleTruths = decltype(DoubleLanes{} < DoubleLanes{});
+
+/// The same for doubles.
+VDB_SHELL_LANES_PART unsigned bits_of(const DoubleTruths& comparison)
+{
+    const DoubleTruths bits = comparison & DoubleTruths{1, 2, 4, 8};
+    return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
 }
 
 } // namespace vdb_shell

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -166,7 +165,7 @@ VDB_SHELL_TWO_TARGETS void nearest_of(const std::vector<PreparedTriangle>& trian
         Lanes d, over;
         eight_distances(triangles[t], points, d, over);
         if (squared) {
-            std::memcpy(squared, &d, sizeof d);
+            store_lanes(d, squared);
             squared += kLanes;
         }
         const LaneIndices here = LaneIndices{} + static_cast<std::int32_t>(t);
@@ -189,7 +188,7 @@ VDB_SHELL_TWO_TARGETS void thin_out(const List& list, const float* squared, cons
         near.clear();
     for (const std::uint32_t t : list) {
         Lanes d;
-        std::memcpy(&d, squared, sizeof d);
+        load_lanes(squared, d);
         squared += kLanes;
         for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1)
             of_point[std::size_t(__builtin_ctz(bits))].push_back(t);

@@ -38,6 +38,7 @@ public:
     om::FaceHandle add_face(const VHandles& corners) override
     {
         Corners face;
+        face.reserve(corners.size());
         for (const om::VertexHandle& corner : corners)
             face.push_back(static_cast<std::uint32_t>(corner.idx()));
         soup_.faces.push_back(std::move(face));
@@ -145,6 +146,8 @@ void require_count(const std::string& name, const char* what, std::size_t delive
 PolygonSoup read_with_openmesh(const std::string& name, const FileScan& scan)
 {
     PolygonSoup soup;
+    soup.points.reserve(scan.points.size());
+    soup.faces.reserve(scan.faces_passed_on());
     if (!run_reader(scan, soup))
         refuse(name, "OpenMesh cannot read it");
     require_count(name, "vertices", soup.points.size(), scan.points.size());

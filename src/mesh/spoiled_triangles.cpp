@@ -4,6 +4,7 @@
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
 {
@@ -15,9 +16,9 @@ std::vector<char> spoiled_triangles(const TriangleMesh& mesh)
         const openvdb::Vec3I& c = mesh.triangles[t];
         bad[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
     });
+    const TriangleContacts contacts(mesh.points, mesh.triangles);
     const auto touch = [&](std::uint32_t a, std::uint32_t b) {
-        return !bad[a] && !bad[b] &&
-               exact::triangles_touch(mesh.points, mesh.triangles[a], mesh.triangles[b]);
+        return !bad[a] && !bad[b] && contacts.touch(a, b);
     };
     for (const auto& [a, b] : overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch))
         bad[a] = bad[b] = 1;

@@ -5,6 +5,7 @@
 #include "core/deal_out.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "mesh/triangle_contacts.h"
 
 #include <algorithm>
 #include <functional>
@@ -127,11 +128,11 @@ std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
 std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
                                                   const std::vector<char>& degenerate)
 {
+    const TriangleContacts contacts(mesh.points, mesh.triangles);
     const auto touch = [&](std::uint32_t first, std::uint32_t second) {
-        const openvdb::Vec3I &a = mesh.triangles[first], &b = mesh.triangles[second];
         // Degenerate and duplicate triangles are listed as what they are.
-        return !degenerate[first] && !degenerate[second] &&
-               exact::triangles_touch(mesh.points, a, b) && sorted_corners(a) != sorted_corners(b);
+        return !degenerate[first] && !degenerate[second] && contacts.touch(first, second) &&
+               sorted_corners(mesh.triangles[first]) != sorted_corners(mesh.triangles[second]);
     };
     return overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch);
 }

@@ -2,6 +2,7 @@
 #include "mesh/topology.h"
 
 #include "core/deal_out.h"
+#include "core/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -27,6 +28,51 @@ VertexTriangles triangles_around_vertices(std::size_t vertex_count,
         for (int corner = 0; corner < 3; ++corner)
             result.triangle[next[triangles[t][corner]]++] = static_cast<std::uint32_t>(t);
     return result;
+}
+
+namespace
+{
+
+/// Writes the rim of vertex v to `rim`; false where its triangles do not turn round it once.
+bool list_rim(const std::vector<openvdb::Vec3I>& triangles, const VertexTriangles::Range& around,
+              std::uint32_t v, std::uint32_t* rim)
+{
+    // The corner after v, and the one after that.
+    const auto side_of = [&](std::uint32_t t) -> std::array<std::uint32_t, 2> {
+        const openvdb::Vec3I& c = triangles[t];
+        const int k = c[0] == v ? 0 : c[1] == v ? 1 : 2;
+        return {c[(k + 1) % 3], c[(k + 2) % 3]};
+    };
+    if (around.size() == 0)
+        return false;
+    std::array<std::uint32_t, 2> side = side_of(*around.begin());
+    const std::uint32_t start = side[0];
+    for (std::size_t i = 0; i < around.size(); ++i) {
+        rim[i] = side[0];
+        const bool last = i + 1 == around.size();
+        if (last || side[1] == start)
+            return last && side[1] == start;
+        const auto next = std::find_if(around.begin(), around.end(),
+                                       [&](std::uint32_t t) { return side_of(t)[0] == side[1]; });
+        if (next == around.end())
+            return false;
+        side = side_of(*next);
+    }
+    return false;
+}
+
+} // namespace
+
+Rims rims_around_vertices(std::size_t vertex_count, const std::vector<openvdb::Vec3I>& triangles)
+{
+    Rims rims{triangles_around_vertices(vertex_count, triangles), {}, {}};
+    rims.rim.resize(rims.around.triangle.size());
+    rims.closed.resize(vertex_count);
+    for_each_index(vertex_count, [&](std::size_t v) {
+        rims.closed[v] = list_rim(triangles, rims.around.around(v), static_cast<std::uint32_t>(v),
+                                  rims.rim.data() + rims.around.offset[v]);
+    });
+    return rims;
 }
 
 std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangles)

@@ -29,6 +29,21 @@ struct VertexTriangles {
 VertexTriangles triangles_around_vertices(std::size_t vertex_count,
                                           const std::vector<openvdb::Vec3I>& triangles);
 
+/// The vertices around each one, in the order in which its triangles turn round it.
+struct Rims {
+    VertexTriangles around;
+    std::vector<std::uint32_t> rim;   ///< in the places of around.triangle
+    std::vector<std::uint8_t> closed; ///< by vertex: its triangles form one closed fan, else no rim
+
+    VertexTriangles::Range of(std::size_t vertex) const
+    {
+        const std::size_t first = around.offset[vertex];
+        return {rim.data() + first,
+                rim.data() + (closed[vertex] ? around.offset[vertex + 1] : first)};
+    }
+};
+Rims rims_around_vertices(std::size_t vertex_count, const std::vector<openvdb::Vec3I>& triangles);
+
 /// One use of an edge by a triangle's side `side` (corner side -> corner side+1).
 struct EdgeUse {
     std::array<std::uint32_t, 2> edge; ///< smaller vertex first

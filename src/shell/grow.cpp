@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/grow.h"
 
+#include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "shell/grow/coarse_start.h"
 #include "shell/grow/diagonals.h"
@@ -207,7 +208,8 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         const TriangleMesh& mesh = levels[level].mesh;
         const Start from_what = inner.empty() ? Start::lines : Start::carried;
         const Directions lines = rough_lines(mesh, options, from_what);
-        growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
+        const growth::Connectivity connectivity =
+            growth::connect(mesh.points.size(), mesh.triangles);
         GrowState s = growth::make_state(connectivity, mesh.points, at_vertices(cap, from[level]));
         if (from_what == Start::lines) {
             settle(s, lines, {at_vertices(start.length, from[level]), {}, {}}, options, progress);
@@ -218,8 +220,6 @@ std::vector<Vec3d> rough_inner(std::size_t triangles, const std::vector<Coarsene
         }
         GrowReport ignored;
         const int rounds = most_rough_rounds(s, triangles);
-        if (rounds > 0)
-            growth::list_kin(connectivity);
         growth::move_freely(s, lines.visibility, options,
                             {rounds, first_softness(s, from_what, true),
                              from_what == Start::carried ? kRoughCool : kRoughCoolFirst, kLeastGain,
@@ -244,12 +244,6 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& l
     const growth::Pillars pillars = growth::pillars_in(levels.front().mesh, inner, mesh, lines,
                                                        bends_handed_on(mesh.triangles.size()));
     return {Start::carried, growth::settle_carried(s, pillars.lines, pillars.length, progress)};
-}
-
-bool will_move(const GrowState& s, Start start, const GrowOptions& options)
-{
-    return start == Start::lines || options.min_quality > 0 ||
-           (options.free_moves && most_rounds(s, start, options) > 0);
 }
 
 bool worth_lengthening(const GrowState& s)
@@ -395,7 +389,7 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     assert(options.method != Method::raw);
     assert(directions.inward.size() == mesh.points.size());
     assert(start.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
-    growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
+    const growth::Connectivity connectivity = growth::connect(mesh.points.size(), mesh.triangles);
     const std::vector<Coarsened> own_levels =
         from ? std::vector<Coarsened>() : coarse_levels(mesh, options);
     const std::vector<Coarsened>& levels = from ? from->levels : own_levels;
@@ -412,8 +406,6 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
         started = start_growth(s, mesh, lines, start, levels, options, progress);
     }
     result.report.released += static_cast<std::size_t>(growth::release_pins(s, lines.visibility));
-    if (will_move(s, started.from, options))
-        growth::list_kin(connectivity);
     // A carried shell has left the lines.
     if (options.grow_lines && started.from == Start::lines &&
         (!options.free_moves || worth_lengthening(s)))
@@ -422,13 +414,23 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     result.report.fill_after_lines = growth::fill_of(s);
     if (options.free_moves)
         move_off_the_lines(s, lines, started, options, progress, result.report);
-    const std::size_t ripples =
-        choose_diagonals(s, shell_of(mesh, s), options, split, result.report);
-    if (options.min_quality > 0)
-        hold_to_quality(s, options, split, progress, result.report);
-    result.split = split_of(s, ripples);
+    std::size_t ripples = 0;
+    const auto choose = [&] {
+        ripples = choose_diagonals(s, shell_of(mesh, s), options, split, result.report);
+    };
+    const auto probe = [&] { result.shell.stop = growth::probe_stops(s); };
     result.shell = shell_of(mesh, s);
-    result.shell.stop = growth::probe_stops(s);
+    if (s.twelve && !(options.min_quality > 0)) {
+        // The stops do not depend on the diagonals then.
+        run_together(choose, probe);
+    } else {
+        choose();
+        if (options.min_quality > 0)
+            hold_to_quality(s, options, split, progress, result.report);
+        result.shell = shell_of(mesh, s);
+        probe();
+    }
+    result.split = split_of(s, ripples);
     return result;
 }
 

@@ -26,7 +26,6 @@ struct HalfFull {
               connectivity, mesh.points,
               std::vector<double>(mesh.points.size(), std::numeric_limits<double>::infinity())))
     {
-        list_kin(connectivity);
         for (std::size_t v = 0; v < s.b.size(); ++v)
             s.b[v] = rounded(0.5 * s.a[v]);
     }

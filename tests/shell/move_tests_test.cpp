@@ -67,11 +67,8 @@ void expect_as_all_pairs(const GrowState& s, std::uint64_t seed)
 TEST(KinClear, IsWhatAllPairsWithACommonCornerSay)
 {
     const TriangleMesh mesh = test::torus(2.0, 0.7, 12, 8);
-    Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
+    const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     GrowState s = state_of(connectivity, mesh);
-    expect_as_all_pairs(s, 1);
-    list_kin(connectivity);
-    ASSERT_GT(kin_ring(connectivity, 0).size(), 0);
     expect_as_all_pairs(s, 1);
     for (const int pin : {3, 40, 41}) {
         s.pinned[pin] = 1;
@@ -80,7 +77,7 @@ TEST(KinClear, IsWhatAllPairsWithACommonCornerSay)
     expect_as_all_pairs(s, 2);
 }
 
-TEST(KinClear, HoldsWhereSoManyTrianglesMeetThatTheListsDoNot)
+TEST(KinClear, HoldsWhereMoreTrianglesMeetThanAFanTakes)
 {
     // A cone of 40 triangles above one of 40 below.
     TriangleMesh mesh;
@@ -95,9 +92,7 @@ TEST(KinClear, HoldsWhereSoManyTrianglesMeetThatTheListsDoNot)
         mesh.triangles.emplace_back(0U, p, q);
         mesh.triangles.emplace_back(1U, q, p);
     }
-    Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
-    list_kin(connectivity);
-    EXPECT_EQ(kin_ring(connectivity, 0).size(), 0);
+    const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     expect_as_all_pairs(state_of(connectivity, mesh), 3);
 }
 

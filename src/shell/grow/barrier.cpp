@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/barrier.h"
 
+#include "core/four_floats.h"
 #include "core/lanes.h"
 
 #include <algorithm>
@@ -93,9 +94,9 @@ void Bounds::add_unit(const Vec3s& n, double value)
         return;
     const std::size_t lane = size_++ % kLanes;
     if (lane == 0) {
-        Block empty{};
-        empty.value += 1.0f;
-        block_.push_back(empty);
+        Block& empty = block_.emplace_back();
+        empty.x = empty.y = empty.z = empty.weight = Lanes{};
+        empty.value = Lanes{} + 1.0f;
     }
     Block& b = block_.back();
     b.x[lane] = n[0], b.y[lane] = n[1], b.z[lane] = n[2];
@@ -106,10 +107,16 @@ void Bounds::add_unit(const Vec3s& n, double value)
 VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
 {
     // By axis; the last three lanes are not asked for.
-    std::array<Lanes, 3> at{};
-    for (int i = 0; i < 5; ++i)
-        for (int k = 0; k < 3; ++k)
-            at[k][i] = static_cast<float>((corner[i][k] - here_[k]) * scale_);
+    std::array<Lanes, 3> at;
+    for (int k = 0; k < 3; ++k) {
+        const DoubleLanes four =
+            (DoubleLanes{corner[0][k], corner[1][k], corner[2][k], corner[3][k]} - here_[k]) *
+            scale_;
+        const FourFloats first = __builtin_convertvector(four, FourFloats),
+                         last = vdb_shell::four(
+                             static_cast<float>((corner[4][k] - here_[k]) * scale_));
+        at[k] = __builtin_shufflevector(first, last, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
     std::array<Lanes, 3> p, u, w;
     for (int k = 0; k < 3; ++k) {
         // The bases of PrismTables, in an order of their own. The nearest corner comes first, an
@@ -123,14 +130,15 @@ VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
     const Lanes squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
     size_ += kLanes;
     Block& b = block_.emplace_back();
-    for (std::size_t i = 0; i < kLanes; ++i) {
-        // A base without area has no normal: its value is nought, and it does not count.
-        constexpr float kTiny = 1e-30F;
-        const float inverse = 1.0F / (std::sqrt(squared[i]) + kTiny);
-        b.x[i] = x[i] * inverse, b.y[i] = y[i] * inverse, b.z[i] = z[i] * inverse;
-        b.value[i] = value[i] > 0 ? value[i] * inverse : 1.0F;
-        b.weight[i] = value[i] > 0 ? 1.0F : 0.0F;
-    }
+    // A base without area has no normal: its value is nought, and it does not count.
+    constexpr float kTiny = 1e-30F;
+    Lanes length;
+    for (std::size_t i = 0; i < kLanes; ++i)
+        length[i] = std::sqrt(squared[i]);
+    const Lanes inverse = 1.0F / (length + kTiny);
+    b.x = x * inverse, b.y = y * inverse, b.z = z * inverse;
+    b.value = value > 0 ? value * inverse : Lanes{} + 1.0F;
+    b.weight = value > 0 ? Lanes{} + 1.0F : Lanes{};
 }
 
 void Bounds::weigh(std::size_t first, float weight)

@@ -31,6 +31,7 @@ public:
 private:
     friend class Newton;
     struct alignas(kLanesAlignment) Block {
+        Block() {} // whoever adds one fills it
         Lanes x, y, z, value, weight;
     };
     std::vector<Block> block_;

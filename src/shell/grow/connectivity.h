@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/topology.h"
+
 #include <openvdb/Types.h>
 
 #include <cstddef>
@@ -17,24 +19,6 @@ struct FaceCorner {
     int face, local;
 };
 
-/// Two triangles that share a corner, the first around the vertex whose move makes them meet or
-/// not: places in Kin's lists.
-struct KinPair {
-    std::uint8_t moved, other; ///< of the triangles
-    std::uint8_t i, j;         ///< of the corners that the first does not have; the same if but one
-};
-
-/// What could meet the triangles around a vertex in spite of a common corner, by vertex. A vertex
-/// with more around it than the lists' small numbers can tell has none, nor has any before
-/// list_kin: its tests take longer.
-struct Kin {
-    std::vector<int> first_ring, ring; ///< vertices up to two edges away
-    std::vector<int> first_face,
-        face; ///< its triangles, in the order of its star, and those beside
-    std::vector<std::size_t> first_pair;
-    std::vector<KinPair> pair;
-};
-
 /// The combinatorics of the surface, which growth never changes. Indices are int: they are counted
 /// down and compared with -1 all over, and a surface has fewer than 2^31 corners.
 struct Connectivity {
@@ -42,10 +26,10 @@ struct Connectivity {
     std::vector<Vec3I> faces;
     std::vector<int> first;           ///< vertex -> its first entry in `incident`; one past the end
     std::vector<FaceCorner> incident; ///< ascending by face
+    Rims rims;
     std::vector<int> neighbour_first, neighbour; ///< vertex -> adjacent vertices, ascending
     std::vector<int> component;                  ///< by vertex
     int components = 0;
-    Kin kin;
     std::vector<std::vector<int>> colour; ///< classes of vertices with no common neighbour
 
     int face_count() const { return static_cast<int>(faces.size()); }
@@ -61,10 +45,7 @@ struct Connectivity {
     }
 };
 
-/// All but the lists of kin, which are as much work as all the rest and for those who move
-/// vertices.
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces);
-void list_kin(Connectivity& c);
 
 /// The iterable slice of a CSR list that belongs to one vertex.
 template <class Entry> struct Slice {
@@ -76,14 +57,6 @@ template <class Entry> struct Slice {
 inline Slice<FaceCorner> star(const Connectivity& c, int v)
 {
     return {c.incident.data() + c.first[v], c.incident.data() + c.first[v + 1]};
-}
-inline Slice<int> kin_ring(const Connectivity& c, int v)
-{
-    return {c.kin.ring.data() + c.kin.first_ring[v], c.kin.ring.data() + c.kin.first_ring[v + 1]};
-}
-inline Slice<KinPair> kin_pairs(const Connectivity& c, int v)
-{
-    return {c.kin.pair.data() + c.kin.first_pair[v], c.kin.pair.data() + c.kin.first_pair[v + 1]};
 }
 inline Slice<int> neighbours(const Connectivity& c, int v)
 {

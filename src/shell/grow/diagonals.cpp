@@ -14,6 +14,7 @@ namespace
 {
 
 constexpr int kQualityPasses = 20;
+constexpr double kMargin = 1e-12; ///< relative: less is rounding
 
 int rank_of(const PrismOrder& order, int local)
 {
@@ -59,8 +60,9 @@ double log_room(const GrowState& s, int f, int order)
     return sum;
 }
 
-/// Mean ratio 12 (3V)^(2/3) / (sum of squared edges) of a tet; -1 if inverted.
-double mean_ratio_of(const TetCorners& p)
+/// As the mean ratio 12 (3V)^(2/3) / (sum of squared edges) of a tet, but its cube, for only what
+/// is larger matters; -1 if inverted.
+double cubed_mean_ratio_of(const TetCorners& p)
 {
     const double v = volume6_of(p);
     if (v <= 0)
@@ -69,7 +71,7 @@ double mean_ratio_of(const TetCorners& p)
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < i; ++j)
             edges += (p[i] - p[j]).lengthSqr();
-    return 12 * std::cbrt(v * v / 4) / edges;
+    return 432 * v * v / (edges * edges * edges);
 }
 
 /// Which of the twelve tets the three of each split are.
@@ -87,7 +89,7 @@ std::array<std::array<int, 3>, 6> places_in_twelve()
     return place;
 }
 
-/// By face and order, the mean ratio of the worst tet.
+/// By face and order, the cubed mean ratio of the worst tet.
 std::vector<std::array<double, 6>> worst_mean_ratios(const GrowState& s)
 {
     const auto place = places_in_twelve();
@@ -96,7 +98,7 @@ std::vector<std::array<double, 6>> worst_mean_ratios(const GrowState& s)
         const int f = static_cast<int>(i);
         std::array<double, 12> ratio{};
         for (std::size_t k = 0; k < 12; ++k)
-            ratio[k] = mean_ratio_of(tet_corners(s, f, tables().twelve[k]));
+            ratio[k] = cubed_mean_ratio_of(tet_corners(s, f, tables().twelve[k]));
         for (std::size_t order = 0; order < 6; ++order) {
             worst[i][order] = 1;
             for (std::size_t t = 0; t < 3; ++t)
@@ -142,30 +144,28 @@ struct Seams {
 /// both is joined by `join`. Negative where it is not.
 template <class Score, class Join>
 std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Score& score,
-                                 const Join& join, double margin)
+                                 const Join& join)
 {
     const int f = seam.from.face, g = seam.across.face;
     const int f_order = exchanged(s.order[f], seam.from.local, (seam.from.local + 1) % 3);
     const int g_order = exchanged(s.order[g], seam.across.local, (seam.across.local + 2) % 3);
-    const bool better = f_order >= 0 && g_order >= 0 &&
-                        join(score(f, f_order), score(g, g_order)) >
-                            join(score(f, s.order[f]), score(g, s.order[g])) + margin;
+    if (f_order < 0 || g_order < 0)
+        return {-1, -1};
+    const double now = join(score(f, s.order[f]), score(g, s.order[g]));
+    const bool better = join(score(f, f_order), score(g, g_order)) > now + kMargin * std::abs(now);
     return better ? std::array{f_order, g_order} : std::array{-1, -1};
 }
 
 /// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. A seam
 /// is looked at again only once another of its two prisms has been turned.
 template <class Score, class Join>
-std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join,
-                        double margin)
+std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join)
 {
     const Seams seams(*s.mesh);
     std::vector<std::uint8_t> look(seams.seam.size());
     for_each_index(
         look.size(),
-        [&](std::size_t i) {
-            look[i] = better_orders(s, seams.seam[i], score, join, margin)[0] >= 0;
-        },
+        [&](std::size_t i) { look[i] = better_orders(s, seams.seam[i], score, join)[0] >= 0; },
         256);
     std::size_t total = 0;
     for (int pass = 0; pass < passes; ++pass) {
@@ -175,7 +175,7 @@ std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join
                 continue;
             look[i] = 0;
             const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
-            const auto [f_order, g_order] = better_orders(s, seams.seam[i], score, join, margin);
+            const auto [f_order, g_order] = better_orders(s, seams.seam[i], score, join);
             if (f_order < 0 || !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
                 continue;
             s.order[f] = static_cast<std::uint8_t>(f_order);
@@ -211,20 +211,18 @@ void order_by_length(GrowState& s)
 
 std::size_t flip_for_room(GrowState& s)
 {
-    constexpr double kMargin = 1e-9;
     return flip_passes(
         s, 1, [&](int f, int order) { return log_room(s, f, order); },
-        [](double f, double g) { return f + g; }, kMargin);
+        [](double f, double g) { return f + g; });
 }
 
 std::size_t flip_for_quality(GrowState& s)
 {
-    constexpr double kMargin = 1e-12;
     const std::vector<std::array<double, 6>> worst = worst_mean_ratios(s);
     return flip_passes(
         s, kQualityPasses,
         [&](int f, int order) { return worst[std::size_t(f)][std::size_t(order)]; },
-        [](double f, double g) { return std::min(f, g); }, kMargin);
+        [](double f, double g) { return std::min(f, g); });
 }
 
 } // namespace vdb_shell::growth

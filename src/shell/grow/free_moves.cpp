@@ -225,8 +225,7 @@ void move_freely(GrowState& s, const std::vector<double>& visibility, const Grow
         if (choosy && !hope.empty())
             leave_out(s, hope, worth, still);
         const std::ptrdiff_t asked = std::count(still.begin(), still.end(), 0);
-        const bool near_the_last = round > 0 && softness < kSettled;
-        raise_walls(s, still, walls, near_the_last ? Tree::kept : Tree::anew);
+        raise_walls(s, still, walls, softness < kSettled ? Tree::kept : Tree::anew);
         std::vector<std::uint8_t> resting = still;
         for (int i = 0; i < kSweepsPerRound; ++i) {
             if (i > 0)

@@ -2,7 +2,6 @@
 #include "shell/grow/move_tests.h"
 
 #include "core/orient3d_filter.h"
-#include "shell/grow/plane_sides.h"
 #include "shell/grow/prism_lanes.h"
 #include "shell/pillar.h"
 
@@ -88,26 +87,55 @@ Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
     return corners;
 }
 
-bool pair_meets(const GrowState& s, int v, const Vec3d& x, int f, int g)
+/// The inner triangles around v against the others around u, which is v or beside it, pair by pair.
+bool clear_around_by_pairs(const GrowState& s, int u, int v, const Vec3d& x)
 {
-    return improper_contact(corners_with(s, f, v, x), inner_ids(s, f), corners_with(s, g, v, x),
-                            inner_ids(s, g));
+    for (const FaceCorner& at : star(*s.mesh, u)) {
+        const int f = at.face;
+        if (!s.mesh->incident_to(f, v))
+            continue;
+        const Corners of_f = corners_with(s, f, v, x);
+        for (const FaceCorner& other : star(*s.mesh, u))
+            if (other.face != f &&
+                improper_contact(of_f, inner_ids(s, f), corners_with(s, other.face, v, x),
+                                 inner_ids(s, other.face)))
+                return false;
+    }
+    return true;
 }
 
-/// Whether doubles show for certain that inner triangle f, with these corners, and g have only the
-/// corner in common that g has besides `own`. Most that lie in a common fan can be told apart by
-/// the plane that halves the angle between their middles.
-bool kin_apart(const GrowState& s, const Corners& of_f, int f, int g, const std::array<int, 2>& own)
+/// The same; nearly always doubles show it for all of them at once.
+bool clear_around(const GrowState& s, int u, int v, const Vec3d& x)
 {
-    const Connectivity& m = *s.mesh;
-    const int shared = m.corner(g, 0) ^ m.corner(g, 1) ^ m.corner(g, 2) ^ own[0] ^ own[1];
-    const std::size_t l = m.corner(f, 0) == shared ? 0 : m.corner(f, 1) == shared ? 1 : 2;
-    return apart_but_for_corner(of_f[l], {of_f[(l + 1) % 3], of_f[(l + 2) % 3]},
-                                {s.b[own[0]], s.b[own[1]]});
+    Fan fan;
+    if (!set_inner_fan(s, u, v, x, fan))
+        return clear_around_by_pairs(s, u, v, x);
+    if (fan.surely_embedded())
+        return true;
+    const VertexTriangles::Range rim = s.mesh->rims.of(static_cast<std::size_t>(u));
+    const std::size_t count = rim.size();
+    const auto vertex = [&](std::size_t i) {
+        return static_cast<int>(rim.first[i < count ? i : 0]);
+    };
+    const auto inner = [&](int w) -> const Vec3d& { return w == v ? x : s.b[w]; };
+    const auto ids = [&](std::size_t i) -> CornerIds { return {u, vertex(i), vertex(i + 1)}; };
+    const auto corners = [&](std::size_t i) -> Corners {
+        return {inner(u), inner(vertex(i)), inner(vertex(i + 1))};
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (u != v && vertex(i) != v && vertex(i + 1) != v)
+            continue;
+        const std::uint32_t apart = fan.surely_apart_from(i);
+        for (std::size_t j = u == v ? i + 1 : 0; j < count; ++j)
+            if (i != j && (apart >> j & 1U) == 0 &&
+                improper_contact(corners(i), ids(i), corners(j), ids(j)))
+                return false;
+    }
+    return true;
 }
 
-/// kin_clear_at, for vertices that Kin has nothing about or that have pins beside them.
-bool kin_clear_one_by_one(const GrowState& s, int v, const Vec3d& x)
+/// kin_clear_at beside a pin, where kin are outer triangles too.
+bool kin_clear_beside_a_pin(const GrowState& s, int v, const Vec3d& x)
 {
     const Connectivity& m = *s.mesh;
     const Slice<FaceCorner> fan = star(m, v);
@@ -125,6 +153,17 @@ bool kin_clear_one_by_one(const GrowState& s, int v, const Vec3d& x)
 }
 
 } // namespace
+
+bool set_inner_fan(const GrowState& s, int u, int v, const Vec3d& x, Fan& fan)
+{
+    const VertexTriangles::Range rim = s.mesh->rims.of(static_cast<std::size_t>(u));
+    if (rim.size() < 3 || rim.size() > Fan::kMost)
+        return false;
+    const auto inner = [&](int w) -> const Vec3d& { return w == v ? x : s.b[w]; };
+    fan.set(inner(u), rim.size(),
+            [&](std::size_t i) -> const Vec3d& { return inner(static_cast<int>(rim.first[i])); });
+    return true;
+}
 
 Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
 {
@@ -301,31 +340,20 @@ bool beside_a_pin(const GrowState& s, int v)
     return std::any_of(around.begin(), around.end(), [&](int u) { return s.pinned[u] != 0; });
 }
 
+bool inner_fan_surely_embedded(const GrowState& s, int u)
+{
+    Fan fan;
+    return set_inner_fan(s, u, u, s.b[u], fan) && fan.surely_embedded();
+}
+
 bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
 {
-    const Connectivity& m = *s.mesh;
-    const Slice<int> ring = kin_ring(m, v);
-    if (ring.size() == 0 || beside_a_pin(s, v))
-        return kin_clear_one_by_one(s, v, x);
-    PlaneSides sides;
-    for (const int u : ring)
-        sides.add_point(s.b[u]);
-    for (const FaceCorner& at : star(m, v))
-        sides.add_plane(moved_corners(s, at, x));
-    sides.compute();
-    const int* const face = m.kin.face.data() + m.kin.first_face[v];
-    for (const KinPair& pair : kin_pairs(m, v)) {
-        // With all its other corners on one side of the plane the other cannot meet the first.
-        if (sides.on_one_side(pair.moved, 1U << pair.i | 1U << pair.j))
-            continue;
-        const int f = face[pair.moved], g = face[pair.other];
-        if (pair.i != pair.j &&
-            kin_apart(s, sides.plane(pair.moved), f, g, {ring.first[pair.i], ring.first[pair.j]}))
-            continue;
-        if (pair_meets(s, v, x, f, g))
-            return false;
-    }
-    return true;
+    if (beside_a_pin(s, v))
+        return kin_clear_beside_a_pin(s, v, x);
+    // Triangles with a common corner are both in the fan of that corner.
+    const auto clear = [&](int u) { return clear_around(s, u, v, x); };
+    const Slice<int> around = neighbours(*s.mesh, v);
+    return clear(v) && std::all_of(around.begin(), around.end(), clear);
 }
 
 } // namespace vdb_shell::growth

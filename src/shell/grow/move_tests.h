@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/fan.h"
 #include "shell/grow/barrier.h"
 #include "shell/grow/grow_state.h"
 
@@ -70,6 +71,14 @@ private:
 void tet_bounds(const GrowState& s, int v, Bounds& out);
 
 bool beside_a_pin(const GrowState& s, int v);
+
+/// The inner triangles around u, with b_v = x; false where they are no closed fan, or one of too
+/// many.
+bool set_inner_fan(const GrowState& s, int u, int v, const Vec3d& x, Fan& fan);
+
+/// Whether doubles show for certain that the inner triangles around u meet each other in their
+/// common corners and edges only, with no two of them folded onto each other.
+bool inner_fan_surely_embedded(const GrowState& s, int u);
 
 /// Would no inner triangle around v meet one that shares a corner with it, with b_v = x? Exact.
 /// Reads nothing of vertices further than two edges from v.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 
 namespace vdb_shell::growth
 {
@@ -67,13 +66,15 @@ VDB_SHELL_LANES_PART void difference(const LanePoint& a, const LanePoint& b, Lan
         out[k] = a[k] - b[k];
 }
 
-/// The room across an axis of any length, in units of the pair; of c[0] to c[4] as in PairLanes.
-VDB_SHELL_LANES_PART void room_across(const LanePoint& axis, const std::array<LanePoint, 5>& c,
-                                      Lanes& out)
+/// The corners as in PairLanes; the first is the origin.
+using PairCorners = std::array<LanePoint, 6>;
+
+/// The room across an axis of any length, in units of the pair.
+VDB_SHELL_LANES_PART void room_across(const LanePoint& axis, const PairCorners& c, Lanes& out)
 {
     std::array<Lanes, 5> d;
     for (std::size_t i = 0; i < 5; ++i)
-        dot(axis, c[i], d[i]);
+        dot(axis, c[1 + i], d[i]);
     Lanes s_low{}, s_high{}, t_low = d[2], t_high = d[2], squared;
     for (std::size_t i = 0; i < 2; ++i) {
         lower_to(s_low, d[i]), raise_to(s_high, d[i]);
@@ -117,10 +118,9 @@ VDB_SHELL_LANES_PART void lower_to_distance2(const EdgeLanes& edges, const Lanes
 }
 
 /// Which edges come closest, and how close.
-VDB_SHELL_LANES_PART void closest_edges(const std::array<LanePoint, 3>& p,
-                                        const std::array<LanePoint, 3>& q, Lanes& least,
-                                        Lanes& which)
+VDB_SHELL_LANES_PART void closest_edges(const PairCorners& c, Lanes& least, Lanes& which)
 {
+    const LanePoint *const p = &c[0], *const q = &c[3];
     const Lanes none{}, one = none + 1;
     std::array<LanePoint, 3> d, e;
     std::array<Lanes, 3> dd, ee, dd_inverse, ee_inverse;
@@ -160,15 +160,17 @@ VDB_SHELL_LANES_PART void closest_edges(const std::array<LanePoint, 3>& p,
 
 VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
 {
-    std::array<LanePoint, 5> c;
+    // Not copied from here on: of copies GCC makes halves, which the processor waits for.
+    PairCorners c;
+    for (Lanes& x : c[0])
+        x = Lanes{};
     Lanes size{};
-    for (std::size_t i = 0; i < 5; ++i)
+    for (std::size_t i = 1; i < 6; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
             std::array<FourFloats, 2> half;
             for (std::size_t h = 0; h < 2; ++h) {
                 DoubleLanes wide;
-                std::memcpy(&wide, pairs.corner[1 + i].at[k].data() + h * kDoubleLanes,
-                            sizeof wide);
+                load_lanes(pairs.corner[i].at[k].data() + h * kDoubleLanes, wide);
                 half[h] = __builtin_convertvector(wide, FourFloats);
             }
             c[i][k] = __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 4, 5, 6, 7);
@@ -180,17 +182,17 @@ VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
         for (Lanes& x : point)
             x *= inverse;
     Lanes enough;
-    std::memcpy(&enough, pairs.enough.data(), sizeof enough);
+    load_lanes(pairs.enough.data(), enough);
     enough = enough * inverse + kErrorOfRoom;
 
     LanePoint u, w, normal, middles;
     for (std::size_t k = 0; k < 3; ++k)
-        middles[k] = c[2][k] + c[3][k] + c[4][k] - c[0][k] - c[1][k];
+        middles[k] = c[3][k] + c[4][k] + c[5][k] - c[1][k] - c[2][k];
     Lanes across_middles, across_first, across_second;
     room_across(middles, c, across_middles);
-    cross(c[0], c[1], normal);
+    cross(c[1], c[2], normal);
     room_across(normal, c, across_first);
-    difference(c[3], c[2], u), difference(c[4], c[2], w);
+    difference(c[4], c[3], u), difference(c[5], c[3], w);
     cross(u, w, normal);
     room_across(normal, c, across_second);
     Lanes widest = across_middles;
@@ -199,19 +201,19 @@ VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
     sight.wide = bits_of(widest > enough);
 
     Lanes squared, edges;
-    closest_edges({LanePoint{}, c[0], c[1]}, {c[2], c[3], c[4]}, squared, edges);
+    closest_edges(c, squared, edges);
     sight.close = bits_of(squared < kClose * kClose);
-    std::memcpy(sight.edges.data(), &edges, sizeof edges);
+    store_lanes(edges, sight.edges.data());
     across_middles *= size, across_first *= size, across_second *= size;
-    std::memcpy(sight.across_middles.data(), &across_middles, sizeof edges);
-    std::memcpy(sight.across_first.data(), &across_first, sizeof edges);
-    std::memcpy(sight.across_second.data(), &across_second, sizeof edges);
+    store_lanes(across_middles, sight.across_middles.data());
+    store_lanes(across_first, sight.across_first.data());
+    store_lanes(across_second, sight.across_second.data());
 }
 
 VDB_SHELL_LANES_PART void load(const PointRow& row, std::size_t first, DoublePoint& out)
 {
     for (std::size_t k = 0; k < 3; ++k)
-        std::memcpy(&out[k], row.at[k].data() + first, sizeof(DoubleLanes));
+        load_lanes(row.at[k].data() + first, out[k]);
 }
 
 VDB_SHELL_LANES_PART void dot(const DoublePoint& a, const DoublePoint& b, DoubleLanes& out)
@@ -267,7 +269,7 @@ VDB_SHELL_TWO_TARGETS void between_edges(const EdgeRows& edges, PointRow& betwee
         const auto good = crossed | (squared < other_squared);
         for (std::size_t k = 0; k < 3; ++k) {
             const DoubleLanes chosen = good ? way[k] : other[k];
-            std::memcpy(between.at[k].data() + first, &chosen, sizeof chosen);
+            store_lanes(chosen, between.at[k].data() + first);
         }
     }
 }
@@ -313,10 +315,10 @@ VDB_SHELL_TWO_TARGETS void slabs_across(const PairLanes& pairs, const PointRow& 
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t i = 0; i < kDoubleLanes; ++i)
                 slabs.n[k][first + i] = plain[i] ? n[k][i] : -n[k][i];
-        std::memcpy(slabs.lo.data() + first, &lo, sizeof lo);
-        std::memcpy(slabs.hi.data() + first, &hi, sizeof hi);
-        std::memcpy(slabs.gap.data() + first, &gap, sizeof gap);
-        std::memcpy(slabs.squared.data() + first, &squared, sizeof squared);
+        store_lanes(lo, slabs.lo.data() + first);
+        store_lanes(hi, slabs.hi.data() + first);
+        store_lanes(gap, slabs.gap.data() + first);
+        store_lanes(squared, slabs.squared.data() + first);
     }
 }
 

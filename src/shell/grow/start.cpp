@@ -52,6 +52,30 @@ void mark(std::atomic<std::uint8_t>& entry)
     entry.store(1, std::memory_order_relaxed);
 }
 
+/// By vertex, for the corners of the faces that changed: inner_fan_surely_embedded.
+std::vector<std::uint8_t> embedded_fans(const GrowState& s,
+                                        const std::vector<std::uint8_t>& changed)
+{
+    std::vector<std::uint8_t> embedded(s.b.size(), 0);
+    for_each_index(embedded.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        const Slice<FaceCorner> around = star(*s.mesh, v);
+        embedded[i] = std::any_of(around.begin(), around.end(),
+                                  [&](const FaceCorner& at) { return changed[at.face] != 0; }) &&
+                      inner_fan_surely_embedded(s, v);
+    });
+    return embedded;
+}
+
+/// Whether both are in the fan of a marked vertex.
+bool share_marked(const Connectivity& m, const std::vector<std::uint8_t>& marked, int f, int g)
+{
+    for (int k = 0; k < 3; ++k)
+        if (marked[m.corner(f, k)] && m.incident_to(g, m.corner(f, k)))
+            return true;
+    return false;
+}
+
 /// Marks the triangles that touch others in a place where they should not, of those that `changed`
 /// and are not marked yet.
 void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
@@ -65,6 +89,7 @@ void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool 
     });
     first ? s.inner_tree.build(std::move(boxes)) : s.inner_tree.refit(boxes, changed);
     const auto asked = [&](int f) { return ask[f] != 0; };
+    const std::vector<std::uint8_t> embedded = embedded_fans(s, changed);
     for_each_range(
         s.inner_tree.groups(),
         [&](std::size_t begin, std::size_t end) {
@@ -80,7 +105,7 @@ void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool 
                     group, s.inner_tree, near, asked, [&](int f, int g) {
                         // Each pair once where both are asked about, and only if it could mark one.
                         if (f == g || (asked(g) && g < f) || (bad[f] && bad[g]) ||
-                            !of(f).meets_inner(g))
+                            share_marked(*s.mesh, embedded, f, g) || !of(f).meets_inner(g))
                             return;
                         mark(bad[f]);
                         mark(bad[g]);

@@ -43,7 +43,7 @@ StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
     // At a pin kin are outer triangles too.
-    const bool kin_apart = kin_ring(*s.mesh, v).size() > 0 && !beside_a_pin(s, v);
+    const bool kin_apart = !beside_a_pin(s, v);
     if (kin_apart && !kin_clear_at(s, v, x))
         return StopReason::inner_contact;
     Box all;
@@ -93,7 +93,7 @@ std::vector<StopReason> probe_stops(GrowState& s)
     for_each_index(boxes.size(), [&](std::size_t f) {
         boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
     });
-    s.inner_tree.build(std::move(boxes));
+    s.inner_tree.refit(boxes);
     std::vector<StopReason> stop(s.b.size());
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
         Near near;

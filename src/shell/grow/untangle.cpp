@@ -38,6 +38,22 @@ struct alignas(8 * kDoubleLanes) Bounds4 {
     DoubleLanes x, y, z, value;
 };
 
+/// Of one vertex. Kept, for what is made and thrown away here costs as much as all the rest.
+struct Scratch {
+    std::vector<Bounds4> bounds;
+    std::size_t count = 0;
+
+    Bounds4* clear(std::size_t wanted)
+    {
+        if (bounds.size() < wanted)
+            bounds.resize(wanted);
+        count = wanted;
+        return bounds.data();
+    }
+    const Bounds4* begin() const { return bounds.data(); }
+    const Bounds4* end() const { return bounds.data() + count; }
+};
+
 double shortest_inner_edge(const GrowState& s, int v)
 {
     double shortest = std::numeric_limits<double>::infinity();
@@ -85,16 +101,16 @@ VDB_SHELL_LANES_PART void bound_prism(const GrowState& s, const FaceCorner& at, 
 }
 
 /// The bounds of the twelve tets of each prism around v; gives back the least value of one.
-VDB_SHELL_TWO_TARGETS double list_bounds(const GrowState& s, int v, std::vector<Bounds4>& out)
+VDB_SHELL_TWO_TARGETS double list_bounds(const GrowState& s, int v, Scratch& out)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
-    out.resize(2 * static_cast<std::size_t>(fan.size()));
+    Bounds4* of_prism = out.clear(2 * static_cast<std::size_t>(fan.size()));
     DoubleLanes least = DoubleLanes{} + std::numeric_limits<double>::infinity();
-    for (int f = 0; f < fan.size(); ++f) {
-        Bounds4* const of_prism = out.data() + 2 * static_cast<std::size_t>(f);
-        bound_prism(s, fan.first[f], of_prism);
+    for (const FaceCorner& at : fan) {
+        bound_prism(s, at, of_prism);
         for (const Bounds4* b : {of_prism, of_prism + 1})
             least = b->value < least ? b->value : least;
+        of_prism += 2;
     }
     return std::min({least[0], least[1], least[2], least[3]});
 }
@@ -122,8 +138,7 @@ VDB_SHELL_LANES_PART void add_lack(const Bounds4& b, const Vec3d& x, double room
 }
 
 /// Damped Gauss-Newton steps on the squares of what the bounds lack of `room`.
-VDB_SHELL_TWO_TARGETS Vec3d least_move(const std::vector<Bounds4>& bounds, double room,
-                                       const Vec3d& across)
+VDB_SHELL_TWO_TARGETS Vec3d least_move(const Scratch& bounds, double room, const Vec3d& across)
 {
     openvdb::Mat3d stay = openvdb::Mat3d::identity() * kStay;
     for (int i = 0; i < 3; ++i)
@@ -145,7 +160,7 @@ VDB_SHELL_TWO_TARGETS Vec3d least_move(const std::vector<Bounds4>& bounds, doubl
 }
 
 /// Where v should go; where it is if that is good.
-Vec3d better_place(const GrowState& s, int v, std::vector<Bounds4>& bounds)
+Vec3d better_place(const GrowState& s, int v, Scratch& bounds)
 {
     const Vec3d& here = s.b[v];
     if (list_bounds(s, v, bounds) > kPositive * s.rounding)
@@ -165,7 +180,7 @@ Vec3d better_place(const GrowState& s, int v, std::vector<Bounds4>& bounds)
 void untangle(GrowState& s, int sweeps, std::vector<std::uint8_t>& look,
               std::vector<std::uint8_t>& moved)
 {
-    tbb::enumerable_thread_specific<std::vector<Bounds4>> scratch;
+    tbb::enumerable_thread_specific<Scratch> scratch;
     const auto visit = [&](int v) {
         if (!look[v])
             return;

@@ -288,7 +288,8 @@ void hand_out(const GrowState& s, std::vector<Chunk> chunks, Walls& w)
 void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w, Tree tree)
 {
     const Stock stock = take_stock(s, still);
-    tree == Tree::anew ? s.inner_tree.build(stock.box) : s.inner_tree.refit(stock.box);
+    const bool kept = tree == Tree::kept && s.inner_tree.size() == stock.box.size();
+    kept ? s.inner_tree.refit(stock.box) : s.inner_tree.build(stock.box);
     w.slack = rounding_of_walls(s);
     const std::size_t groups = s.inner_tree.groups();
     std::vector<Chunk> chunks((groups + kChunk - 1) / kChunk);

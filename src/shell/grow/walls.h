@@ -45,8 +45,8 @@ template <class Visit> bool all_walls_of(const Walls& w, int v, Visit&& visit)
     return true;
 }
 
-/// The tree of inner triangles is built anew, or kept from before and only its boxes made anew:
-/// sooner, and as good as long as the triangles have not gone far.
+/// The tree of inner triangles is built anew, or kept from before if there is one and only its
+/// boxes made anew: sooner, and as good as long as the triangles have not gone far.
 enum class Tree { anew, kept };
 
 /// Raises a wall between each inner triangle and every other triangle, inner or outer, that it
