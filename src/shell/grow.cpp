@@ -415,11 +415,11 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
     if (options.free_moves)
         move_off_the_lines(s, lines, started, options, progress, result.report);
     std::size_t ripples = 0;
+    std::vector<StopReason> stop;
     const auto choose = [&] {
         ripples = choose_diagonals(s, shell_of(mesh, s), options, split, result.report);
     };
-    const auto probe = [&] { result.shell.stop = growth::probe_stops(s); };
-    result.shell = shell_of(mesh, s);
+    const auto probe = [&] { stop = growth::probe_stops(s); };
     if (s.twelve && !(options.min_quality > 0)) {
         // The stops do not depend on the diagonals then.
         run_together(choose, probe);
@@ -427,9 +427,10 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
         choose();
         if (options.min_quality > 0)
             hold_to_quality(s, options, split, progress, result.report);
-        result.shell = shell_of(mesh, s);
         probe();
     }
+    result.shell = shell_of(mesh, s);
+    result.shell.stop = std::move(stop);
     result.split = split_of(s, ripples);
     return result;
 }
