@@ -323,7 +323,7 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
     for_each_range(scene.tets.tets.size(), [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> near;
         for (std::size_t tet = begin; tet < end; ++tet) {
-            const int sign = scene.sign[tet];
+            const std::int8_t sign = scene.sign[tet];
             if (sign == 0)
                 continue;
             const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);

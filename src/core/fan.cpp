@@ -122,7 +122,8 @@ VDB_SHELL_LANES_PART void surely_positive(const DoublePoint& across, const Doubl
     bits &= bits_of(sign * value > kError * size + exact::kUnderflowGuard);
 }
 
-/// As apart_but_for_corner: across the plane that halves the angle between two middles.
+/// Across the plane through the apex that halves the angle between two middles; whatever its
+/// rounding, it is as good as any other if it has the two on its two sides.
 VDB_SHELL_TWO_TARGETS std::uint32_t apart_from(const Fan::Spokes& spokes, std::size_t count,
                                                std::size_t i)
 {

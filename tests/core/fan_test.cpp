@@ -67,6 +67,18 @@ TEST(Fan, IsNotEmbeddedWhereItTurnsTwiceOrFoldsBack)
     EXPECT_FALSE(fan_of(doubled).surely_embedded()) << "a triangle without area";
 }
 
+TEST(Fan, TellsMostPairsApartThatHaveTheApexAloneInCommon)
+{
+    constexpr std::size_t kRim = 7;
+    const Fan fan = fan_of(wheel(kRim, 1, -0.05, 0.005));
+    for (std::size_t i = 0; i < kRim; ++i)
+        for (std::size_t skip = 2; skip + 1 < kRim; ++skip)
+            EXPECT_TRUE(fan.surely_apart_from(i) >> (i + skip) % kRim & 1U) << i << " " << skip;
+    for (std::size_t i = 0; i < kRim; ++i)
+        for (const std::size_t beside : {std::size_t(0), std::size_t(1), kRim - 1})
+            EXPECT_FALSE(fan.surely_apart_from(i) >> (i + beside) % kRim & 1U) << "a common edge";
+}
+
 // On a lattice so coarse that many triangles lie in one plane or have corners on each other.
 TEST(Fan, SaysNothingOfTrianglesThatMeetElsewhere)
 {

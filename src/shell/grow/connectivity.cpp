@@ -35,7 +35,7 @@ void build_neighbours(Connectivity& c)
     std::vector<int> wide(2 * c.incident.size()), count(vertices);
     for_each_index(vertices, [&](std::size_t i) {
         const int v = static_cast<int>(i);
-        int* const begin = wide.data() + 2 * c.first[v];
+        int* const begin = wide.data() + 2 * static_cast<std::size_t>(c.first[v]);
         int* end = begin;
         for (const FaceCorner& at : star(c, v))
             for (int k = 1; k < 3; ++k)
@@ -48,8 +48,8 @@ void build_neighbours(Connectivity& c)
     c.neighbour.resize(static_cast<std::size_t>(c.neighbour_first.back()));
     for_each_index(vertices, [&](std::size_t i) {
         const int v = static_cast<int>(i);
-        std::copy_n(wide.begin() + 2 * c.first[v], count[i],
-                    c.neighbour.begin() + c.neighbour_first[v]);
+        std::copy_n(wide.data() + 2 * static_cast<std::size_t>(c.first[v]), count[i],
+                    c.neighbour.data() + c.neighbour_first[v]);
     });
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell/grow/predicates.h"
 
-#include <cmath>
-
 namespace vdb_shell::growth
 {
 
@@ -77,28 +75,6 @@ bool rest_on_one_side(const Corners& s, int shared, const Corners& t)
 }
 
 } // namespace
-
-bool apart_but_for_corner(const Vec3d& corner, const std::array<Vec3d, 2>& s,
-                          const std::array<Vec3d, 2>& t)
-{
-    const std::array<Vec3d, 2> p{s[0] - corner, s[1] - corner}, q{t[0] - corner, t[1] - corner};
-    const Vec3d p_middle = p[0] + p[1], q_middle = q[0] + q[1];
-    // Across the plane through the corner that halves the angle between the two; whatever its
-    // rounding, it is as good as any other if it has them on its two sides.
-    const Vec3d across = p_middle * q_middle.length() - q_middle * p_middle.length();
-    const auto surely_positive = [&](const Vec3d& arm, double sign) {
-        // One rounding of each difference, one of each product, two of sums.
-        constexpr double kError = 6e-16;
-        double value = 0, size = 0;
-        for (int k = 0; k < 3; ++k) {
-            const double product = across[k] * arm[k];
-            value += product, size += std::abs(product);
-        }
-        return sign * value > kError * size + exact::kUnderflowGuard;
-    };
-    return surely_positive(p[0], 1) && surely_positive(p[1], 1) && surely_positive(q[0], -1) &&
-           surely_positive(q[1], -1);
-}
 
 bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
                       const CornerIds& t_id)

@@ -43,11 +43,6 @@ inline int orient(const Vec3d& p, const Vec3d& q, const Vec3d& r, const Vec3d& s
 /// Whether the closed segment pq and the closed triangle have a common point.
 bool segment_touches_triangle(const Vec3d& p, const Vec3d& q, const Corners& triangle);
 
-/// Whether doubles show for certain that two triangles with a common corner, each given by its
-/// other two, have nothing else in common. Not every pair of which that is true.
-bool apart_but_for_corner(const Vec3d& corner, const std::array<Vec3d, 2>& s,
-                          const std::array<Vec3d, 2>& t);
-
 /// Whether two triangles of one mesh meet anywhere but in the corners and edges that they share by
 /// id. Two names for one triangle (all corners shared) are no contact: a triangle whose corners are
 /// all pinned lies on its outer one.
