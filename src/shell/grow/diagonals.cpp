@@ -54,7 +54,7 @@ double log_room(const GrowState& s, int f, int order)
             continue;
         const double v = volume6_of(tet_corners(s, f, tet));
         if (v <= 0)
-            return -std::numeric_limits<double>::max();
+            return -std::numeric_limits<double>::max() / 4; // two of them have a sum
         sum += std::log(v);
     }
     return sum;
