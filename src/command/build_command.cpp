@@ -13,6 +13,8 @@
 #include "core/stage_clock.h"
 
 #include <iostream>
+#include <utility>
+#include <vector>
 
 namespace vdb_shell::command
 {
@@ -314,19 +316,20 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
     return result;
 }
 
-ShellFile to_file(const ShellResult& result, const ShellOptions& options, const Outputs& outputs,
+/// Takes stack and tets out of the result.
+ShellFile to_file(ShellResult& result, const ShellOptions& options, const Outputs& outputs,
                   Interrupter* interrupter)
 {
     ShellFile file;
-    file.stack = result.stack;
-    file.tets = result.tets;
+    file.stack = std::move(result.stack);
+    file.tets = std::move(result.tets);
     if (result.report.read)
         file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);
     file.report_json = report_json(result.report, false);
     if (wants_vdb(outputs)) {
         file.surface = result.level_set;
-        file.depth = shell_depth_grid(result.tets, result.report.field.voxel_size, interrupter);
+        file.depth = shell_depth_grid(file.tets, result.report.field.voxel_size, interrupter);
     }
     return file;
 }
@@ -380,8 +383,9 @@ int run_build(const BuildArguments& arguments)
         options.repair = arguments.repair_options;
     ShellResult result = read_and_build(arguments, options, &interrupter);
     StageClock(write_cost).run("write", [&] {
+        const std::vector<std::uint8_t> certified = certified_flags(result);
         write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter),
-                      certified_flags(result));
+                      certified);
     });
 
     std::vector<StageCost>& stages = result.report.stages;

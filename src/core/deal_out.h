@@ -32,8 +32,11 @@ std::vector<Item> deal_out(const Parts& parts, std::size_t keys, const Key& key,
         for (const Item& item : part)
             items[ends[std::size_t(key(item))]++] = item;
     for_each_index(keys, [&](std::size_t k) {
-        std::sort(items.begin() + std::ptrdiff_t(k == 0 ? 0 : ends[k - 1]),
-                  items.begin() + std::ptrdiff_t(ends[k]), less);
+        const auto begin = items.begin() + std::ptrdiff_t(k == 0 ? 0 : ends[k - 1]);
+        const auto end = items.begin() + std::ptrdiff_t(ends[k]);
+        // Parts that list their items in order leave nothing to sort; to look costs little.
+        if (!std::is_sorted(begin, end, less))
+            std::sort(begin, end, less);
     });
     return items;
 }

@@ -45,7 +45,7 @@ constexpr double kLeastGain = 3e-4, kLeastGainThickest = 1e-4;
 constexpr double kCoarsest = 1200, kMostCoarser = 9;
 // The barrier's weight, and what a round wins for each vertex, share of the solid, at which growth
 // ends on one and goes on on the next; how the weight falls on the coarsest and after it.
-constexpr double kRoughUntil = 0.004, kRoughUntilGain = 5e-6;
+constexpr double kRoughUntil = 0.004, kRoughUntilGain = 1e-5;
 constexpr double kRoughCoolFirst = 0.5, kRoughCool = 0.35;
 // After it most is done: first weight over what is left to fill, and how it falls. Twice as much,
 // and kCool, where there is time.
@@ -55,7 +55,7 @@ constexpr double kCarriedSoftness = 0.5, kCarriedCool = 0.4;
 // smaller one; from lines, all of them together. And what a round has to win for each vertex asked,
 // as a share of that, for another to follow.
 constexpr double kGainForVertex = 1e-6, kDear = 6500, kGainForAll = 3e-4;
-constexpr double kGainForAsked = 0.4;
+constexpr double kGainForAsked = 0.46;
 // Rounds of free moves at most; the triangles of a surface that gets one after a coarse start; and
 // what the rounds on a coarser one may cost together, where one on the whole costs 1.
 constexpr int kMostRounds = 40;

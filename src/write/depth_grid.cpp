@@ -14,7 +14,6 @@
 #include <cstring>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -158,8 +157,11 @@ private:
     std::size_t floors_ = 0, ceilings_ = 0, sides_ = 0;
 };
 
-/// A column of leaves under construction, by the z of their origins.
-using LeafColumn = std::map<int, std::unique_ptr<Leaf>>;
+/// A column of leaves under construction, from the lowest that one of its tets may meet.
+struct LeafColumn {
+    int x = 0, y = 0, low_z = 0; ///< of the lowest one's origin
+    std::vector<std::unique_ptr<Leaf>> leaf;
+};
 
 /// The part of a tet over one column of leaves.
 struct TetInColumn {
@@ -169,7 +171,6 @@ struct TetInColumn {
     };
     std::array<Line, std::size_t(kLeafSize* kLeafSize)> lines;
     std::size_t count = 0;
-    int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
 };
 
 void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
@@ -189,58 +190,55 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
                 tet.depth.slope[0] * (x - tet.origin[0]) + tet.depth.slope[1] * (y - tet.origin[1]);
             part.lines[part.count++] = {(x - leaf_x) * kLeafSize + y - leaf_y, ends.first[k],
                                         ends.last[k], depth};
-            part.low = std::min(part.low, ends.first[k]);
-            part.high = std::max(part.high, ends.last[k]);
         }
+    }
+}
+
+/// Not inlined, so that filling is all there is in its caller.
+__attribute__((noinline)) std::unique_ptr<Leaf> new_leaf(const Coord& origin)
+{
+    return std::make_unique<Leaf>(origin, 0.0f, false);
+}
+
+/// A line's voxels `begin` to `end` of the eight of a leaf, the first of them at z. The others keep
+/// what they have: eight at a time are faster than a loop of few.
+VDB_SHELL_LANES_PART void fill_row(const IndexTet& tet, const TetInColumn::Line& line, int z,
+                                   int begin, int end, float* row)
+{
+    for (std::size_t half = 0; half < kHalves; ++half) {
+        const int from = int(half * kDoubleLanes);
+        DoubleLanes depth =
+            tet.depth.value + (line.depth + tet.depth.slope[2] * (z + double(from) - tet.origin[2] +
+                                                                  DoubleLanes{0, 1, 2, 3}));
+        depth = depth < 0.0 ? DoubleLanes{} : depth;
+        depth = depth > 1.0 ? DoubleLanes{} + 1.0 : depth;
+        const FourFloats rounded = __builtin_convertvector(depth, FourFloats);
+        const FourTruths place = FourTruths{0, 1, 2, 3} + from;
+        FourFloats values;
+        std::memcpy(&values, row + from, sizeof values);
+        values = (place >= begin) & (place < end) ? rounded : values;
+        std::memcpy(row + from, &values, sizeof values);
     }
 }
 
 /// Overwrites what is there: to be called with the tets in descending order, so that the smallest
 /// index stays.
-VDB_SHELL_TWO_TARGETS void fill_leaf(Leaf& leaf, const IndexTet& tet, const TetInColumn& part)
+VDB_SHELL_TWO_TARGETS void fill_lines(LeafColumn& column, const IndexTet& tet,
+                                      const TetInColumn& part)
 {
-    const int z = leaf.origin().z();
-    std::array<DoubleLanes, kHalves> along_z;
-    for (std::size_t half = 0; half < kHalves; ++half)
-        along_z[half] = tet.depth.slope[2] *
-                        (z + double(half * kDoubleLanes) - tet.origin[2] + DoubleLanes{0, 1, 2, 3});
     for (std::size_t i = 0; i < part.count; ++i) {
         const TetInColumn::Line& line = part.lines[i];
-        const int begin = std::max(line.first - z, 0), end = std::min(line.last - z + 1, kLeafSize);
-        if (begin >= end)
-            continue;
-        std::array<float, kLeafSize> depths;
-        for (std::size_t half = 0; half < kHalves; ++half) {
-            DoubleLanes depth = tet.depth.value + (line.depth + along_z[half]);
-            depth = depth < 0.0 ? DoubleLanes{} : depth;
-            depth = depth > 1.0 ? DoubleLanes{} + 1.0 : depth;
-            const FourFloats rounded = __builtin_convertvector(depth, FourFloats);
-            std::memcpy(depths.data() + half * kDoubleLanes, &rounded, sizeof rounded);
+        for (int z = line.first & ~(kLeafSize - 1); z <= line.last; z += kLeafSize) {
+            std::unique_ptr<Leaf>& leaf = column.leaf[std::size_t(z - column.low_z) / kLeafSize];
+            if (!leaf)
+                leaf = new_leaf(Coord(column.x, column.y, z));
+            const int begin = std::max(line.first - z, 0),
+                      end = std::min(line.last - z + 1, kLeafSize);
+            fill_row(tet, line, z, begin, end,
+                     leaf->buffer().data() + std::ptrdiff_t(line.row) * kLeafSize);
+            auto& bits = leaf->getValueMask().getWord<std::uint8_t>(openvdb::Index(line.row));
+            bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
         }
-        float* const values = leaf.buffer().data() + std::ptrdiff_t(line.row) * kLeafSize;
-        for (int k = begin; k < end; ++k)
-            values[k] = depths[std::size_t(k)];
-        auto& bits = leaf.getValueMask().getWord<std::uint8_t>(openvdb::Index(line.row));
-        bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
-    }
-}
-
-void fill_column(LeafColumn& column, const IndexTet& tet, int leaf_x, int leaf_y)
-{
-    TetInColumn part;
-    find_lines(tet, leaf_x, leaf_y, part);
-    if (part.count == 0)
-        return;
-    for (int z = part.low & ~(kLeafSize - 1); z <= part.high; z += kLeafSize) {
-        const bool any = std::any_of(
-            part.lines.begin(), part.lines.begin() + std::ptrdiff_t(part.count),
-            [&](const auto& line) { return line.first < z + kLeafSize && line.last >= z; });
-        if (!any)
-            continue;
-        std::unique_ptr<Leaf>& leaf = column[z];
-        if (!leaf)
-            leaf = std::make_unique<Leaf>(Coord(leaf_x, leaf_y, z), 0.0f, false);
-        fill_leaf(*leaf, tet, part);
     }
 }
 
@@ -336,6 +334,24 @@ std::vector<std::size_t> column_starts(const std::vector<Job>& jobs)
     return starts;
 }
 
+/// The leaves of a column, from all its jobs.
+LeafColumn fill_column(const Parts& parts, const Job* first, const Job* last)
+{
+    int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
+    for (const Job* job = first; job != last; ++job) {
+        low = std::min(low, parts.tet_of(*job).low.z());
+        high = std::max(high, parts.tet_of(*job).high.z());
+    }
+    LeafColumn column{first->x * kLeafSize, first->y * kLeafSize, low & ~(kLeafSize - 1), {}};
+    column.leaf.resize(std::size_t(high - column.low_z) / kLeafSize + 1);
+    while (last-- != first) {
+        TetInColumn part;
+        find_lines(parts.tet_of(*last), column.x, column.y, part);
+        fill_lines(column, parts.tet_of(*last), part);
+    }
+    return column;
+}
+
 void require_voxels_in_range(const TetMesh& mesh, double voxel_size)
 {
     if (!(voxel_size > 0.0) || !std::isfinite(voxel_size))
@@ -389,14 +405,16 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
             end - begin,
             [&](std::size_t i) {
                 const std::size_t column = begin + i;
-                for (std::size_t j = starts[column + 1]; j-- > starts[column];)
-                    fill_column(filled[column], parts.tet_of(jobs[j]), jobs[j].x * kLeafSize,
-                                jobs[j].y * kLeafSize);
+                filled[column] = fill_column(parts, jobs.data() + starts[column],
+                                             jobs.data() + starts[column + 1]);
             },
             1);
-        for (std::size_t column = begin; column < end; ++column)
-            for (auto& [z, leaf] : filled[column])
-                grid->tree().addLeaf(leaf.release());
+        for (std::size_t column = begin; column < end; ++column) {
+            for (std::unique_ptr<Leaf>& leaf : filled[column].leaf)
+                if (leaf)
+                    grid->tree().addLeaf(leaf.release());
+            filled[column] = {};
+        }
     }
     return grid;
 }

@@ -5,7 +5,7 @@
 #include "shell/grow/separation.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -33,14 +33,6 @@ struct Chunk {
     std::vector<int> locked; ///< faces
 };
 
-struct Stock {
-    std::vector<Corners> corner, outer;
-    std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
-    std::vector<double> reach;               ///< the longest of a face's corners
-    std::vector<FloatBox> box;
-    std::vector<std::uint8_t> still; ///< by face: none of its corners will move
-};
-
 bool share_a_pin(const GrowState& s, int f, int g)
 {
     for (int k = 0; k < 3; ++k) {
@@ -66,14 +58,31 @@ bool beyond(const Vec3d& normal, const Vec3d& p, const Corners& other, double di
     return std::min({a, b, c}) > distance || std::max({a, b, c}) < -distance;
 }
 
-Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
+void take_stock_of_outer(const GrowState& s, FaceStock& stock)
+{
+    const std::size_t count = s.mesh->faces.size();
+    stock.outer.resize(count);
+    stock.outer_normal.resize(count);
+    for_each_index(
+        count,
+        [&](std::size_t f) {
+            stock.outer[f] = outer_corners(s, static_cast<int>(f));
+            stock.outer_normal[f] = unit_normal(stock.outer[f]);
+        },
+        256);
+}
+
+void take_stock(GrowState& s, const std::vector<std::uint8_t>& still, FaceStock& stock)
 {
     const std::size_t count = s.mesh->faces.size();
     s.home = s.b;
-    Stock stock{std::vector<Corners>(count),     std::vector<Corners>(count),
-                std::vector<Vec3d>(count),       std::vector<Vec3d>(count),
-                std::vector<double>(count),      std::vector<FloatBox>(count),
-                std::vector<std::uint8_t>(count)};
+    if (stock.outer.empty())
+        take_stock_of_outer(s, stock);
+    stock.corner.resize(count);
+    stock.normal.resize(count);
+    stock.reach.resize(count);
+    stock.box.resize(count);
+    stock.still.resize(count);
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -89,13 +98,10 @@ Stock take_stock(GrowState& s, const std::vector<std::uint8_t>& still)
             }
             stock.corner[f] = inner_corners(s, f);
             stock.normal[f] = unit_normal(stock.corner[f]);
-            stock.outer[f] = outer_corners(s, f);
-            stock.outer_normal[f] = unit_normal(stock.outer[f]);
             stock.reach[f] = reach;
             stock.box[f] = float_box_of(stock.corner[f], reach);
         },
         256);
-    return stock;
 }
 
 /// GrowState::rounding is that of one coordinate to float32.
@@ -111,7 +117,7 @@ double rounding_of_walls(const GrowState& s)
 class Builder
 {
 public:
-    Builder(const GrowState& s, const Stock& stock, const std::vector<std::uint8_t>& still,
+    Builder(const GrowState& s, const FaceStock& stock, const std::vector<std::uint8_t>& still,
             double slack)
         : s_(s), stock_(stock), still_(still), slack_(slack)
     {
@@ -209,7 +215,7 @@ private:
     }
 
     const GrowState& s_;
-    const Stock& stock_;
+    const FaceStock& stock_;
     const std::vector<std::uint8_t>& still_;
     double slack_;
 };
@@ -247,47 +253,53 @@ std::vector<std::size_t> gather_walls(std::vector<Chunk>& chunks, Walls& w)
     return base;
 }
 
-/// Lists by vertex, in the order of the walls whatever thread wrote first.
+/// Lists by vertex, in the order of the walls: counted first, by blocks of chunks, so that each
+/// block knows where its own go.
 void hand_out(const GrowState& s, std::vector<Chunk> chunks, Walls& w)
 {
+    constexpr std::size_t kBlocks = 8;
     const std::vector<std::size_t> base = gather_walls(chunks, w);
     const std::size_t vertices = s.b.size();
-    std::vector<std::atomic<std::uint32_t>> count(vertices);
-    for_each_index(
-        chunks.size(),
-        [&](std::size_t c) {
-            for (const Owners& o : chunks[c].owners)
-                for_each_reached(s, o, [&](int v, unsigned) {
-                    count[v].fetch_add(1, std::memory_order_relaxed);
-                });
-        },
-        4);
-    w.first.resize(vertices + 1);
-    w.first[0] = 0;
-    for (std::size_t v = 0; v < vertices; ++v)
-        w.first[v + 1] = w.first[v] + count[v].exchange(0, std::memory_order_relaxed);
-    w.side.resize(w.first[vertices]);
-    for_each_index(
-        chunks.size(),
-        [&](std::size_t c) {
+    std::array<std::vector<std::uint32_t>, kBlocks> next;
+    const auto for_each_side = [&](std::size_t block, const auto& visit) {
+        const std::size_t end = chunks.size() * (block + 1) / kBlocks;
+        for (std::size_t c = chunks.size() * block / kBlocks; c < end; ++c)
             for (std::size_t i = 0; i < chunks[c].owners.size(); ++i)
                 for_each_reached(s, chunks[c].owners[i], [&](int v, unsigned side) {
-                    w.side[w.first[v] + count[v].fetch_add(1, std::memory_order_relaxed)] =
-                        static_cast<std::uint32_t>(2 * (base[c] + i) + side);
+                    visit(v, static_cast<std::uint32_t>(2 * (base[c] + i) + side));
                 });
+    };
+    for_each_index(
+        kBlocks,
+        [&](std::size_t block) {
+            next[block].resize(vertices);
+            for_each_side(block, [&](int v, std::uint32_t) { ++next[block][v]; });
         },
-        4);
-    for_each_index(vertices, [&](std::size_t v) {
-        std::sort(w.side.begin() + std::ptrdiff_t(w.first[v]),
-                  w.side.begin() + std::ptrdiff_t(w.first[v + 1]));
-    });
+        1);
+    w.first.resize(vertices + 1);
+    std::uint32_t total = 0;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        w.first[v] = total;
+        for (std::vector<std::uint32_t>& of_block : next)
+            total += std::exchange(of_block[v], total);
+    }
+    w.first[vertices] = total;
+    w.side.resize(total);
+    for_each_index(
+        kBlocks,
+        [&](std::size_t block) {
+            for_each_side(block,
+                          [&](int v, std::uint32_t side) { w.side[next[block][v]++] = side; });
+        },
+        1);
 }
 
 } // namespace
 
 void raise_walls(GrowState& s, const std::vector<std::uint8_t>& still, Walls& w, Tree tree)
 {
-    const Stock stock = take_stock(s, still);
+    take_stock(s, still, w.stock);
+    const FaceStock& stock = w.stock;
     const bool kept = tree == Tree::kept && s.inner_tree.size() == stock.box.size();
     kept ? s.inner_tree.refit(stock.box) : s.inner_tree.build(stock.box);
     w.slack = rounding_of_walls(s);

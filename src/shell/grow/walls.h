@@ -24,6 +24,17 @@ struct WallPlace {
     double least_d, most_d;
 };
 
+/// What is known of each face while walls are raised; kept for the next time, for the outer ones
+/// never move and the memory is there.
+struct FaceStock {
+    std::vector<Corners> corner, outer;
+    std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
+    std::vector<double> reach;               ///< the longest of a face's corners
+    std::vector<FloatBox> box;
+    std::vector<std::uint8_t> still; ///< none of its corners will move
+};
+
+/// Of one GrowState.
 struct Walls {
     std::vector<Wall> wall;
     std::vector<WallPlace> place;    ///< of each wall
@@ -32,6 +43,7 @@ struct Walls {
     std::vector<std::uint8_t>
         locked;       ///< by vertex: must not move, something is too near for a wall
     double slack = 0; ///< bound on the rounding error of Wall::value
+    FaceStock stock;
 };
 
 /// Calls visit(wall) for each wall of vertex v, turned so that v stays where its value is > 0,
