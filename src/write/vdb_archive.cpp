@@ -11,8 +11,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <mutex>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace vdb_shell
@@ -208,24 +211,34 @@ void write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
 
 } // namespace
 
-void write_vdb_archive(const std::filesystem::path& path, const openvdb::GridPtrVec& grids,
+void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
                        const openvdb::MetaMap& metadata)
 {
     const Archive archive;
-    std::vector<GridBytes> bytes(grids.size());
-    // The last first: it is the tets' where there are points, which one thread writes the longest.
+    std::ofstream out(path, std::ios::binary);
+    archive.write_start(out, metadata, grids.size());
+    std::mutex writing;
+    std::vector<std::optional<GridBytes>> ready(grids.size());
+    std::size_t written = 0;
+    // The last first: it is the tets' where there are points, which one thread writes the longest;
+    // the others are on their way to the disk, and gone, when that one is done.
     for_each_index(
         grids.size(),
         [&](std::size_t i) {
-            const std::size_t grid = grids.size() - 1 - i;
-            bytes[grid] = archive.bytes_of(*grids[grid]);
+            const std::size_t last = grids.size() - 1 - i;
+            GridBytes bytes = archive.bytes_of(*grids[last]);
+            // Freed behind the lock: OpenVDB frees on all threads, and one that waits for the
+            // others may take up the next grid here meanwhile.
+            openvdb::GridPtrVec done;
+            const std::lock_guard<std::mutex> lock(writing);
+            ready[last] = std::move(bytes);
+            for (; written < grids.size() && ready[written]; ++written) {
+                write_grid(out, *grids[written], *ready[written]);
+                ready[written].reset();
+                done.push_back(std::move(grids[written]));
+            }
         },
         1);
-
-    std::ofstream out(path, std::ios::binary);
-    archive.write_start(out, metadata, grids.size());
-    for (std::size_t i = 0; i < grids.size(); ++i)
-        write_grid(out, *grids[i], bytes[i]);
     out.close();
     if (!out)
         throw openvdb::IoError("the disk is full or the file system refused the data");

@@ -10,10 +10,11 @@ namespace vdb_shell
 
 /// Writes what openvdb::io::File would write with Blosc and active masks, byte for byte but for the
 /// random UUID, on all threads: OpenVDB compresses leaf by leaf on one, and each leaf twice, the
-/// first time only to learn its size. Keeps the compressed file in memory while it is made.
-/// Preconditions: grids are not null, their names are not empty and differ, and no two share a
-/// tree. Throws openvdb::IoError when the file cannot be written.
-void write_vdb_archive(const std::filesystem::path& path, const openvdb::GridPtrVec& grids,
+/// first time only to learn its size. Keeps compressed grids in memory until those before them are
+/// written, and lets go of a grid as soon as it is. Preconditions: grids are not null, their names
+/// are not empty and differ, and no two share a tree. Throws openvdb::IoError when the file cannot
+/// be written.
+void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
                        const openvdb::MetaMap& metadata);
 
 } // namespace vdb_shell

@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -161,7 +163,8 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
         named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
         named_copy(file.depth, kDepthGrid, options.half, file.placement)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
-    const openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
+    openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
+                               std::move(made.tets)};
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
     for (const GridBase::Ptr& grid : points)
@@ -171,12 +174,12 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
 
     write_atomically(path, [&](const fs::path& temporary) {
         if (!beside)
-            volumes.insert(volumes.end(), points.begin(), points.end());
-        write_vdb_archive(temporary, volumes, metadata);
+            std::move(points.begin(), points.end(), std::back_inserter(volumes));
+        write_vdb_archive(temporary, std::move(volumes), metadata);
         // Inside the other, so that neither file is renamed before both are on disk.
         if (beside)
             write_atomically(points_file_of(path), [&](const fs::path& temporary_points) {
-                write_vdb_archive(temporary_points, points, metadata);
+                write_vdb_archive(temporary_points, std::move(points), metadata);
             });
     });
 }
