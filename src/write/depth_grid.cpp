@@ -216,7 +216,8 @@ VDB_SHELL_LANES_PART void fill_row(const IndexTet& tet, const TetInColumn::Line&
         const FourTruths place = FourTruths{0, 1, 2, 3} + from;
         FourFloats values;
         std::memcpy(&values, row + from, sizeof values);
-        values = (place >= begin) & (place < end) ? rounded : values;
+        const FourTruths inside = (place >= begin) & (place < end);
+        values = inside ? rounded : values;
         std::memcpy(row + from, &values, sizeof values);
     }
 }
