@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geometry_parts.h"
 
-#include "mesh/scan_text.h"
+#include "io/scan_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fields.h"
 
-#include "mesh/scan_text.h"
+#include "io/scan_text.h"
 
 namespace vdb_shell::houdini
 {

@@ -2,9 +2,9 @@
 #include "vdb_shell/houdini/geometry_file.h"
 
 #include "geometry_parts.h"
+#include "io/polygon_soup.h"
+#include "io/scan_text.h"
 #include "json_read.h"
-#include "mesh/polygon_soup.h"
-#include "mesh/scan_text.h"
 #include "scf.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "json_read.h"
 
 #include "binary_kinds.h"
-#include "mesh/scan_text.h"
+#include "io/scan_text.h"
 
 #include <openvdb/Types.h>
 

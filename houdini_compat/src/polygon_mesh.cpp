@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/houdini/polygon_mesh.h"
 
-#include "mesh/coordinates.h"
-#include "mesh/polygon_soup.h"
-#include "mesh/scan_text.h"
+#include "io/coordinates.h"
+#include "io/polygon_soup.h"
+#include "io/scan_text.h"
 
 #include <algorithm>
 #include <cmath>

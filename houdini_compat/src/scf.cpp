@@ -3,7 +3,7 @@
 
 #include "vdb_shell/core/error.h"
 
-#include "mesh/scan_text.h"
+#include "io/scan_text.h"
 
 #include <blosc.h>
 

@@ -4,7 +4,7 @@
 #include "vdb_shell/houdini/geometry.h"
 #include "vdb_shell/shell/shell_stack.h"
 
-#include "mesh/scan_text.h"
+#include "io/scan_text.h"
 #include "shell_names.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/houdini/shell_geometry.h"
 
-#include "vdb_shell/certify/quality.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/shell/quality.h"
 
 #include "shell_names.h"
 #include "write/point_grids.h"

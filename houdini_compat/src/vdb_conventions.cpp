@@ -3,8 +3,8 @@
 
 #include "vdb_shell/core/error.h"
 
+#include "io/vdb_header.h"
 #include "vdb_rules.h"
-#include "write/vdb_header.h"
 
 #include <openvdb/io/File.h>
 

@@ -10,7 +10,7 @@
 #include "command/repair_command.h"
 #include "command/signals.h"
 #include "core/atomic_file.h"
-#include "core/stage_clock.h"
+#include "report/stage_clock.h"
 
 #include <iostream>
 #include <utility>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "vdb_shell/inspect/inspect_mesh.h"
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 
 #include <filesystem>
 

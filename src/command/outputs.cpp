@@ -4,7 +4,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/write/tet_file.h"
 
 #include "command/bind.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
 
 #include <openvdb/openvdb.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vdb_shell/mesh/read_mesh.h"
-#include "vdb_shell/mesh/repair_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
+#include "vdb_shell/repair/repair_mesh.h"
 
 #include <filesystem>
 #include <string>

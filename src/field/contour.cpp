@@ -5,7 +5,7 @@
 #include "field/contour_mapped.h"
 #include "field/marching_tets.h"
 #include "mesh/components.h"
-#include "mesh/simplify.h"
+#include "resample/simplify.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
 

@@ -2,7 +2,7 @@
 #include "field/signed_distance.h"
 
 #include "field/nearest_on_triangle.h"
-#include "vdb_shell/step/directions.h"
+#include "vdb_shell/mesh/normals.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
-#include "mesh/triangle_pieces.h"
+#include "resample/triangle_pieces.h"
 
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>

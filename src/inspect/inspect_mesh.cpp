@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/inspect/inspect_mesh.h"
+#include "vdb_shell/mesh/normals.h"
 
+#include "growth/line_directions.h"
 #include "inspect/marks.h"
 #include "mesh/boundary_loops.h"
 #include "mesh/orientation.h"
-#include "shell/grow/directions.h"
 #include "vdb_shell/step/directions.h"
 
 #include <algorithm>

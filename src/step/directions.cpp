@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/step/directions.h"
 
+#include "core/counter_random.h"
 #include "core/parallel.h"
 #include "field/field_sampler.h"
-#include "mesh/topology.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/mesh/normals.h"
 
 #include <cassert>
 #include <cmath>
@@ -17,55 +18,6 @@ using openvdb::Vec3d;
 
 namespace
 {
-
-// Below this, a sum of unit vectors (or a gradient of slope one) is rounding, not a direction.
-constexpr double kNoDirection = 1e-9;
-
-Vec3d unit_or_zero(const Vec3d& v, double scale)
-{
-    const double length = v.length();
-    return length > kNoDirection * scale ? v / length : Vec3d(0.0);
-}
-
-Vec3d corner(const TriangleMesh& mesh, std::uint32_t triangle, int i)
-{
-    return Vec3d(mesh.points[mesh.triangles[triangle][i]]);
-}
-
-/// Unit normals, zero for triangles without area. Edges of float32 points are exact enough in
-/// double that their cross product vanishes only where the area does.
-std::vector<Vec3d> triangle_normals(const TriangleMesh& mesh)
-{
-    std::vector<Vec3d> normals(mesh.triangles.size());
-    for_each_index(normals.size(), [&](std::size_t i) {
-        const auto t = static_cast<std::uint32_t>(i);
-        const Vec3d a = corner(mesh, t, 0);
-        const Vec3d cross = (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a);
-        const double length = cross.length();
-        normals[i] = length > 0 ? cross / length : Vec3d(0.0);
-    });
-    return normals;
-}
-
-double angle_at(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t vertex)
-{
-    int i = 0;
-    while (mesh.triangles[triangle][i] != vertex)
-        ++i;
-    const Vec3d p = corner(mesh, triangle, i);
-    const Vec3d u = corner(mesh, triangle, (i + 1) % 3) - p;
-    const Vec3d v = corner(mesh, triangle, (i + 2) % 3) - p;
-    return std::atan2(u.cross(v).length(), u.dot(v));
-}
-
-// splitmix64 (Steele, Lea, Flood 2014): a counter in, 64 good bits out, the same everywhere.
-std::uint64_t mix(std::uint64_t x)
-{
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
 
 double signed_unit(std::uint64_t bits)
 {
@@ -80,9 +32,10 @@ struct Disk {
 /// mathematics libraries.
 Disk disk_point(std::uint64_t seed, std::size_t vertex)
 {
-    const std::uint64_t stream = mix(mix(seed) ^ vertex);
+    const std::uint64_t stream = splitmix64(splitmix64(seed) ^ vertex);
     for (std::uint64_t draw = 0;; draw += 2) {
-        const Disk p{signed_unit(mix(stream + draw)), signed_unit(mix(stream + draw + 1))};
+        const Disk p{signed_unit(splitmix64(stream + draw)),
+                     signed_unit(splitmix64(stream + draw + 1))};
         if (p.x * p.x + p.y * p.y <= 1)
             return p;
     }
@@ -113,44 +66,6 @@ void check_options(const DirectionOptions& options)
 }
 
 } // namespace
-
-std::vector<Vec3d> pseudo_normals(const TriangleMesh& mesh)
-{
-    const VertexTriangles vertex_triangles =
-        triangles_around_vertices(mesh.points.size(), mesh.triangles);
-    const std::vector<Vec3d> normals = triangle_normals(mesh);
-    std::vector<Vec3d> result(mesh.points.size());
-    for_each_index(result.size(), [&](std::size_t v) {
-        Vec3d sum(0.0);
-        double angles = 0;
-        for (const std::uint32_t t : vertex_triangles.around(v)) {
-            const double angle = angle_at(mesh, t, v);
-            sum += angle * normals[t];
-            angles += angle;
-        }
-        result[v] = unit_or_zero(sum, angles);
-    });
-    return result;
-}
-
-std::vector<double> visibility_of(const TriangleMesh& mesh, const std::vector<Vec3d>& outward)
-{
-    assert(outward.size() == mesh.points.size());
-    const VertexTriangles vertex_triangles =
-        triangles_around_vertices(mesh.points.size(), mesh.triangles);
-    const std::vector<Vec3d> normals = triangle_normals(mesh);
-    std::vector<double> result(outward.size());
-    for_each_index(result.size(), [&](std::size_t v) {
-        if (outward[v].lengthSqr() == 0)
-            return;
-        double least = 1;
-        for (const std::uint32_t t : vertex_triangles.around(v))
-            if (normals[t].lengthSqr() > 0)
-                least = std::min(least, outward[v].dot(normals[t]));
-        result[v] = least;
-    });
-    return result;
-}
 
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                               const DirectionOptions& options)

@@ -5,9 +5,9 @@
 
 #include "core/atomic_file.h"
 #include "core/parallel.h"
+#include "io/vdb_archive.h"
+#include "io/vdb_header.h"
 #include "write/point_grids.h"
-#include "write/vdb_archive.h"
-#include "write/vdb_header.h"
 #include "write/vdb_metadata.h"
 
 #include <openvdb/io/File.h>

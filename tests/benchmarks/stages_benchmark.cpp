@@ -3,8 +3,8 @@
 
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/coverage.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/mesh/read_mesh.h"
 #include "vdb_shell/pipeline.h"
 #include "vdb_shell/write/tet_file.h"
 #include "vdb_shell/write/vdb_file.h"

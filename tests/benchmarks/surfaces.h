@@ -2,8 +2,8 @@
 #pragma once
 
 #include "vdb_shell/field/level_set.h"
+#include "vdb_shell/growth/grow.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
-#include "vdb_shell/shell/grow.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/line_step.h"

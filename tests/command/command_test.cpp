@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 
 #include "command_fixture.h"
 #include "support/shapes.h"

@@ -4,10 +4,10 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/mesh/surface_distance.h"
+#include "vdb_shell/resample/surface_distance.h"
 
 #include "field/marching_tets.h"
-#include "mesh/simplify.h"
+#include "resample/simplify.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/field/contour.h"
-#include "vdb_shell/mesh/read_mesh.h"
-#include "vdb_shell/mesh/surface_distance.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
+#include "vdb_shell/resample/surface_distance.h"
 
 #include "support/files.h"
 #include "support/shapes.h"

@@ -3,7 +3,7 @@
 
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
 #include "vdb_shell/write/verify_file.h"
 

@@ -4,7 +4,7 @@
 #include "support/files.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 
 #include <gtest/gtest.h>
 

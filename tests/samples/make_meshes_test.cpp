@@ -3,9 +3,9 @@
 #include "shapes/simple_shapes.h"
 #include "support/files.h"
 
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/mesh/read_mesh.h"
-#include "vdb_shell/step/directions.h"
+#include "vdb_shell/mesh/normals.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

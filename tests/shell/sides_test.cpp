@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/shell/sides.h"
 
 #include "core/exact.h"
@@ -9,7 +10,7 @@
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/field/level_set.h"
-#include "vdb_shell/shell/grow.h"
+#include "vdb_shell/growth/grow.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/step/limits.h"
 
 #include "support/shapes.h"

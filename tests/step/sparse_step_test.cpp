@@ -6,7 +6,7 @@
 #include "support/shapes.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/narrow_band.h"
-#include "vdb_shell/mesh/read_mesh.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
 #include "vdb_shell/step/line_step.h"
 

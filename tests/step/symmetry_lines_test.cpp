@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The three situations of the paper's figure 2, as solids: where a line must stop at a symmetry
 // sheet, and where it should walk along one.
+#include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/step/line_step.h"
 
 #include "support/certificates.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "vdb_shell/mesh/repair_mesh.h"
+#include "vdb_shell/repair/repair_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,8 @@
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/interrupter.h"
-#include "vdb_shell/shell/grow.h"
+#include "vdb_shell/growth/grow.h"
+#include "vdb_shell/mesh/normals.h"
 
 #include <gtest/gtest.h>
 

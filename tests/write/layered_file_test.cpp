@@ -4,8 +4,8 @@
 #include "support/broken_shells.h"
 #include "support/files.h"
 #include "vdb_shell/certify/stack_certificate.h"
-#include "vdb_shell/shell/cut_layers.h"
-#include "vdb_shell/write/report.h"
+#include "vdb_shell/layers/cut_layers.h"
+#include "vdb_shell/report/report.h"
 #include "vdb_shell/write/verify_file.h"
 #include "write/hand_made.h"
 

@@ -4,7 +4,7 @@
 #include "support/broken_shells.h"
 #include "support/files.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/write/report.h"
+#include "vdb_shell/report/report.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/shell/prism_test.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <cstdint>
@@ -11,12 +12,6 @@
 
 namespace vdb_shell
 {
-
-/// Which tets of each prism have to be positive.
-enum class PrismTest {
-    twelve_tets, ///< those of all six splits: any diagonals and any thinner shell are valid too
-    chosen_tets, ///< the three of the given split
-};
 
 /// The proof that a shell is free of inverted and of overlapping tets, or what stands against it.
 /// Conditions of docs/theory.md, all decided exactly on the stored float32 coordinates.

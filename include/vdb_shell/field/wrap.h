@@ -3,8 +3,8 @@
 
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/field/contour.h"
-#include "vdb_shell/mesh/surface_distance.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/resample/surface_distance.h"
 
 #include <cstddef>
 #include <optional>

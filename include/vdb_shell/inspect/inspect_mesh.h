@@ -2,8 +2,8 @@
 #pragma once
 
 #include "vdb_shell/field/level_set.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/mesh/read_mesh.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -33,13 +33,6 @@ struct Directions {
     std::vector<double> visibility;
 };
 
-/// Angle-weighted pseudo-normals, outward, unit length (zero where the incident triangles cancel).
-std::vector<openvdb::Vec3d> pseudo_normals(const TriangleMesh& mesh);
-
-/// Smallest cosine between `outward` and the normals of the triangles around each vertex.
-std::vector<double> visibility_of(const TriangleMesh& mesh,
-                                  const std::vector<openvdb::Vec3d>& outward);
-
 /// Directions of the extrusion lines. The level set is read only for DirectionSource::gradient.
 /// The same seed gives the same directions, whatever the number of threads.
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/resample/coarsen.h"
+#include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/step/directions.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// How the inner vertices get their places.
+enum class Method {
+    raw,       ///< the lengths of line stepping as they are (the paper): overlaps are reported, not
+               ///< prevented
+    certified, ///< grown from a valid start, all twelve tets of each prism positive: every diagonal
+               ///< and every thinner shell is valid too (docs/theory.md)
+    thickest,  ///< the same, then on with only the three chosen tets of each prism positive
+};
+
+/// Each lever is an option of its own; docs/thickness.md has its gain and cost.
+struct GrowOptions {
+    Method method = Method::certified;
+    bool mend_directions = true;   ///< a direction that sees a triangle from behind, or nearly so,
+                                   ///< gives way to the one that sees its worst triangle best
+    bool smooth_directions = true; ///< bilateral smoothing of the directions, visibility kept
+    bool top_down = true;          ///< start from long lines, shrunk until valid, instead of a thin
+                                   ///< shell
+    bool grow_lines = true;    ///< lengthen along the lines: outward, and inward where the start
+                               ///< is nearly full already (round and convex solids) or thin
+    bool free_moves = true;    ///< let inner vertices leave their lines
+    bool soft_contacts = true; ///< free moves keep clear of near triangles before they touch
+    bool flips = true;         ///< choose diagonals again while moving (thickest) and for
+                               ///< quality at the end
+    /// From so many triangles on, growth begins on a surface of a thousand or two, and comes to the
+    /// whole over some in between: sooner, and as thick. Fewer triangles than the default's have
+    /// too little of their shape left then. 0: never.
+    std::size_t coarse_from = 5000;
+    /// Upper bound on rounds of free moves, under each prism test. Unset: 40; but after a start on
+    /// coarser surfaces (50,000 / triangles) squared under Method::certified, and they end sooner,
+    /// when one wins little for what it costs, and ask only vertices that can win. Given, growth
+    /// takes its time: thicker (docs/benchmarks.md).
+    std::optional<int> free_rounds;
+    /// Bound that the mean ratio of every tet should reach (shell/quality.h), 0 or more and less
+    /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
+    /// end, at a cost in thickness; those that cannot reach it are counted in the report.
+    double min_quality = 0;
+};
+
+struct GrowReport {
+    std::size_t rounds = 0;             ///< rounds of free moves
+    std::size_t flips = 0;              ///< diagonals turned
+    std::size_t released = 0;           ///< pins of the start that growth could release
+    double fill_after_lines = 0;        ///< shell / |enclosed volume| before the first free move
+    std::size_t quality_rounds = 0;     ///< rounds of moves towards GrowOptions::min_quality
+    std::size_t tets_below_quality = 0; ///< tets that did not reach it
+    std::size_t vertices_below_quality = 0; ///< inner vertices of such tets, pinned ones included
+};
+
+/// Surfaces for growth to begin on, each of fewer triangles than the one before, as
+/// GrowOptions::coarse_from asks. None for a side without bound, for a surface of few triangles or
+/// one that cannot be coarsened. Same result for any number of threads.
+std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options);
+
+/// The vertices of the mesh from whose lines growth on such levels begins, ascending: those of the
+/// last, or all.
+std::vector<std::uint32_t> vertices_of_coarsest(const TriangleMesh& mesh,
+                                                const std::vector<Coarsened>& levels);
+
+/// What growth sets out from.
+struct GrowStart {
+    /// A shell to grow on from in place of lines, that of a coarser surface on the refined one: one
+    /// point per vertex, the vertex itself where it is pinned. Empty: there is none.
+    std::vector<openvdb::Vec3s> inner;
+    /// Otherwise: surfaces to begin on (coarse_levels); none: on the mesh itself.
+    std::vector<Coarsened> levels;
+};
+
+struct GrowResult {
+    PrismShell shell;
+    PrismSplit split;
+    GrowReport report;
+};
+
+/// Grows the shell of an embedded surface to the thickest that the levers find, through valid
+/// states only: every accepted move is tested exactly on the float32 coordinates, so no tet inverts
+/// and no two surfaces touch, nor does one component end up inside another's shell.
+/// `start` gives the first lengths to try (line stepping) where they exceed half the ray to the
+/// other side; they bound nothing. `cap` bounds
+/// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).
+/// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back.
+/// `split` is honoured under Method::certified, where any diagonals are valid; with `flips` and
+/// SplitRule::length_descending they are then turned for quality. Method::thickest has its own.
+/// Same bits for any number of threads. Terminates: rounds are bounded, and in a round each vertex
+/// is tried a bounded number of times.
+/// Precondition: closed, manifold mesh, oriented so that the side to fill lies behind its
+/// triangles; one entry per vertex in all lists; cap not negative, and finite where that side has
+/// no bound (a reversed surface: shell/sides.h); method not raw. On a surface that crosses itself
+/// the result is some shell; only a certificate tells. Without `from`, growth begins on
+/// coarse_levels of the mesh. With from->inner it starts there instead of with lines, after moving,
+/// or else shortening, what is not valid in it; `start` is not read then. With levels, `start` is
+/// of use at vertices_of_coarsest alone and may be 0 elsewhere. Throws InvalidOption when
+/// free_rounds is negative or min_quality out of range, Cancelled.
+GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
+                      const LineLengths& start, const std::vector<double>& cap,
+                      const GrowOptions& options, const SplitOptions& split,
+                      Interrupter* interrupter = nullptr, const GrowStart* from = nullptr);
+
+} // namespace vdb_shell

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace vdb_shell
+{
+
+/// Which tets of each prism have to be positive.
+enum class PrismTest {
+    twelve_tets, ///< those of all six splits: any diagonals and any thinner shell are valid too
+    chosen_tets, ///< the three of the given split
+};
+
+} // namespace vdb_shell

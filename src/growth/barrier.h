@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/lanes.h"
+#include "growth/grow_state.h"
+
+#include <array>
+
+namespace vdb_shell::growth
+{
+
+/// Linear bounds on one vertex, value(x) = n.(x - here) + value > 0, scaled to unit n: only where
+/// they vanish matters. In float32, lane by lane: the barrier proposes, the exact tests decide.
+class Bounds
+{
+public:
+    /// Starts anew around the position of the vertex; `scale` is the length that is to be 1.
+    void clear(const Vec3d& here, double scale);
+    /// A bound of normal n, any length, through p. Left out where it does not hold here.
+    void add(const Vec3d& n, const Vec3d& p);
+    /// A bound of unit normal n and value here.
+    void add_unit(const Vec3s& n, double value);
+    /// The bounds of all tets of a prism that hold this vertex, under the twelve-tet test: what add
+    /// would make of each, in float32. The other corners: a of the vertex, a of the next and of the
+    /// one before it in its triangle, b of these.
+    void add_prism(const std::array<Vec3d, 5>& corner);
+    /// Gives the bounds from `first` on the weight `weight` each; all have 1 else.
+    void weigh(std::size_t first, float weight);
+    std::size_t size() const { return size_; }
+
+private:
+    friend class Newton;
+    struct alignas(kLanesAlignment) Block {
+        Block() {} // whoever adds one fills it
+        Lanes x, y, z, value, weight;
+    };
+    std::vector<Block> block_;
+    std::size_t size_ = 0;
+    Vec3d here_{0.0};
+    double scale_ = 1;
+};
+
+/// A ball that x has to stay in; infinite: no such bound.
+struct Ball {
+    Vec3d centre;
+    double radius;
+};
+
+/// Minimum over x of gradient . x - softness * (sum of weight * log(bound(x)) + log(r^2 - |x -
+/// c|^2)), the last term only for a ball of finite radius: convex, three unknowns. Damped Newton
+/// from where the bounds were cleared. A few steps only: the vertex is asked again in the next
+/// sweep.
+Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness);
+
+} // namespace vdb_shell::growth

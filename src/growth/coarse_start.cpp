@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/coarse_start.h"
+
+#include "core/parallel.h"
+#include "field/nearest_on_triangle.h"
+#include "field/triangle_tree.h"
+#include "mesh/topology.h"
+#include "vdb_shell/mesh/normals.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+// Cosine to the normals of the triangles around; less is next to lying in one of them.
+constexpr double kLeastVisibility = 0.05;
+// Of the coarse surface's diagonal: nearest enough.
+constexpr float kNearEnough = 1e-4F;
+
+/// Barycentric coordinates of a point of the triangle; those of its middle where it has no area.
+std::array<double, 3> weights_in(const std::array<Vec3d, 3>& corner, const Vec3d& at)
+{
+    const Vec3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const double squared = n.lengthSqr();
+    std::array<double, 3> weight{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d &p = corner[(k + 1) % 3], &q = corner[(k + 2) % 3];
+        weight[k] = squared > 0 ? n.dot((q - p).cross(at - p)) / squared : 1.0 / 3.0;
+    }
+    return weight;
+}
+
+Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
+                   std::uint32_t triangle, const Vec3d& at)
+{
+    const openvdb::Vec3I& t = coarse.triangles[triangle];
+    const std::array<Vec3d, 3> corner{Vec3d(coarse.points[t[0]]), Vec3d(coarse.points[t[1]]),
+                                      Vec3d(coarse.points[t[2]])};
+    const std::array<double, 3> weight = weights_in(corner, nearest_on_triangle(corner, at).point);
+    Vec3d end(0.0);
+    for (std::size_t k = 0; k < 3; ++k)
+        end += weight[k] * inner[t[static_cast<int>(k)]];
+    return end;
+}
+
+/// Each pillar halfway to the mean of its neighbours. Those handed on bend at the edges of the
+/// coarse triangles, where most of the sheared prisms are; a second time takes off more than it
+/// mends.
+std::vector<Vec3s> smoothed(const TriangleMesh& mesh, const std::vector<Vec3s>& inner)
+{
+    const VertexTriangles around = triangles_around_vertices(inner.size(), mesh.triangles);
+    std::vector<Vec3s> result = inner;
+    for_each_index(inner.size(), [&](std::size_t v) {
+        Vec3d sum(0.0);
+        std::size_t count = 0;
+        for (const std::uint32_t t : around.around(v))
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t u = mesh.triangles[t][k];
+                if (u == v)
+                    continue;
+                sum += Vec3d(inner[u]) - Vec3d(mesh.points[u]);
+                ++count;
+            }
+        if (count > 0)
+            result[v] =
+                Vec3s(0.5 * (Vec3d(inner[v]) + Vec3d(mesh.points[v]) + sum / double(count)));
+    });
+    return result;
+}
+
+} // namespace
+
+Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Directions lines)
+{
+    Pillars pillars{std::move(lines), std::vector<double>(inner.size())};
+    for (std::size_t v = 0; v < inner.size(); ++v) {
+        const Vec3d arm = Vec3d(inner[v]) - Vec3d(mesh.points[v]);
+        pillars.length[v] = arm.length();
+        if (pillars.length[v] > 0)
+            pillars.lines.inward[v] = arm / pillars.length[v];
+    }
+    return pillars;
+}
+
+Pillars pillars_in(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
+                   const TriangleMesh& mesh, const Directions& lines, Bends bends)
+{
+    const TriangleTree tree(coarse, diagonal_of(bounds_of(coarse.points)));
+    std::vector<Vec3s> inner(mesh.points.size());
+    for_each_index(inner.size(), [&](std::size_t v) {
+        const Vec3d at(mesh.points[v]);
+        TriangleTree::Seed seed = TriangleTree::kNoSeed;
+        inner[v] = Vec3s(
+            end_in_prism(coarse, coarse_inner, tree.nearest(at, kNearEnough, seed).triangle, at));
+    });
+    Pillars pillars =
+        pillars_to(mesh, bends == Bends::smoothed ? smoothed(mesh, inner) : inner, lines);
+    std::vector<Vec3d> outward(inner.size());
+    for (std::size_t v = 0; v < outward.size(); ++v)
+        outward[v] = -pillars.lines.inward[v];
+    const std::vector<double> visibility = visibility_of(mesh, outward);
+    for (std::size_t v = 0; v < outward.size(); ++v)
+        if (!(visibility[v] > kLeastVisibility))
+            pillars.lines.inward[v] = lines.inward[v];
+    return pillars;
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/connectivity.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+void build_incidence(Connectivity& c)
+{
+    c.rims = rims_around_vertices(static_cast<std::size_t>(c.vertices), c.faces);
+    const VertexTriangles& around = c.rims.around;
+    c.first.assign(around.offset.begin(), around.offset.end());
+    c.incident.resize(around.triangle.size());
+    for_each_index(static_cast<std::size_t>(c.vertices), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        FaceCorner* at = c.incident.data() + c.first[v];
+        for (const std::uint32_t t : around.around(i)) {
+            const int f = static_cast<int>(t);
+            *at++ = {f, c.corner(f, 0) == v ? 0 : c.corner(f, 1) == v ? 1 : 2};
+        }
+    });
+}
+
+void build_neighbours(Connectivity& c)
+{
+    // Two by each triangle at most: listed with room for that, then moved together.
+    const auto vertices = static_cast<std::size_t>(c.vertices);
+    std::vector<int> wide(2 * c.incident.size()), count(vertices);
+    for_each_index(vertices, [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        int* const begin = wide.data() + 2 * static_cast<std::size_t>(c.first[v]);
+        int* end = begin;
+        for (const FaceCorner& at : star(c, v))
+            for (int k = 1; k < 3; ++k)
+                *end++ = c.corner(at.face, (at.local + k) % 3);
+        std::sort(begin, end);
+        count[i] = static_cast<int>(std::unique(begin, end) - begin);
+    });
+    c.neighbour_first.assign(vertices + 1, 0);
+    std::partial_sum(count.begin(), count.end(), c.neighbour_first.begin() + 1);
+    c.neighbour.resize(static_cast<std::size_t>(c.neighbour_first.back()));
+    for_each_index(vertices, [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        std::copy_n(wide.data() + 2 * static_cast<std::size_t>(c.first[v]), count[i],
+                    c.neighbour.data() + c.neighbour_first[v]);
+    });
+}
+
+void label_components(Connectivity& c)
+{
+    c.component.assign(static_cast<std::size_t>(c.vertices), -1);
+    std::vector<int> stack;
+    for (int seed = 0; seed < c.vertices; ++seed) {
+        if (c.component[seed] >= 0)
+            continue;
+        stack.assign(1, seed);
+        c.component[seed] = c.components;
+        while (!stack.empty()) {
+            const int v = stack.back();
+            stack.pop_back();
+            for (const int u : neighbours(c, v)) {
+                if (c.component[u] >= 0)
+                    continue;
+                c.component[u] = c.components;
+                stack.push_back(u);
+            }
+        }
+        ++c.components;
+    }
+}
+
+/// Greedy in index order: vertices of one class are three edges apart or more, so that the tests of
+/// one read nothing that another moves.
+void colour_vertices(Connectivity& c)
+{
+    std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1);
+    std::vector<int> taken_for; // by colour: the last vertex that cannot have it
+    const auto take = [&](int u, int v) {
+        if (colour[u] >= 0)
+            taken_for[colour[u]] = v;
+    };
+    for (int v = 0; v < c.vertices; ++v) {
+        for (const int u : neighbours(c, v)) {
+            take(u, v);
+            for (const int w : neighbours(c, u))
+                take(w, v);
+        }
+        const auto free =
+            std::find_if(taken_for.begin(), taken_for.end(), [&](int u) { return u != v; });
+        colour[v] = static_cast<int>(free - taken_for.begin());
+        if (free == taken_for.end()) {
+            taken_for.push_back(-1);
+            c.colour.emplace_back();
+        }
+        c.colour[colour[v]].push_back(v);
+    }
+}
+
+} // namespace
+
+Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
+{
+    Connectivity c;
+    c.vertices = static_cast<int>(vertices);
+    c.faces = faces;
+    build_incidence(c);
+    build_neighbours(c);
+    run_together([&] { label_components(c); }, [&] { colour_vertices(c); });
+    return c;
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/diagonals.h"
+
+#include "core/parallel.h"
+#include "growth/move_tests.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+constexpr int kQualityPasses = 20;
+constexpr double kMargin = 1e-12; ///< relative: less is rounding
+
+int rank_of(const PrismOrder& order, int local)
+{
+    return order[0] == local ? 0 : order[1] == local ? 1 : 2;
+}
+
+/// The order with local vertices l and m exchanged, or -1 where another stands between them: then
+/// turning the one diagonal would close a cycle.
+int exchanged(int order, int l, int m)
+{
+    PrismOrder o = tables().order[order];
+    const int i = rank_of(o, l), j = rank_of(o, m);
+    if (std::abs(i - j) != 1)
+        return -1;
+    std::swap(o[i], o[j]);
+    return order_index(o);
+}
+
+using TetCorners = std::array<Vec3d, 4>;
+
+TetCorners tet_corners(const GrowState& s, int f, const OrientedTet& tet)
+{
+    return {corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
+            corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])};
+}
+
+double volume6_of(const TetCorners& p)
+{
+    return (p[1] - p[0]).dot((p[2] - p[0]).cross(p[3] - p[0]));
+}
+
+double log_room(const GrowState& s, int f, int order)
+{
+    double sum = 0;
+    for (const OrientedTet& tet : tables().three[order]) {
+        if (dropped(s, f, tet.pillar))
+            continue;
+        const double v = volume6_of(tet_corners(s, f, tet));
+        if (v <= 0)
+            return -std::numeric_limits<double>::max() / 4; // two of them have a sum
+        sum += std::log(v);
+    }
+    return sum;
+}
+
+/// As the mean ratio 12 (3V)^(2/3) / (sum of squared edges) of a tet, but its cube, for only what
+/// is larger matters; -1 if inverted.
+double cubed_mean_ratio_of(const TetCorners& p)
+{
+    const double v = volume6_of(p);
+    if (v <= 0)
+        return -1;
+    double edges = 0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < i; ++j)
+            edges += (p[i] - p[j]).lengthSqr();
+    return 432 * v * v / (edges * edges * edges);
+}
+
+/// Which of the twelve tets the three of each split are.
+std::array<std::array<int, 3>, 6> places_in_twelve()
+{
+    const auto same = [](const OrientedTet& s, const OrientedTet& t) {
+        return std::is_permutation(s.corner.begin(), s.corner.end(), t.corner.begin());
+    };
+    std::array<std::array<int, 3>, 6> place{};
+    for (std::size_t order = 0; order < 6; ++order)
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t k = 0; k < 12; ++k)
+                if (same(tables().three[order][i], tables().twelve[k]))
+                    place[order][i] = static_cast<int>(k);
+    return place;
+}
+
+/// By face and order, the cubed mean ratio of the worst tet.
+std::vector<std::array<double, 6>> worst_mean_ratios(const GrowState& s)
+{
+    const auto place = places_in_twelve();
+    std::vector<std::array<double, 6>> worst(s.mesh->faces.size());
+    for_each_index(worst.size(), [&](std::size_t i) {
+        const int f = static_cast<int>(i);
+        std::array<double, 12> ratio{};
+        for (std::size_t k = 0; k < 12; ++k)
+            ratio[k] = cubed_mean_ratio_of(tet_corners(s, f, tables().twelve[k]));
+        for (std::size_t order = 0; order < 6; ++order) {
+            worst[i][order] = 1;
+            for (std::size_t t = 0; t < 3; ++t)
+                if (!dropped(s, f, tables().three[order][t].pillar))
+                    worst[i][order] =
+                        std::min(worst[i][order], ratio[static_cast<std::size_t>(place[order][t])]);
+        }
+    });
+    return worst;
+}
+
+/// An edge between two prisms, seen from the corner at its smaller end of the face where it runs
+/// towards the larger, and from that corner of the face across.
+struct Seam {
+    FaceCorner from, across;
+};
+
+/// All edges between two faces, in the order of their smaller ends.
+struct Seams {
+    std::vector<Seam> seam;
+    std::vector<std::array<int, 3>> of_face; ///< places in the list; -1 where there is none
+
+    explicit Seams(const Connectivity& m) : of_face(m.faces.size(), {-1, -1, -1})
+    {
+        seam.reserve(m.faces.size() * 3 / 2);
+        for (int u = 0; u < m.vertices; ++u)
+            for (const FaceCorner& at : star(m, u)) {
+                const int w = m.corner(at.face, (at.local + 1) % 3);
+                if (w < u)
+                    continue;
+                for (const FaceCorner& other : star(m, u))
+                    if (other.face != at.face && m.corner(other.face, (other.local + 2) % 3) == w) {
+                        of_face[at.face][at.local] = static_cast<int>(seam.size());
+                        of_face[other.face][(other.local + 2) % 3] = static_cast<int>(seam.size());
+                        seam.push_back({at, other});
+                        break;
+                    }
+            }
+    }
+};
+
+/// The orders of both prisms with the seam's diagonal turned, if that is better: score(f, order) of
+/// both is joined by `join`. Negative where it is not.
+template <class Score, class Join>
+std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Score& score,
+                                 const Join& join)
+{
+    const int f = seam.from.face, g = seam.across.face;
+    const int f_order = exchanged(s.order[f], seam.from.local, (seam.from.local + 1) % 3);
+    const int g_order = exchanged(s.order[g], seam.across.local, (seam.across.local + 2) % 3);
+    if (f_order < 0 || g_order < 0)
+        return {-1, -1};
+    const double now = join(score(f, s.order[f]), score(g, s.order[g]));
+    const bool better = join(score(f, f_order), score(g, g_order)) > now + kMargin * std::abs(now);
+    return better ? std::array{f_order, g_order} : std::array{-1, -1};
+}
+
+/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. A seam
+/// is looked at again only once another of its two prisms has been turned.
+template <class Score, class Join>
+std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join)
+{
+    const Seams seams(*s.mesh);
+    std::vector<std::uint8_t> look(seams.seam.size());
+    for_each_index(
+        look.size(),
+        [&](std::size_t i) { look[i] = better_orders(s, seams.seam[i], score, join)[0] >= 0; },
+        256);
+    std::size_t total = 0;
+    for (int pass = 0; pass < passes; ++pass) {
+        const std::size_t before = total;
+        for (std::size_t i = 0; i < look.size(); ++i) {
+            if (!look[i])
+                continue;
+            look[i] = 0;
+            const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
+            const auto [f_order, g_order] = better_orders(s, seams.seam[i], score, join);
+            if (f_order < 0 || !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
+                continue;
+            s.order[f] = static_cast<std::uint8_t>(f_order);
+            s.order[g] = static_cast<std::uint8_t>(g_order);
+            ++total;
+            for (const int face : {f, g})
+                for (const int other : seams.of_face[face])
+                    if (other >= 0)
+                        look[other] = 1;
+        }
+        if (total == before)
+            break;
+    }
+    return total;
+}
+
+} // namespace
+
+void order_by_length(GrowState& s)
+{
+    std::vector<double> length(s.b.size());
+    for (std::size_t v = 0; v < length.size(); ++v)
+        length[v] = (s.b[v] - s.a[v]).length();
+    for (int f = 0; f < s.mesh->face_count(); ++f) {
+        const Vec3I& t = s.mesh->faces[f];
+        PrismOrder order{0, 1, 2};
+        std::sort(order.begin(), order.end(), [&](int l, int m) {
+            return length[t[l]] != length[t[m]] ? length[t[l]] > length[t[m]] : t[l] < t[m];
+        });
+        s.order[f] = static_cast<std::uint8_t>(order_index(order));
+    }
+}
+
+std::size_t flip_for_room(GrowState& s)
+{
+    return flip_passes(
+        s, 1, [&](int f, int order) { return log_room(s, f, order); },
+        [](double f, double g) { return f + g; });
+}
+
+std::size_t flip_for_quality(GrowState& s)
+{
+    const std::vector<std::array<double, 6>> worst = worst_mean_ratios(s);
+    return flip_passes(
+        s, kQualityPasses,
+        [&](int f, int order) { return worst[std::size_t(f)][std::size_t(order)]; },
+        [](double f, double g) { return std::min(f, g); });
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/grow_state.h"
+
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell::growth
+{
+
+namespace
+{
+
+Box bounds_of(const std::vector<Vec3d>& points)
+{
+    Box b;
+    for (const Vec3d& p : points)
+        b.add(p);
+    return b;
+}
+
+std::vector<int> first_of_each_component(const Connectivity& c)
+{
+    std::vector<int> witness;
+    std::vector<std::uint8_t> seen(static_cast<std::size_t>(c.components), 0);
+    for (int v = 0; v < c.vertices; ++v) {
+        if (seen[c.component[v]] || star(c, v).size() == 0)
+            continue;
+        seen[c.component[v]] = 1;
+        witness.push_back(v);
+    }
+    return witness;
+}
+
+double longest_finite(const std::vector<double>& lengths)
+{
+    double longest = 0;
+    for (const double length : lengths)
+        longest = std::isfinite(length) ? std::max(longest, length) : longest;
+    return longest;
+}
+
+} // namespace
+
+GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
+                     const std::vector<double>& cap)
+{
+    GrowState s;
+    s.mesh = &mesh;
+    s.a.assign(outer.begin(), outer.end());
+    s.b = s.home = s.a;
+    s.cap = cap;
+    s.pinned.assign(outer.size(), 0);
+    s.reach.assign(outer.size(), 0.0);
+    s.order.assign(mesh.faces.size(), 0);
+    std::vector<FloatBox> boxes(mesh.faces.size());
+    for_each_index(
+        boxes.size(),
+        [&](std::size_t f) { boxes[f] = float_box_of(outer_corners(s, static_cast<int>(f))); },
+        256);
+    s.outer_tree.build(std::move(boxes));
+    const Box all = bounds_of(s.a);
+    s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
+    double largest = 0;
+    for (const Vec3d& p : s.a)
+        for (int k = 0; k < 3; ++k)
+            largest = std::max(largest, std::abs(p[k]));
+    s.bounded = volume6(s.a, mesh.faces) > 0;
+    // Inner points of a bounded side lie within the surface's own box, others beyond it.
+    if (!s.bounded)
+        largest += longest_finite(cap);
+    s.rounding = largest * double(std::numeric_limits<float>::epsilon());
+    s.witness = first_of_each_component(mesh);
+    return s;
+}
+
+double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
+{
+    if (p.empty())
+        return 0;
+    const Vec3d origin = p[0];
+    double sum = 0;
+    for (const Vec3I& f : faces)
+        sum += (p[f[0]] - origin).dot((p[f[1]] - origin).cross(p[f[2]] - origin));
+    return sum;
+}
+
+Vec3d inner_volume6_gradient(const GrowState& s, int v)
+{
+    const Connectivity& m = *s.mesh;
+    Vec3d sum(0.0);
+    for (const FaceCorner& at : star(m, v)) {
+        const Vec3d u = s.b[m.corner(at.face, (at.local + 1) % 3)] - s.b[v];
+        const Vec3d w = s.b[m.corner(at.face, (at.local + 2) % 3)] - s.b[v];
+        sum += u.cross(w);
+    }
+    return sum;
+}
+
+double fill_of(const GrowState& s)
+{
+    const double ratio = volume6(s.b, s.mesh->faces) / volume6(s.a, s.mesh->faces);
+    return s.bounded ? 1 - ratio : ratio - 1;
+}
+
+} // namespace vdb_shell::growth

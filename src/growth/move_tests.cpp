@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/move_tests.h"
+
+#include "core/orient3d_filter.h"
+#include "growth/prism_lanes.h"
+#include "shell/pillar.h"
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+/// The tets of a prism that hold b_l, under the state's present rule.
+Slice<TetFromInner> tets_with_inner(const GrowState& s, int f, int l)
+{
+    if (!s.twelve)
+        return chosen_tets_with_inner(s, f, l);
+    const TetFromInner* first = tables().from_b[kTwelve][l].data();
+    return {first, first + tables().from_b_count[kTwelve][l]};
+}
+
+bool positive(const GrowState& s, int f, const OrientedTet& tet)
+{
+    return dropped(s, f, tet.pillar) ||
+           orient(corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
+                  corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])) > 0;
+}
+
+VDB_SHELL_LANES_PART void filter(const Bases& bases, DoubleLanes& room)
+{
+    const auto& [p, u, w] = bases;
+    DoubleLanes det{}, permanent{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        const DoubleLanes left = u[i] * w[j], right = u[j] * w[i];
+        det -= p[k] * (left - right);
+        const DoubleLanes sum = (left < 0 ? -left : left) + (right < 0 ? -right : right);
+        permanent += (p[k] < 0 ? -p[k] : p[k]) * sum;
+    }
+    room = det - (exact::kOrientError * permanent + exact::kUnderflowGuard);
+}
+
+/// Whether doubles show for certain that the tets of all pillars of a prism that hold its inner
+/// point `at` are positive with it at x: exact::orient3d_filter, four tets at a time.
+VDB_SHELL_TWO_TARGETS bool surely_positive(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+{
+    std::array<Bases, 2> half;
+    bases_around(s, at, x, half);
+    DoubleLanes room, other;
+    filter(half[0], room), filter(half[1], other);
+    room = other < room ? other : room;
+    return room[0] > 0 && room[1] > 0 && room[2] > 0 && room[3] > 0;
+}
+
+bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
+{
+    const auto& [a, b, c] = base;
+    const int s0 = orient(a, b, c, p), s1 = orient(a, c, apex, p), s2 = orient(a, apex, b, p),
+              s3 = orient(b, apex, c, p);
+    return (s0 >= 0 && s1 >= 0 && s2 >= 0 && s3 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0 && s3 <= 0);
+}
+
+/// Inner triangle `moved` against those around its corner u that hold neither v nor `done`, whose
+/// triangles have been looked at; where u is pinned also against the outer ones.
+bool kin_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int u, int done)
+{
+    const Connectivity& m = *s.mesh;
+    for (const FaceCorner& at : star(m, u)) {
+        const int g = at.face;
+        if (!m.incident_to(g, v) && (done < 0 || !m.incident_to(g, done)) && moved.meets_inner(g))
+            return false;
+        if (s.pinned[u] && moved.meets_outer(g))
+            return false;
+    }
+    return true;
+}
+
+/// The corners of an inner triangle with b_v = x.
+Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
+{
+    Corners corners = inner_corners(s, f);
+    for (int k = 0; k < 3; ++k)
+        if (s.mesh->corner(f, k) == v)
+            corners[k] = x;
+    return corners;
+}
+
+/// The inner triangles around v against the others around u, which is v or beside it, pair by pair.
+bool clear_around_by_pairs(const GrowState& s, int u, int v, const Vec3d& x)
+{
+    for (const FaceCorner& at : star(*s.mesh, u)) {
+        const int f = at.face;
+        if (!s.mesh->incident_to(f, v))
+            continue;
+        const Corners of_f = corners_with(s, f, v, x);
+        for (const FaceCorner& other : star(*s.mesh, u))
+            if (other.face != f &&
+                improper_contact(of_f, inner_ids(s, f), corners_with(s, other.face, v, x),
+                                 inner_ids(s, other.face)))
+                return false;
+    }
+    return true;
+}
+
+/// The same; nearly always doubles show it for all of them at once.
+bool clear_around(const GrowState& s, int u, int v, const Vec3d& x)
+{
+    Fan fan;
+    if (!set_inner_fan(s, u, v, x, fan))
+        return clear_around_by_pairs(s, u, v, x);
+    if (fan.surely_embedded())
+        return true;
+    const VertexTriangles::Range rim = s.mesh->rims.of(static_cast<std::size_t>(u));
+    const std::size_t count = rim.size();
+    const auto vertex = [&](std::size_t i) {
+        return static_cast<int>(rim.first[i < count ? i : 0]);
+    };
+    const auto inner = [&](int w) -> const Vec3d& { return w == v ? x : s.b[w]; };
+    const auto ids = [&](std::size_t i) -> CornerIds { return {u, vertex(i), vertex(i + 1)}; };
+    const auto corners = [&](std::size_t i) -> Corners {
+        return {inner(u), inner(vertex(i)), inner(vertex(i + 1))};
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        if (u != v && vertex(i) != v && vertex(i + 1) != v)
+            continue;
+        const std::uint32_t apart = fan.surely_apart_from(i);
+        for (std::size_t j = u == v ? i + 1 : 0; j < count; ++j)
+            if (i != j && (apart >> j & 1U) == 0 &&
+                improper_contact(corners(i), ids(i), corners(j), ids(j)))
+                return false;
+    }
+    return true;
+}
+
+/// kin_clear_at beside a pin, where kin are outer triangles too.
+bool kin_clear_beside_a_pin(const GrowState& s, int v, const Vec3d& x)
+{
+    const Connectivity& m = *s.mesh;
+    const Slice<FaceCorner> fan = star(m, v);
+    for (const FaceCorner& at : fan) {
+        const InnerTriangle moved(s, at, x);
+        for (const FaceCorner& other : fan)
+            if (other.face > at.face && moved.meets_inner(other.face, moved_corners(s, other, x)))
+                return false;
+        const int next = m.corner(at.face, (at.local + 1) % 3);
+        for (const int u : {next, m.corner(at.face, (at.local + 2) % 3)})
+            if (!kin_clear_around(s, v, moved, u, u == next ? -1 : next))
+                return false;
+    }
+    return true;
+}
+
+} // namespace
+
+bool set_inner_fan(const GrowState& s, int u, int v, const Vec3d& x, Fan& fan)
+{
+    const VertexTriangles::Range rim = s.mesh->rims.of(static_cast<std::size_t>(u));
+    if (rim.size() < 3 || rim.size() > Fan::kMost)
+        return false;
+    const auto inner = [&](int w) -> const Vec3d& { return w == v ? x : s.b[w]; };
+    fan.set(inner(u), rim.size(),
+            [&](std::size_t i) -> const Vec3d& { return inner(static_cast<int>(rim.first[i])); });
+    return true;
+}
+
+Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+{
+    Corners corners = inner_corners(s, at.face);
+    corners[at.local] = x;
+    return corners;
+}
+
+bool tets_positive_at(const GrowState& s, int v, const Vec3d& x)
+{
+    for (const FaceCorner& at : star(*s.mesh, v)) {
+        if (s.twelve && surely_positive(s, at, x))
+            continue;
+        for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local))
+            if (!dropped(s, at.face, tet.pillar) &&
+                orient(corner_of(s, at.face, tet.base[0]), corner_of(s, at.face, tet.base[1]),
+                       corner_of(s, at.face, tet.base[2]), x) <= 0)
+                return false;
+    }
+    return true;
+}
+
+bool within_cap(const GrowState& s, int v, const Vec3d& x)
+{
+    return !exact::longer_than(Vec3s(s.a[v]), Vec3s(x), s.cap[v]);
+}
+
+Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length)
+{
+    const Vec3d x = rounded(s.a[v] + std::min(length, s.cap[v]) * unit);
+    return within_cap(s, v, x) ? x : Vec3d(end_of_pillar(Vec3s(s.a[v]), unit, s.cap[v]));
+}
+
+Vec3d capped(const GrowState& s, int v, const Vec3d& x)
+{
+    const Vec3d point = rounded(x);
+    if (within_cap(s, v, point))
+        return point;
+    const Vec3d arm = x - s.a[v];
+    return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
+}
+
+bool swallows_component(const GrowState& s, int v, const Vec3d& x)
+{
+    const Connectivity& m = *s.mesh;
+    if (m.components < 2)
+        return false;
+    for (const FaceCorner& at : star(m, v)) {
+        const Vec3d& p = s.b[m.corner(at.face, (at.local + 1) % 3)];
+        const Vec3d& q = s.b[m.corner(at.face, (at.local + 2) % 3)];
+        Box swept = box_of({s.b[v], p, q});
+        swept.add(x);
+        for (const int w : s.witness) {
+            if (m.component[w] == m.component[v])
+                continue;
+            for (const Vec3d* e : {&s.a[w], &s.b[w]})
+                if (swept.contains(*e) && in_tet({s.b[v], x, p}, q, *e))
+                    return true;
+        }
+    }
+    return false;
+}
+
+bool holds_component(const GrowState& s, int f)
+{
+    const Connectivity& m = *s.mesh;
+    if (m.components < 2)
+        return false;
+    Box box = box_of(outer_corners(s, f));
+    box.add(box_of(inner_corners(s, f)));
+    for (const int w : s.witness) {
+        if (m.component[w] == m.component[m.corner(f, 0)])
+            continue;
+        for (const Vec3d* e : {&s.a[w], &s.b[w]})
+            for (const OrientedTet& tet : tables().three[s.order[f]])
+                if (box.contains(*e) && !dropped(s, f, tet.pillar) &&
+                    in_tet({corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
+                            corner_of(s, f, tet.corner[2])},
+                           corner_of(s, f, tet.corner[3]), *e))
+                    return true;
+    }
+    return false;
+}
+
+bool split_positive(const GrowState& s, int f, int order)
+{
+    for (const OrientedTet& tet : tables().three[order])
+        if (!positive(s, f, tet))
+            return false;
+    return true;
+}
+
+bool prism_valid(const GrowState& s, int f)
+{
+    if (!s.twelve && !split_positive(s, f, s.order[f]))
+        return false;
+    if (s.twelve)
+        for (const OrientedTet& tet : tables().twelve)
+            if (!positive(s, f, tet))
+                return false;
+    // With a pin, no tet that is left need hold the whole inner triangle.
+    const bool pins = dropped(s, f, 0) || dropped(s, f, 1) || dropped(s, f, 2);
+    const Corners b = inner_corners(s, f);
+    return !pins || !exact::collinear(Vec3s(b[0]), Vec3s(b[1]), Vec3s(b[2]));
+}
+
+bool inner_triangle_clear(const GrowState& s, int f)
+{
+    const InnerTriangle triangle(s, f);
+    const FloatBox box = float_box_of(triangle.corners());
+    bool clear = true;
+    s.inner_tree.for_each_overlap(
+        box, [&](int g) { clear = clear && (g == f || !triangle.meets_inner(g)); });
+    s.outer_tree.for_each_overlap(box, [&](int g) { clear = clear && !triangle.meets_outer(g); });
+    return clear;
+}
+
+InnerTriangle::InnerTriangle(const GrowState& s, int f)
+    : s_(s), face_(f), corners_(inner_corners(s, f)), plane_(corners_[0], corners_[1], corners_[2])
+{
+}
+
+InnerTriangle::InnerTriangle(const GrowState& s, const FaceCorner& at, const Vec3d& x)
+    : s_(s), face_(at.face), corners_(moved_corners(s, at, x)),
+      plane_(corners_[0], corners_[1], corners_[2])
+{
+}
+
+bool InnerTriangle::meets_inner(int g, const Corners& c) const
+{
+    // With all its other corners on one side of this one's plane it cannot; what that leaves open
+    // goes to the exact test.
+    int first = 0;
+    bool one_side = true;
+    for (int k = 0; k < 3; ++k) {
+        if (s_.mesh->incident_to(face_, s_.mesh->corner(g, k)))
+            continue;
+        const int side = plane_.side(c[k]);
+        one_side = one_side && side != 0 && (first == 0 || side == first);
+        first = side;
+    }
+    return !one_side && improper_contact(corners_, inner_ids(s_, face_), c, inner_ids(s_, g));
+}
+
+bool InnerTriangle::meets_outer(int g) const
+{
+    return improper_contact(corners_, inner_ids(s_, face_), outer_corners(s_, g), outer_ids(s_, g));
+}
+
+void tet_bounds(const GrowState& s, int v, Bounds& out)
+{
+    const Connectivity& m = *s.mesh;
+    for (const FaceCorner& at : star(m, v)) {
+        const int next = m.corner(at.face, (at.local + 1) % 3);
+        const int last = m.corner(at.face, (at.local + 2) % 3);
+        if (s.twelve && !s.pinned[next] && !s.pinned[last]) {
+            out.add_prism({s.a[v], s.a[next], s.a[last], s.b[next], s.b[last]});
+            continue;
+        }
+        for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local)) {
+            if (dropped(s, at.face, tet.pillar))
+                continue;
+            const Vec3d& p = corner_of(s, at.face, tet.base[0]);
+            const Vec3d u = corner_of(s, at.face, tet.base[1]) - p;
+            const Vec3d w = corner_of(s, at.face, tet.base[2]) - p;
+            out.add(u.cross(w), p);
+        }
+    }
+}
+
+bool beside_a_pin(const GrowState& s, int v)
+{
+    const Slice<int> around = neighbours(*s.mesh, v);
+    return std::any_of(around.begin(), around.end(), [&](int u) { return s.pinned[u] != 0; });
+}
+
+bool inner_fan_surely_embedded(const GrowState& s, int u)
+{
+    Fan fan;
+    return set_inner_fan(s, u, u, s.b[u], fan) && fan.surely_embedded();
+}
+
+bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
+{
+    if (beside_a_pin(s, v))
+        return kin_clear_beside_a_pin(s, v, x);
+    // Triangles with a common corner are both in the fan of that corner.
+    const auto clear = [&](int u) { return clear_around(s, u, v, x); };
+    const Slice<int> around = neighbours(*s.mesh, v);
+    return clear(v) && std::all_of(around.begin(), around.end(), clear);
+}
+
+} // namespace vdb_shell::growth

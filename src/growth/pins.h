@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "growth/grow_state.h"
+
+namespace vdb_shell::growth
+{
+
+/// Gives pinned vertices a pillar again where the exact tests allow one: a start that is thin may
+/// have been lost in the rounding of the coordinates, or neighbours in the way have moved. In the
+/// order of the indices, each vertex tried a bounded number of times. Returns how many were
+/// released. Precondition: the inner tree has been built; its boxes are left as this needs them.
+int release_pins(GrowState& s, const std::vector<double>& visibility);
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/growth/refine.h"
+
+#include "core/parallel.h"
+#include "growth/void_volumes.h"
+#include "mesh/topology.h"
+#include "mesh/triangle_area.h"
+#include "vdb_shell/core/error.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+
+std::vector<double> areas_of(const PrismShell& shell)
+{
+    std::vector<double> areas(shell.triangles.size());
+    for (std::size_t t = 0; t < areas.size(); ++t)
+        areas[t] = triangle_area(shell.outer, shell.triangles[t]);
+    return areas;
+}
+
+/// By how much each pillar is shorter than its neighbours' mean, where the shape holds it back.
+std::vector<double> shortfalls(const PrismShell& shell)
+{
+    const VertexTriangles around = triangles_around_vertices(shell.outer.size(), shell.triangles);
+    std::vector<double> missing(shell.outer.size());
+    for_each_index(missing.size(), [&](std::size_t v) {
+        // More vertices would not let it grow where it is the user who holds it.
+        if (shell.stop[v] == StopReason::none || shell.stop[v] == StopReason::thickness)
+            return;
+        double sum = 0;
+        std::size_t count = 0;
+        for (const std::uint32_t t : around.around(v))
+            for (int k = 0; k < 3; ++k)
+                if (shell.triangles[t][k] != v)
+                    sum += shell.length(shell.triangles[t][k]), ++count;
+        missing[v] = count ? std::max(0.0, sum / double(count) - shell.length(v)) : 0.0;
+    });
+    return missing;
+}
+
+std::vector<double> contact_worth(const PrismShell& shell)
+{
+    const std::vector<double> missing = shortfalls(shell);
+    std::vector<double> worth = areas_of(shell);
+    for (std::size_t t = 0; t < worth.size(); ++t) {
+        const Vec3I& c = shell.triangles[t];
+        worth[t] *= (missing[c[0]] + missing[c[1]] + missing[c[2]]) / 3;
+    }
+    return worth;
+}
+
+} // namespace
+
+const char* name_of(RefineEnd end)
+{
+    switch (end) {
+    case RefineEnd::target_fill:
+        return "target_fill";
+    case RefineEnd::max_tets:
+        return "max_tets";
+    case RefineEnd::small_gain:
+        return "small_gain";
+    case RefineEnd::nothing:
+        return "nothing";
+    case RefineEnd::rounds:
+        break;
+    }
+    return "rounds";
+}
+
+std::vector<double> refinement_worth(const PrismShell& shell, RefineBy by)
+{
+    switch (by) {
+    case RefineBy::voids:
+        return void_volumes(shell);
+    case RefineBy::area:
+        return areas_of(shell);
+    case RefineBy::contacts:
+        break;
+    }
+    return contact_worth(shell);
+}
+
+std::vector<std::uint32_t> triangles_to_cut(const std::vector<double>& worth, double share)
+{
+    std::vector<std::uint32_t> order(worth.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return worth[a] > worth[b]; });
+    const double wanted = share * std::accumulate(worth.begin(), worth.end(), 0.0);
+    double sum = 0;
+    std::size_t count = 0;
+    while (count < order.size() && worth[order[count]] > 0 && sum < wanted)
+        sum += worth[order[count++]];
+    order.resize(count);
+    return order;
+}
+
+double RefineReport::gain_per_tet(std::size_t round) const
+{
+    if (round == 0 || rounds[round].tets <= rounds[round - 1].tets)
+        return 0;
+    return (rounds[round].fill - rounds[round - 1].fill) /
+           double(rounds[round].tets - rounds[round - 1].tets);
+}
+
+void require_sensible(const RefineOptions& options)
+{
+    const auto require = [](bool sensible, const std::string& what) {
+        if (!sensible)
+            throw InvalidOption("refine: " + what);
+    };
+    require(options.rounds >= 0,
+            "rounds is " + std::to_string(options.rounds) + ", must not be negative");
+    require(options.share > 0 && options.share <= 1,
+            "share is " + std::to_string(options.share) + ", must be over 0 and at most 1");
+    require(options.min_gain >= 0 && options.min_gain <= 1,
+            "min_gain is " + std::to_string(options.min_gain) + ", must be 0 to 1");
+    require(!options.target_fill || (*options.target_fill > 0 && *options.target_fill <= 1),
+            "target_fill is " + std::to_string(options.target_fill.value_or(0)) +
+                ", must be over 0 and at most 1");
+}
+
+} // namespace vdb_shell

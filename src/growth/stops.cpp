@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/stops.h"
+
+#include "core/parallel.h"
+#include "growth/move_tests.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+constexpr double kProbe = 1e-3; ///< share of the diagonal
+constexpr double kAtCap =
+    1e-6; ///< relative; the rounding of the coordinates stops short of the cap
+
+struct Near {
+    BoxTree::Near inner, outer;
+};
+
+/// What b_v itself goes through on its way to x: most that are held up are held up by that, and it
+/// is found sooner than what the triangles around it meet.
+StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
+{
+    const FloatBox box = float_box(box_of({s.b[v], x, x}));
+    StopReason met = StopReason::none;
+    s.inner_tree.for_each_overlap(box, [&](int g) {
+        if (met == StopReason::none && !s.mesh->incident_to(g, v) &&
+            segment_touches_triangle(s.b[v], x, inner_corners(s, g)))
+            met = StopReason::inner_contact;
+    });
+    s.outer_tree.for_each_overlap(box, [&](int g) {
+        if (met == StopReason::none && segment_touches_triangle(s.b[v], x, outer_corners(s, g)))
+            met = StopReason::outer_contact;
+    });
+    return met;
+}
+
+/// What the triangles around v meet first, with b_v = x.
+StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
+{
+    const Slice<FaceCorner> fan = star(*s.mesh, v);
+    // At a pin kin are outer triangles too.
+    const bool kin_apart = !beside_a_pin(s, v);
+    if (kin_apart && !kin_clear_at(s, v, x))
+        return StopReason::inner_contact;
+    Box all;
+    for (const FaceCorner& at : fan)
+        all.add(box_of(moved_corners(s, at, x)));
+    s.inner_tree.list_overlaps(float_box(all), near.inner);
+    s.outer_tree.list_overlaps(float_box(all), near.outer);
+    for (const FaceCorner& at : fan) {
+        const InnerTriangle moved(s, at, x);
+        const FloatBox box = float_box_of(moved.corners());
+        for (const FaceCorner& other : fan)
+            if (!kin_apart && other.face > at.face &&
+                moved.meets_inner(other.face, moved_corners(s, other, x)))
+                return StopReason::inner_contact;
+        const auto asked = [&](int g) {
+            return s.mesh->incident_to(g, v) || (kin_apart && s.mesh->share_a_corner(at.face, g));
+        };
+        if (near.inner.any_overlap(box, [&](int g) { return !asked(g) && moved.meets_inner(g); }))
+            return StopReason::inner_contact;
+        if (near.outer.any_overlap(box, [&](int g) { return moved.meets_outer(g); }))
+            return StopReason::outer_contact;
+    }
+    return StopReason::none;
+}
+
+StopReason reason_at(const GrowState& s, int v, double step, Near& near)
+{
+    if (s.pinned[v])
+        return StopReason::pinned;
+    const Vec3d arm = s.b[v] - s.a[v];
+    const double length = arm.length(), room = s.cap[v] - length;
+    if (std::isfinite(room) && room <= kAtCap * s.cap[v] + s.rounding)
+        return StopReason::thickness;
+    const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
+    if (!tets_positive_at(s, v, x))
+        return StopReason::prism;
+    const StopReason met = met_on_way(s, v, x);
+    return met == StopReason::none ? contact_at(s, v, x, near) : met;
+}
+
+} // namespace
+
+std::vector<StopReason> probe_stops(GrowState& s)
+{
+    const double step = kProbe * s.diagonal;
+    std::vector<FloatBox> boxes(s.mesh->faces.size());
+    for_each_index(boxes.size(), [&](std::size_t f) {
+        boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
+    });
+    s.inner_tree.refit(boxes);
+    std::vector<StopReason> stop(s.b.size());
+    for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
+        Near near;
+        for (std::size_t v = begin; v < end; ++v)
+            stop[v] = reason_at(s, static_cast<int>(v), step, near);
+    });
+    return stop;
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "growth/grow_state.h"
+#include "vdb_shell/step/line_step.h"
+
+namespace vdb_shell::growth
+{
+
+/// What holds each vertex back, asked with one short step along its pillar: thickness, prism,
+/// inner_contact, outer_contact, pinned; none where the step would be allowed. Rebuilds the broad
+/// phase.
+std::vector<StopReason> probe_stops(GrowState& s);
+
+} // namespace vdb_shell::growth

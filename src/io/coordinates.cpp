@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/coordinates.h"
+
+#include "vdb_shell/mesh/check_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+std::string digits_of(double value)
+{
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return {digits.data(), end};
+}
+
+/// Precondition: parse_coordinate took the word.
+double exact_value(std::string_view word)
+{
+    if (word[0] == '+')
+        word.remove_prefix(1);
+    double value = 0;
+    std::from_chars(word.data(), word.data() + word.size(), value);
+    return value;
+}
+
+} // namespace
+
+Coordinates Coordinates::first_look()
+{
+    Coordinates coordinates;
+    coordinates.limited_ = false;
+    return coordinates;
+}
+
+Coordinates::Coordinates(const Placement& placement) : placement_(placement)
+{
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    box_ = {openvdb::Vec3d(kInfinity), openvdb::Vec3d(-kInfinity)};
+}
+
+void Coordinates::see(double exact, int axis)
+{
+    box_.low[axis] = std::min(box_.low[axis], exact);
+    box_.high[axis] = std::max(box_.high[axis], exact);
+}
+
+void Coordinates::require_limit(const std::string& name, const Place& place, double exact,
+                                double value) const
+{
+    if (limited_ && std::abs(value) > kLargestCoordinate)
+        refuse(name, place.text() + ": the coordinate " + digits_of(exact) +
+                         " is over the limit of " + digits_of(kLargestCoordinate) +
+                         "; --rescale reads the object in a larger unit");
+}
+
+float Coordinates::placed(const std::string& name, const Place& place, double exact, int axis)
+{
+    const double local = (exact - placement_.origin[axis]) / placement_.unit;
+    const float value = checked_coordinate(name, place, local);
+    require_limit(name, place, exact, value);
+    largest_rounding_ = std::max(largest_rounding_, std::abs(local - double(value)));
+    return value;
+}
+
+float Coordinates::from_text(const std::string& name, const Place& place, std::string_view word,
+                             int axis)
+{
+    // Straight from the decimals: by way of double it would be rounded twice.
+    const float nearest = parse_coordinate(name, place, word);
+    const double exact = exact_value(word);
+    see(exact, axis);
+    if (placement_.moves())
+        return placed(name, place, exact, axis);
+    require_limit(name, place, exact, nearest);
+    largest_rounding_ = std::max(largest_rounding_, std::abs(exact - double(nearest)));
+    return nearest;
+}
+
+float Coordinates::from_number(const std::string& name, const Place& place, double value, int axis)
+{
+    checked_coordinate(name, place, value);
+    see(value, axis);
+    return placed(name, place, value, axis);
+}
+
+void Coordinates::pass_on(std::string& stream, std::string_view word, float value) const
+{
+    if (!placement_.moves()) {
+        stream += word;
+        return;
+    }
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    stream.append(digits.data(), end);
+}
+
+} // namespace vdb_shell

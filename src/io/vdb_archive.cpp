@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/vdb_archive.h"
+
+#include "core/parallel.h"
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/Compression.h>
+#include <openvdb/io/DelayedLoadMetadata.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/tree/LeafManager.h>
+
+#include <algorithm>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::FloatGrid;
+using openvdb::FloatTree;
+using openvdb::GridBase;
+using openvdb::io::DelayedLoadMetadata;
+using openvdb::io::StreamMetadata;
+
+using Leaf = FloatTree::LeafNodeType;
+using Leaves = openvdb::tree::LeafManager<const FloatTree>;
+
+/// A stream in memory that OpenVDB finds its settings on.
+struct Stream {
+    explicit Stream(const StreamMetadata& wanted)
+        : settings(std::make_shared<StreamMetadata>(wanted))
+    {
+        openvdb::io::setStreamMetadataPtr(out, settings);
+    }
+    std::ostringstream out;
+    StreamMetadata::Ptr settings;
+};
+
+/// A grid as it stands in the file, but for its descriptor.
+struct GridBytes {
+    std::string head, topology;
+    std::vector<std::string> buffers;
+
+    std::int64_t buffers_size() const
+    {
+        std::int64_t sum = 0;
+        for (const std::string& part : buffers)
+            sum += std::int64_t(part.size());
+        return sum;
+    }
+};
+
+/// How many bytes of a written leaf precede its compressed values: its mask, the flag that says
+/// what there is of inactive values, and these.
+std::int64_t size_before_values(std::int8_t flag)
+{
+    using namespace openvdb::io;
+    constexpr std::int64_t kMaskBytes = sizeof(Leaf::NodeMaskType), kValueBytes = sizeof(float);
+    std::int64_t size = kMaskBytes + 1;
+    if (flag == NO_MASK_AND_ONE_INACTIVE_VAL || flag == MASK_AND_ONE_INACTIVE_VAL)
+        size += kValueBytes;
+    if (flag == MASK_AND_TWO_INACTIVE_VALS)
+        size += 2 * kValueBytes;
+    if (flag == MASK_AND_NO_INACTIVE_VALS || flag == MASK_AND_ONE_INACTIVE_VAL ||
+        flag == MASK_AND_TWO_INACTIVE_VALS)
+        size += kMaskBytes;
+    return size;
+}
+
+/// What LeafNode::writeBuffers writes; that one sorts out active values voxel by voxel even where
+/// all are active, as in most leaves of a fat solid.
+void write_leaf(std::ostream& out, const Leaf& leaf, const StreamMetadata& settings)
+{
+    if (!leaf.isDense() || settings.halfFloat()) {
+        leaf.writeBuffers(out, settings.halfFloat());
+        return;
+    }
+    leaf.valueMask().save(out);
+    out.put(char(openvdb::io::NO_MASK_OR_INACTIVE_VALS));
+    openvdb::io::writeData(out, leaf.buffer().data(), Leaf::SIZE, settings.compression());
+}
+
+/// Leaves `begin` to `end`, and what a reader wants to know about them before it loads them.
+std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
+                       const StreamMetadata& settings, DelayedLoadMetadata& sizes)
+{
+    Stream stream(settings);
+    std::vector<std::size_t> starts;
+    for (std::size_t i = begin; i < end; ++i) {
+        starts.push_back(std::size_t(stream.out.tellp()));
+        write_leaf(stream.out, leaves.leaf(i), settings);
+    }
+    starts.push_back(std::size_t(stream.out.tellp()));
+    std::string bytes = stream.out.str();
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t start = starts[i - begin], next = starts[i - begin + 1];
+        const auto flag = std::int8_t(bytes[start + sizeof(Leaf::NodeMaskType)]);
+        sizes.setMask(i, flag);
+        // No values as half floats take no bytes; OpenVDB counts those of their size all the same.
+        constexpr std::int64_t kSizeBytes = sizeof(std::int64_t);
+        sizes.setCompressedSize(
+            i, std::max(std::int64_t(next - start) - size_before_values(flag), kSizeBytes));
+    }
+    return bytes;
+}
+
+/// The buffers of all leaves in parts, in the order of the tree.
+std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
+                                       DelayedLoadMetadata& sizes)
+{
+    const Leaves leaves(grid.constTree());
+    const std::size_t count = leaves.leafCount();
+    sizes.resizeMask(count);
+    sizes.resizeCompressedSize(count);
+    constexpr std::size_t kLeavesInPart = 256;
+    std::vector<std::string> parts((count + kLeavesInPart - 1) / kLeavesInPart);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t i) {
+            const std::size_t begin = i * kLeavesInPart;
+            parts[i] =
+                leaf_bytes(leaves, begin, std::min(begin + kLeavesInPart, count), settings, sizes);
+        },
+        1);
+    return parts;
+}
+
+/// Gives access to the parts of OpenVDB's writer.
+class Archive : public openvdb::io::Archive
+{
+public:
+    Archive()
+    {
+        // What Houdini writes.
+        setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+    }
+
+    void write_start(std::ostream& out, const openvdb::MetaMap& metadata, std::size_t grids) const
+    {
+        writeHeader(out, /*seekable=*/true);
+        metadata.writeMeta(out);
+        const auto count = std::int32_t(grids);
+        out.write(reinterpret_cast<const char*>(&count), sizeof count);
+    }
+
+    GridBytes bytes_of(const GridBase& grid) const
+    {
+        StreamMetadata settings;
+        settings.setHalfFloat(grid.saveFloatAsHalf());
+        settings.gridMetadata() = static_cast<const openvdb::MetaMap&>(grid);
+        Stream head(settings);
+        setGridCompression(head.out, grid);
+        GridBytes bytes;
+        const GridBase::Ptr described = openvdb::ConstPtrCast<GridBase>(grid.copyGrid());
+        if (grid.isType<FloatGrid>()) {
+            // Writing the topology notes the background, which the buffers need.
+            Stream topology(*head.settings);
+            grid.writeTopology(topology.out);
+            bytes.topology = topology.out.str();
+            DelayedLoadMetadata sizes;
+            bytes.buffers =
+                float_buffers(static_cast<const FloatGrid&>(grid), *topology.settings, sizes);
+            described->insertMeta(GridBase::META_FILE_DELAYED_LOAD, sizes);
+        } else {
+            Stream all(*head.settings);
+            grid.writeTopology(all.out);
+            const auto size = std::size_t(all.out.tellp());
+            grid.writeBuffers(all.out);
+            bytes.topology = all.out.str();
+            bytes.buffers.push_back(bytes.topology.substr(size));
+            bytes.topology.resize(size);
+        }
+        described->addStatsMetadata();
+        described->insertMeta(GridBase::META_FILE_COMPRESSION,
+                              openvdb::StringMetadata(
+                                  openvdb::io::compressionToString(head.settings->compression())));
+        described->writeMeta(head.out);
+        grid.writeTransform(head.out);
+        bytes.head = head.out.str();
+        return bytes;
+    }
+};
+
+void write_bytes(std::ostream& out, const std::string& bytes)
+{
+    out.write(bytes.data(), std::streamsize(bytes.size()));
+}
+
+void write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
+{
+    openvdb::io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
+    descriptor.writeHeader(out);
+    constexpr std::int64_t kPositionsSize = 3 * sizeof(std::int64_t);
+    descriptor.setGridPos(std::int64_t(out.tellp()) + kPositionsSize);
+    descriptor.setBlockPos(descriptor.getGridPos() +
+                           std::int64_t(bytes.head.size() + bytes.topology.size()));
+    descriptor.setEndPos(descriptor.getBlockPos() + bytes.buffers_size());
+    descriptor.writeStreamPos(out);
+    write_bytes(out, bytes.head);
+    write_bytes(out, bytes.topology);
+    for (const std::string& part : bytes.buffers)
+        write_bytes(out, part);
+}
+
+} // namespace
+
+void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
+                       const openvdb::MetaMap& metadata)
+{
+    const Archive archive;
+    std::ofstream out(path, std::ios::binary);
+    archive.write_start(out, metadata, grids.size());
+    std::mutex writing;
+    std::vector<std::optional<GridBytes>> ready(grids.size());
+    std::size_t written = 0;
+    // The last first: it is the tets' where there are points, which one thread writes the longest;
+    // the others are on their way to the disk, and gone, when that one is done.
+    for_each_index(
+        grids.size(),
+        [&](std::size_t i) {
+            const std::size_t last = grids.size() - 1 - i;
+            GridBytes bytes = archive.bytes_of(*grids[last]);
+            // Freed behind the lock: OpenVDB frees on all threads, and one that waits for the
+            // others may take up the next grid here meanwhile.
+            openvdb::GridPtrVec done;
+            const std::lock_guard<std::mutex> lock(writing);
+            ready[last] = std::move(bytes);
+            for (; written < grids.size() && ready[written]; ++written) {
+                write_grid(out, *grids[written], *ready[written]);
+                ready[written].reset();
+                done.push_back(std::move(grids[written]));
+            }
+        },
+        1);
+    out.close();
+    if (!out)
+        throw openvdb::IoError("the disk is full or the file system refused the data");
+}
+
+} // namespace vdb_shell

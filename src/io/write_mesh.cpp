@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/atomic_file.h"
+#include "io/file_scan.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/io/read_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+#include <ostream>
+
+namespace vdb_shell
+{
+namespace
+{
+
+// OpenMesh's writers want a half-edge mesh, which cannot hold every mesh, and print OBJ and OFF
+// coordinates with a fixed number of decimals.
+
+/// The shortest decimals that give the same number when read.
+template <typename Vec> void put_decimals(std::ostream& out, const Vec& point)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        std::array<char, 32> digits{};
+        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), point[axis]);
+        if (axis > 0)
+            out.put(' ');
+        out.write(digits.data(), end.ptr - digits.data());
+    }
+    out.put('\n');
+}
+
+void put(std::ostream& out, const openvdb::Vec3s& point, const Placement& placement)
+{
+    if (placement.moves())
+        put_decimals(out, placement.in_file(point));
+    else
+        put_decimals(out, point);
+}
+
+void put_bits(std::ostream& out, std::uint32_t value)
+{
+    for (int byte = 0; byte < 4; ++byte)
+        out.put(static_cast<char>(value >> (8 * byte) & 0xFF));
+}
+
+void put_bits(std::ostream& out, const openvdb::Vec3s& point)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        const float value = point[axis];
+        std::uint32_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        put_bits(out, bits);
+    }
+}
+
+void put_bits(std::ostream& out, const openvdb::Vec3d& point)
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        const double value = point[axis];
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        put_bits(out, static_cast<std::uint32_t>(bits));
+        put_bits(out, static_cast<std::uint32_t>(bits >> 32));
+    }
+}
+
+void write_obj(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
+{
+    for (const openvdb::Vec3s& point : mesh.points) {
+        out << "v ";
+        put(out, point, placement);
+    }
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        out << "f " << std::to_string(t[0] + 1) << ' ' << std::to_string(t[1] + 1) << ' '
+            << std::to_string(t[2] + 1) << '\n';
+}
+
+void write_off(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
+{
+    out << "OFF\n"
+        << std::to_string(mesh.points.size()) << ' ' << std::to_string(mesh.triangles.size())
+        << " 0\n";
+    for (const openvdb::Vec3s& point : mesh.points)
+        put(out, point, placement);
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        out << "3 " << std::to_string(t[0]) << ' ' << std::to_string(t[1]) << ' '
+            << std::to_string(t[2]) << '\n';
+}
+
+void write_ply(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
+{
+    const bool moves = placement.moves();
+    out << plain_ply_header("binary_little_endian", moves ? "double" : "float", mesh.points.size(),
+                            mesh.triangles.size());
+    for (const openvdb::Vec3s& point : mesh.points)
+        moves ? put_bits(out, placement.in_file(point)) : put_bits(out, point);
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        put_bits(out, 3);
+        for (int corner = 0; corner < 3; ++corner)
+            put_bits(out, t[corner]);
+    }
+}
+
+void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
+{
+    std::array<char, 80> header{};
+    std::strcpy(header.data(), "vdb_shell");
+    out.write(header.data(), header.size());
+    put_bits(out, static_cast<std::uint32_t>(mesh.triangles.size()));
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        const openvdb::Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
+        openvdb::Vec3d normal = (b - a).cross(c - a);
+        normal.normalize();
+        put_bits(out, openvdb::Vec3s(normal));
+        for (int corner = 0; corner < 3; ++corner)
+            put_bits(out, mesh.points[t[corner]]);
+        out.put(0).put(0);
+    }
+}
+
+} // namespace
+
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                const Placement& placement)
+{
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const auto write = extension == ".obj"   ? write_obj
+                       : extension == ".off" ? write_off
+                       : extension == ".ply" ? write_ply
+                       : extension == ".stl" ? write_stl
+                                             : nullptr;
+    if (!write)
+        throw InvalidOption(path.string() + ": the extension \"" + extension +
+                            "\" is none of the mesh formats .obj, .ply, .off, .stl");
+    if (extension == ".stl" && placement.moves())
+        throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
+                                            "object stands; write .obj, .off or .ply");
+    write_stream_atomically(path, [&](std::ostream& out) { write(out, mesh, placement); });
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/columns.h"
+
+#include "core/parallel.h"
+#include "growth/predicates.h"
+#include "growth/prism.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using growth::OrientedTet;
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+
+constexpr int kMostRounds = 20;
+
+/// Tets of triangle t's prism in layer k that are not positive.
+int bad_tets(const Columns& c, std::size_t k, std::size_t t)
+{
+    const Vec3I& triangle = (*c.triangles)[t];
+    const auto& upper = c.surface[c.upside_down ? k + 1 : k];
+    const auto& lower = c.surface[c.upside_down ? k : k + 1];
+    std::array<Vec3d, 6> corner;
+    std::array<bool, 3> pinned{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t v = triangle[int(i)];
+        pinned[i] = upper[v] == lower[v];
+        corner[i] = Vec3d(upper[v]);
+        corner[i + 3] = Vec3d(lower[v]);
+    }
+    const auto count = [&](const auto& tets) {
+        return int(std::count_if(tets.begin(), tets.end(), [&](const OrientedTet& tet) {
+            return !pinned[std::size_t(tet.pillar)] &&
+                   growth::orient(corner[tet.corner[0]], corner[tet.corner[1]],
+                                  corner[tet.corner[2]], corner[tet.corner[3]]) <= 0;
+        }));
+    };
+    return c.test == PrismTest::twelve_tets ? count(growth::tables().twelve)
+                                            : count(growth::tables().three[c.order[t]]);
+}
+
+/// Bad tets in the two layers that meet in point v of surface j.
+int bad_tets_around(const Columns& c, std::size_t j, std::uint32_t v)
+{
+    int bad = 0;
+    for (const std::uint32_t t : c.around.around(v))
+        bad += bad_tets(c, j - 1, t) + bad_tets(c, j, t);
+    return bad;
+}
+
+/// Per triangle and layer, layer by layer.
+std::vector<std::uint8_t> bad_prisms(const Columns& c)
+{
+    const std::size_t triangles = c.triangles->size();
+    std::vector<std::uint8_t> bad(c.layers() * triangles);
+    for_each_index(bad.size(), [&](std::size_t i) {
+        bad[i] = bad_tets(c, i / triangles, i % triangles) > 0 ? 1 : 0;
+    });
+    return bad;
+}
+
+/// The points between the layers that are corners of bad prisms: by surface, then by vertex.
+std::vector<std::vector<std::uint8_t>> movable_corners(const Columns& c,
+                                                       const std::vector<std::uint8_t>& bad)
+{
+    const std::size_t triangles = c.triangles->size();
+    std::vector<std::vector<std::uint8_t>> corners(
+        c.surface.size(), std::vector<std::uint8_t>(c.surface[0].size(), 0));
+    for (std::size_t i = 0; i < bad.size(); ++i)
+        for (int k = 0; bad[i] && k < 3; ++k)
+            for (const std::size_t j : {i / triangles, i / triangles + 1})
+                corners[j][(*c.triangles)[i % triangles][k]] = 1;
+    return corners;
+}
+
+Vec3d mean_of_neighbours(const Columns& c, std::size_t j, std::uint32_t v)
+{
+    Vec3d sum(0.0);
+    for (const std::uint32_t t : c.around.around(v))
+        for (int k = 0; k < 3; ++k)
+            if ((*c.triangles)[t][k] != v)
+                sum += Vec3d(c.surface[j][(*c.triangles)[t][k]]);
+    return sum / (2.0 * double(c.around.around(v).size()));
+}
+
+/// Where point v of surface j might go, nearest places first: floats next to it, up and down its
+/// pillar, and towards its neighbours.
+std::vector<Vec3s> candidates(const Columns& c, std::size_t j, std::uint32_t v)
+{
+    const Vec3s here = c.surface[j][v];
+    std::vector<Vec3s> places;
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (int code = 0; code < 27; ++code) {
+        Vec3s place = here;
+        for (int axis = 0, digit = code; axis < 3; ++axis, digit /= 3)
+            if (digit % 3 != 0)
+                place[axis] = std::nextafter(place[axis], digit % 3 == 1 ? kInfinity : -kInfinity);
+        places.push_back(place);
+    }
+    const auto towards = [&](const Vec3d& target, double share) {
+        places.emplace_back(Vec3d(here) + share * (target - Vec3d(here)));
+    };
+    const Vec3d near(c.surface[j - 1][v]), far(c.surface[j + 1][v]);
+    const Vec3d mean = mean_of_neighbours(c, j, v);
+    for (const double share : {0.1, 0.25, 0.5, 0.75}) {
+        towards(near, share);
+        towards(far, share);
+        towards(mean, share);
+    }
+    return places;
+}
+
+/// Moves the point to the first of the places with the fewest bad tets around it.
+bool mend_point(Columns& c, std::size_t j, std::uint32_t v)
+{
+    Vec3s& point = c.surface[j][v];
+    // What is pinned from end to end has no place of its own to move to.
+    if (c.surface.front()[v] == c.surface.back()[v])
+        return false;
+    Vec3s best = point;
+    const int before = bad_tets_around(c, j, v);
+    int fewest = before;
+    for (const Vec3s& place : candidates(c, j, v)) {
+        if (fewest == 0)
+            break;
+        point = place;
+        const int bad = bad_tets_around(c, j, v);
+        if (bad < fewest) {
+            fewest = bad;
+            best = place;
+        }
+    }
+    point = best;
+    return fewest < before;
+}
+
+} // namespace
+
+Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
+                    const std::vector<double>& shares, bool upside_down, PrismTest test)
+{
+    Columns c;
+    c.triangles = &shell.triangles;
+    c.upside_down = upside_down;
+    c.test = test;
+    c.around = triangles_around_vertices(shell.outer.size(), shell.triangles);
+    for (const std::array<std::uint8_t, 3>& order : split.order)
+        c.order.push_back(static_cast<std::uint8_t>(growth::order_index(order)));
+    const auto& skin = upside_down ? shell.inner : shell.outer;
+    const auto& far = upside_down ? shell.outer : shell.inner;
+    c.surface.push_back(skin);
+    for (const double share : shares) {
+        c.surface.push_back(skin);
+        std::vector<Vec3s>& cut = c.surface.back();
+        for_each_index(cut.size(), [&](std::size_t v) {
+            const Vec3d from(skin[v]), to(far[v]);
+            if (skin[v] != far[v])
+                cut[v] = Vec3s(from + share * (to - from));
+        });
+    }
+    c.surface.push_back(far);
+    return c;
+}
+
+void mend_columns(Columns& c, const StageProgress& progress)
+{
+    bool improved = true;
+    for (int round = 0; improved && round < kMostRounds; ++round) {
+        progress.stop_if_interrupted(100 * round / kMostRounds);
+        improved = false;
+        const auto corners = movable_corners(c, bad_prisms(c));
+        for (std::size_t j = 1; j < c.layers(); ++j)
+            for (std::uint32_t v = 0; v < corners[j].size(); ++v)
+                if (corners[j][v])
+                    improved = mend_point(c, j, v) || improved;
+    }
+}
+
+std::size_t keep_whole_where_bad(Columns& c)
+{
+    std::vector<std::uint8_t> whole(c.surface[0].size(), 0);
+    for (bool any = true; any;) {
+        any = false;
+        const std::vector<std::uint8_t> bad = bad_prisms(c);
+        for (std::size_t i = 0; i < bad.size(); ++i)
+            for (int k = 0; bad[i] && k < 3; ++k) {
+                const std::uint32_t v = (*c.triangles)[i % c.triangles->size()][k];
+                // A pinned pillar has nothing to give.
+                if (whole[v] || c.surface.front()[v] == c.surface.back()[v])
+                    continue;
+                whole[v] = 1;
+                any = true;
+            }
+        for (std::size_t j = 1; j < c.layers(); ++j)
+            for (std::size_t v = 0; v < whole.size(); ++v)
+                if (whole[v])
+                    c.surface[j][v] = c.surface[0][v];
+    }
+    return std::size_t(std::count(whole.begin(), whole.end(), 1));
+}
+
+std::size_t points_that_differ(const std::vector<std::vector<Vec3s>>& a,
+                               const std::vector<std::vector<Vec3s>>& b)
+{
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < a.size(); ++j)
+        for (std::size_t v = 0; v < a[j].size(); ++v)
+            count += a[j][v] != b[j][v];
+    return count;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/layers/cut_layers.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "core/stage_progress.h"
+#include "layers/columns.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+/// Shares of the pillar above each of the n - 1 cuts, from the skin.
+std::vector<double> shares_of(const LayerOptions& options)
+{
+    const bool growing = options.grading > 1.0;
+    // Thickest first, so that only underflow can happen: an overflow would give NaN shares.
+    const double ratio = growing ? 1.0 / options.grading : options.grading;
+    std::vector<double> thickness(1, 1.0);
+    for (int i = 1; i < options.layers; ++i)
+        thickness.push_back(thickness.back() * ratio);
+    if (growing)
+        std::reverse(thickness.begin(), thickness.end());
+    std::vector<double> sums(thickness.size());
+    std::partial_sum(thickness.begin(), thickness.end(), sums.begin());
+    const double whole = sums.back();
+    sums.pop_back();
+    for (double& share : sums)
+        share /= whole;
+    return sums;
+}
+
+/// The stack of one layer of the input, from the columns that it was cut into.
+void append_layers(const PrismShell& whole, const PrismSplit& split, bool above_skin,
+                   Columns columns, ShellStack& result)
+{
+    auto& surface = columns.surface;
+    if (above_skin)
+        std::reverse(surface.begin(), surface.end());
+    for (std::size_t k = 0; k + 1 < surface.size(); ++k) {
+        PrismShell layer{surface[k], surface[k + 1], whole.triangles, whole.stop};
+        result.layers.push_back(std::move(layer));
+        result.splits.push_back(split);
+    }
+}
+
+} // namespace
+
+void require_sensible(const LayerOptions& options)
+{
+    const auto most = int(ShellStack::kMostLayers);
+    if (options.layers < 1 || options.layers > most)
+        throw InvalidOption("layers: " + std::to_string(options.layers) + ", must be 1 to " +
+                            std::to_string(most));
+    if (!(options.grading > 0.0) || !std::isfinite(options.grading))
+        throw InvalidOption("layer grading: " + std::to_string(options.grading) +
+                            ", must be positive and finite");
+}
+
+LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, PrismTest test,
+                       Interrupter* interrupter)
+{
+    require_sensible(options);
+    const std::size_t total = std::size_t(options.layers) * stack.layers.size();
+    if (total > ShellStack::kMostLayers)
+        throw InvalidOption("layers: " + std::to_string(total) + " in all, must be at most " +
+                            std::to_string(ShellStack::kMostLayers));
+    assert(!stack.layers.empty() && stack.splits.size() == stack.layers.size());
+    const StageProgress progress(interrupter, "layers");
+    LayerResult result;
+    if (options.layers == 1) {
+        result.stack = stack;
+        return result;
+    }
+    const std::vector<double> shares = shares_of(options);
+    for (std::size_t k = 0; k < stack.layers.size(); ++k) {
+        progress.stop_if_interrupted(int(100 * k / stack.layers.size()));
+        const PrismShell& whole = stack.layers[k];
+        const bool above_skin = k < stack.skin;
+        Columns columns = cut_pillars(whole, stack.splits[k], shares, above_skin, test);
+        const std::vector<std::vector<openvdb::Vec3s>> nominal = columns.surface;
+        mend_columns(columns, progress);
+        result.report.uncut += keep_whole_where_bad(columns);
+        result.report.moved += points_that_differ(columns.surface, nominal);
+        append_layers(whole, stack.splits[k], above_skin, std::move(columns), result.stack);
+    }
+    result.stack.skin = stack.skin * std::size_t(options.layers);
+    return result;
+}
+
+} // namespace vdb_shell

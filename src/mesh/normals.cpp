@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/mesh/normals.h"
+
+#include "core/parallel.h"
+#include "mesh/topology.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace vdb_shell
+{
+
+using openvdb::Vec3d;
+
+namespace
+{
+
+Vec3d corner(const TriangleMesh& mesh, std::uint32_t triangle, int i)
+{
+    return Vec3d(mesh.points[mesh.triangles[triangle][i]]);
+}
+
+/// Unit normals, zero for triangles without area. Edges of float32 points are exact enough in
+/// double that their cross product vanishes only where the area does.
+std::vector<Vec3d> triangle_normals(const TriangleMesh& mesh)
+{
+    std::vector<Vec3d> normals(mesh.triangles.size());
+    for_each_index(normals.size(), [&](std::size_t i) {
+        const auto t = static_cast<std::uint32_t>(i);
+        const Vec3d a = corner(mesh, t, 0);
+        const Vec3d cross = (corner(mesh, t, 1) - a).cross(corner(mesh, t, 2) - a);
+        const double length = cross.length();
+        normals[i] = length > 0 ? cross / length : Vec3d(0.0);
+    });
+    return normals;
+}
+
+double angle_at(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t vertex)
+{
+    int i = 0;
+    while (mesh.triangles[triangle][i] != vertex)
+        ++i;
+    const Vec3d p = corner(mesh, triangle, i);
+    const Vec3d u = corner(mesh, triangle, (i + 1) % 3) - p;
+    const Vec3d v = corner(mesh, triangle, (i + 2) % 3) - p;
+    return std::atan2(u.cross(v).length(), u.dot(v));
+}
+
+} // namespace
+
+Vec3d unit_or_zero(const Vec3d& v, double scale)
+{
+    // Below this, a sum of unit vectors (or a gradient of slope one) is rounding, not a direction.
+    constexpr double kNoDirection = 1e-9;
+    const double length = v.length();
+    return length > kNoDirection * scale ? v / length : Vec3d(0.0);
+}
+
+std::vector<Vec3d> pseudo_normals(const TriangleMesh& mesh)
+{
+    const VertexTriangles vertex_triangles =
+        triangles_around_vertices(mesh.points.size(), mesh.triangles);
+    const std::vector<Vec3d> normals = triangle_normals(mesh);
+    std::vector<Vec3d> result(mesh.points.size());
+    for_each_index(result.size(), [&](std::size_t v) {
+        Vec3d sum(0.0);
+        double angles = 0;
+        for (const std::uint32_t t : vertex_triangles.around(v)) {
+            const double angle = angle_at(mesh, t, v);
+            sum += angle * normals[t];
+            angles += angle;
+        }
+        result[v] = unit_or_zero(sum, angles);
+    });
+    return result;
+}
+
+std::vector<double> visibility_of(const TriangleMesh& mesh, const std::vector<Vec3d>& outward)
+{
+    assert(outward.size() == mesh.points.size());
+    const VertexTriangles vertex_triangles =
+        triangles_around_vertices(mesh.points.size(), mesh.triangles);
+    const std::vector<Vec3d> normals = triangle_normals(mesh);
+    std::vector<double> result(outward.size());
+    for_each_index(result.size(), [&](std::size_t v) {
+        if (outward[v].lengthSqr() == 0)
+            return;
+        double least = 1;
+        for (const std::uint32_t t : vertex_triangles.around(v))
+            if (normals[t].lengthSqr() > 0)
+                least = std::min(least, outward[v].dot(normals[t]));
+        result[v] = least;
+    });
+    return result;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/resample.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "pipeline/sides.h"
+
+#include <limits>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+
+std::size_t most_triangles(const ShellOptions& options)
+{
+    if (!options.refine.max_tets)
+        return std::numeric_limits<std::size_t>::max();
+    const std::size_t sides = options.side == Side::both ? 2 : 1;
+    const std::size_t layers = sides * static_cast<std::size_t>(options.layers.layers);
+    return *options.refine.max_tets / (3 * layers);
+}
+
+/// The layer under the surface: the one whose voids refinement can fill.
+const PrismShell& inward_layer(const ShellResult& result)
+{
+    return result.stack.layers.back();
+}
+
+RefineRound figures_of(const ShellResult& result, const ShellOptions& options)
+{
+    RefineRound round;
+    round.triangles = result.surface.triangles.size();
+    // Layers are cut later, each into as many tets.
+    round.tets =
+        make_tets(result.stack).tets.size() * static_cast<std::size_t>(options.layers.layers);
+    const double shell = tet_volume(make_tets(inward_layer(result), result.stack.splits.back()));
+    round.fill = shell / signed_volume(result.surface.points, result.surface.triangles);
+    return round;
+}
+
+/// Why no further round is made; nothing when one is.
+std::optional<RefineEnd> end_of(const RefineReport& report, const RefineOptions& options)
+{
+    const std::vector<RefineRound>& rounds = report.rounds;
+    const std::size_t made = rounds.size() - 1;
+    if (options.target_fill && rounds[made].fill >= *options.target_fill)
+        return RefineEnd::target_fill;
+    if (made > 0 && options.min_gain > 0 &&
+        rounds[made].fill - rounds[made - 1].fill < options.min_gain)
+        return RefineEnd::small_gain;
+    if (made >= static_cast<std::size_t>(options.rounds))
+        return RefineEnd::rounds;
+    return std::nullopt;
+}
+
+/// The old pillars, and between them those in the middles of the halved edges.
+GrowStart start_on(const RefinedMesh& refined, const PrismShell& shell)
+{
+    GrowStart start{shell.inner, {}};
+    for (const auto& [a, b] : refined.halved)
+        start.inner.emplace_back(0.5 * (Vec3d(shell.inner[a]) + Vec3d(shell.inner[b])));
+    return start;
+}
+
+/// Cuts triangles of the surface; false when none could be cut, and the report says why.
+bool cut_triangles(ShellResult& result, const ShellOptions& options, RefineReport& report,
+                   GrowStart& start, Interrupter* interrupter)
+{
+    const std::vector<double> worth = refinement_worth(inward_layer(result), options.refine.by);
+    RefinedMesh refined =
+        refine_triangles(result.surface, triangles_to_cut(worth, options.refine.share),
+                         most_triangles(options), interrupter);
+    report.rounds.back().cut = refined.cut;
+    report.rounds.back().barred_edges = refined.barred_edges;
+    if (refined.halved.empty()) {
+        report.end = refined.out_of_room ? RefineEnd::max_tets : RefineEnd::nothing;
+        return false;
+    }
+    start = start_on(refined, inward_layer(result));
+    result.surface = std::move(refined.mesh);
+    return true;
+}
+
+RefineReport refine(ShellResult& result, const ShellOptions& options,
+                    const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    // A raw shell's fill counts overlaps twice, so a higher one need not be better.
+    const bool fill_tells = options.grow.method != Method::raw;
+    RefineReport report;
+    report.rounds.push_back(figures_of(result, options));
+    ShellResult best = result;
+    while (true) {
+        if (const std::optional<RefineEnd> end = end_of(report, options.refine)) {
+            report.end = *end;
+            break;
+        }
+        GrowStart start;
+        if (!cut_triangles(result, options, report, start, interrupter))
+            break;
+        std::vector<StageCost> costs;
+        StageClock clock(costs);
+        build_sides(result, options, thickness_grid, clock, interrupter, start);
+        report.rounds.push_back(figures_of(result, options));
+        if (fill_tells && report.rounds.back().fill <= report.rounds[report.kept].fill)
+            continue;
+        report.kept = report.rounds.size() - 1;
+        best = result;
+    }
+    result = std::move(best);
+    return report;
+}
+
+void decimate_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
+{
+    const std::string& name = result.report.source;
+    if (!result.report.mesh.embedded())
+        throw GeometryError(name + ": decimation needs a surface that does not cross itself; " +
+                            std::to_string(result.report.mesh.self_intersections.count) +
+                            " pairs of triangles cross or touch");
+    DecimateResult decimated = decimate(result.surface, options.decimate, interrupter);
+    result.surface = std::move(decimated.mesh);
+    result.report.decimate = decimated.report;
+    result.report.mesh = check_mesh(result.surface);
+}
+
+} // namespace
+
+void resample_surface(ShellResult& result, const ShellOptions& options, StageClock& clock,
+                      Interrupter* interrupter)
+{
+    if (options.decimate.triangles)
+        clock.run("decimate", [&] { decimate_surface(result, options, interrupter); });
+    if (options.subdivide.levels == 0)
+        return;
+    clock.run("subdivide", [&] {
+        result.report.subdivided_from = result.surface.triangles.size();
+        result.surface = subdivide(result.surface, options.subdivide);
+        result.report.mesh = check_mesh(result.surface);
+        require_usable(result.report.mesh, options.check,
+                       result.report.source + " after --subdivide");
+    });
+}
+
+void build_and_refine(ShellResult& result, const ShellOptions& options, const GrowStart& start,
+                      const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                      Interrupter* interrupter)
+{
+    build_sides(result, options, thickness_grid, clock, interrupter, start);
+    if (options.refine.rounds == 0)
+        return;
+    clock.run("refine", [&] {
+        const RefineReport report = refine(result, options, thickness_grid, interrupter);
+        result.report.refine = report;
+        result.report.mesh = check_mesh(result.surface);
+    });
+}
+
+} // namespace vdb_shell

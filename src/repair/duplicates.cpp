@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "repair/working_surface.h"
+
+#include "mesh/surface_defects.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+namespace vdb_shell::repair
+{
+namespace
+{
+
+using Corners = std::array<std::uint32_t, 3>;
+
+Corners sorted_corners(const openvdb::Vec3I& triangle)
+{
+    Corners corners{triangle[0], triangle[1], triangle[2]};
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
+} // namespace
+
+void drop_duplicates(WorkingSurface& surface, RepairReport& report)
+{
+    const std::vector<openvdb::Vec3I>& triangles = surface.mesh.triangles;
+    std::map<Corners, std::vector<std::uint32_t>> groups;
+    std::map<Edge, std::size_t> uses;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        const Corners c = sorted_corners(triangles[t]);
+        groups[c].push_back(t);
+        ++uses[{c[0], c[1]}], ++uses[{c[1], c[2]}], ++uses[{c[0], c[2]}];
+    }
+    std::vector<char> drop(triangles.size());
+    bool any = false;
+    for (const auto& [c, group] : groups) {
+        if (group.size() == 1)
+            continue;
+        // One is kept if it has a neighbour to close up with across most of its edges; a wall
+        // between two closed parts goes altogether.
+        int wanted = 0;
+        for (const Edge& edge : {Edge{c[0], c[1]}, Edge{c[1], c[2]}, Edge{c[0], c[2]}})
+            wanted += (uses.at(edge) - group.size()) % 2 == 1 ? 1 : -1;
+        for (std::size_t i = wanted > 0 ? 1 : 0; i < group.size(); ++i) {
+            drop[group[i]] = 1;
+            any = true;
+        }
+    }
+    if (!any)
+        return;
+    for (std::uint32_t t = 0; t < drop.size(); ++t)
+        if (drop[t])
+            add_to(report.duplicates, surface.source[t]);
+    drop_triangles(surface, drop);
+}
+
+} // namespace vdb_shell::repair

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "repair/fill_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace vdb_shell::repair
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+
+/// One Laplacian: its new points with their coefficients, and the rest of it.
+struct Row {
+    std::vector<std::pair<std::size_t, double>> terms;
+    Vec3d constant{0.0};
+};
+
+/// The Laplacian at a point with neighbours weighted by the inverse of their distance.
+Row laplacian_at(const Patch& patch, const Rim& rim, std::size_t point,
+                 const std::set<std::uint32_t>& neighbours)
+{
+    const std::size_t fixed = rim.points.size();
+    Row row;
+    std::vector<std::pair<const Vec3d*, double>> all;
+    double sum = 0;
+    const auto weigh = [&](const Vec3d& other) {
+        const double length = (other - patch.points[point]).length();
+        const double weight = length > 0 ? 1 / length : 0;
+        sum += weight;
+        return weight;
+    };
+    std::vector<double> weights;
+    weights.reserve(neighbours.size());
+    for (const std::uint32_t v : neighbours)
+        weights.push_back(weigh(patch.points[v]));
+    if (point < fixed)
+        for (const Vec3d& outside : rim.neighbours[point])
+            row.constant += outside * weigh(outside);
+    if (!(sum > 0))
+        return {};
+    row.constant /= sum;
+    std::size_t next = 0;
+    for (const std::uint32_t v : neighbours) {
+        const double share = weights[next++] / sum;
+        if (v < fixed)
+            row.constant += patch.points[v] * share;
+        else
+            row.terms.emplace_back(v - fixed, share);
+    }
+    if (point < fixed)
+        row.constant -= patch.points[point];
+    else
+        row.terms.emplace_back(point - fixed, -1.0);
+    return row;
+}
+
+/// out = transpose(A) A x for the rows A.
+void apply(const std::vector<Row>& rows, const std::vector<double>& x, std::vector<double>& out)
+{
+    std::fill(out.begin(), out.end(), 0.0);
+    for (const Row& row : rows) {
+        double value = 0;
+        for (const auto& [i, coefficient] : row.terms)
+            value += coefficient * x[i];
+        for (const auto& [i, coefficient] : row.terms)
+            out[i] += coefficient * value;
+    }
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/// Least squares of A x + constant along one axis by conjugate gradients, from x on.
+void minimise(const std::vector<Row>& rows, int axis, std::vector<double>& x)
+{
+    constexpr double kGain = 1e-9;
+    const std::size_t n = x.size();
+    std::vector<double> residual(n), direction, image(n);
+    apply(rows, x, image);
+    for (const Row& row : rows)
+        for (const auto& [i, coefficient] : row.terms)
+            residual[i] -= coefficient * row.constant[axis];
+    for (std::size_t i = 0; i < n; ++i)
+        residual[i] -= image[i];
+    direction = residual;
+    double squared = dot(residual, residual);
+    const double enough = kGain * kGain * squared;
+    for (std::size_t step = 0; step < 4 * n && squared > enough && squared > 0; ++step) {
+        apply(rows, direction, image);
+        const double curvature = dot(direction, image);
+        if (!(curvature > 0))
+            return;
+        const double length = squared / curvature;
+        for (std::size_t i = 0; i < n; ++i) {
+            x[i] += length * direction[i];
+            residual[i] -= length * image[i];
+        }
+        const double next = dot(residual, residual);
+        for (std::size_t i = 0; i < n; ++i)
+            direction[i] = residual[i] + next / squared * direction[i];
+        squared = next;
+    }
+}
+
+} // namespace
+
+void fair(Patch& patch, const Rim& rim, bool smooth)
+{
+    const std::size_t fixed = rim.points.size(), moving = patch.points.size() - fixed;
+    if (moving == 0)
+        return;
+    std::vector<std::set<std::uint32_t>> neighbours(patch.points.size());
+    for (const Vec3I& t : patch.triangles)
+        for (int k = 0; k < 3; ++k) {
+            neighbours[t[k]].insert(t[(k + 1) % 3]);
+            neighbours[t[(k + 1) % 3]].insert(t[k]);
+        }
+    std::vector<Row> rows;
+    for (std::size_t v = smooth ? 0 : fixed; v < patch.points.size(); ++v)
+        rows.push_back(laplacian_at(patch, rim, v, neighbours[v]));
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double> x(moving);
+        for (std::size_t i = 0; i < moving; ++i)
+            x[i] = patch.points[fixed + i][axis];
+        minimise(rows, axis, x);
+        for (std::size_t i = 0; i < moving; ++i)
+            patch.points[fixed + i][axis] = x[i];
+    }
+}
+
+} // namespace vdb_shell::repair

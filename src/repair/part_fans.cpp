@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh/surface_defects.h"
+#include "repair/hole_walk.h"
+#include "repair/working_surface.h"
+
+#include <algorithm>
+#include <map>
+
+namespace vdb_shell::repair
+{
+namespace
+{
+
+using openvdb::Vec3I;
+
+/// Points that some rim passes twice.
+std::vector<char> pinched_points(const std::vector<Hole>& holes, std::size_t point_count)
+{
+    std::vector<char> pinched(point_count);
+    std::vector<std::uint32_t> sorted;
+    for (const Hole& hole : holes) {
+        sorted = hole.points;
+        std::sort(sorted.begin(), sorted.end());
+        for (std::size_t i = 1; i < sorted.size(); ++i)
+            pinched[sorted[i]] |= sorted[i] == sorted[i - 1];
+    }
+    return pinched;
+}
+
+/// Gives fans points of their own: the first at a point keeps it; open fans that are
+/// linked share one, unless they are to stand `apart`.
+void copy_points(WorkingSurface& surface, const Fans& fans,
+                 const std::vector<std::uint32_t>& next_fan, const std::vector<char>& apart,
+                 RepairReport& report)
+{
+    TriangleMesh& mesh = surface.mesh;
+    const std::size_t points = mesh.points.size();
+    std::vector<std::vector<std::uint32_t>> at_point(points);
+    for (std::uint32_t fan = 0; fan < fans.point.size(); ++fan)
+        at_point[fans.point[fan]].push_back(fan);
+    std::vector<std::uint32_t> new_point = fans.point;
+    for (std::uint32_t v = 0; v < points; ++v) {
+        std::vector<std::uint32_t> group{v};
+        bool kept = false;
+        std::uint32_t open_point = kUnpaired;
+        const bool share =
+            !apart[v] && std::any_of(at_point[v].begin(), at_point[v].end(),
+                                     [&](std::uint32_t fan) { return next_fan[fan] != fan; });
+        for (const std::uint32_t fan : at_point[v]) {
+            if (share && fans.open[fan] && open_point != kUnpaired) {
+                new_point[fan] = open_point;
+                continue;
+            }
+            if (kept) {
+                new_point[fan] = static_cast<std::uint32_t>(mesh.points.size());
+                mesh.points.push_back(openvdb::Vec3s(mesh.points[v]));
+                group.push_back(new_point[fan]);
+            }
+            kept = true;
+            if (share && fans.open[fan])
+                open_point = new_point[fan];
+        }
+        if (group.size() == 1)
+            continue;
+        add_to(report.split_points, v);
+        report.copies += group.size() - 1;
+        surface.copies.push_back(std::move(group));
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int corner = 0; corner < 3; ++corner)
+            mesh.triangles[t][corner] = new_point[fans.of_corner[3 * t + std::size_t(corner)]];
+}
+
+/// An edge that is still in use by several pairs, because both its ends are one fan each: each pair
+/// gets a point of its own in the middle. Returns how many edges there were.
+std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
+                       RepairReport& report)
+{
+    TriangleMesh& mesh = surface.mesh;
+    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    std::vector<std::uint32_t> middle_of(partner.size(), kUnpaired);
+    std::size_t edges = 0;
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (end < uses.size() && uses[end].edge == uses[begin].edge)
+            ++end;
+        if (end - begin <= 2)
+            continue;
+        ++edges;
+        const Edge& edge = uses[begin].edge;
+        const openvdb::Vec3d middle =
+            0.5 * (openvdb::Vec3d(mesh.points[edge[0]]) + openvdb::Vec3d(mesh.points[edge[1]]));
+        std::vector<std::uint32_t> group;
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t side = 3 * uses[i].triangle + uses[i].side;
+            if (middle_of[side] != kUnpaired)
+                continue;
+            const auto point = static_cast<std::uint32_t>(mesh.points.size());
+            mesh.points.emplace_back(middle);
+            group.push_back(point);
+            middle_of[side] = point;
+            if (partner[side] != kUnpaired)
+                middle_of[partner[side]] = point;
+        }
+        report.copies += group.size();
+        surface.copies.push_back(std::move(group));
+    }
+    // Cut the triangles side by side; a part keeps the sides that are not cut yet.
+    const std::size_t triangles = mesh.triangles.size();
+    for (std::size_t t = 0; t < triangles && edges > 0; ++t) {
+        std::vector<std::uint32_t> ring;
+        for (std::size_t side = 0; side < 3; ++side) {
+            ring.push_back(mesh.triangles[t][int(side)]);
+            if (middle_of[3 * t + side] != kUnpaired)
+                ring.push_back(middle_of[3 * t + side]);
+        }
+        if (ring.size() == 3)
+            continue;
+        // Start at a middle: no triangle of the fan from there is flat.
+        while (ring.front() < mesh.points.size() &&
+               std::none_of(middle_of.begin() + std::ptrdiff_t(3 * t),
+                            middle_of.begin() + std::ptrdiff_t(3 * t + 3),
+                            [&](std::uint32_t m) { return m == ring.front(); }))
+            std::rotate(ring.begin(), ring.begin() + 1, ring.end());
+        mesh.triangles[t] = Vec3I(ring[0], ring[1], ring[2]);
+        if (surface.source[t] != kNoSource)
+            add_to(report.recut, surface.source[t]);
+        surface.source[t] = kNoSource;
+        for (std::size_t i = 3; i < ring.size(); ++i) {
+            mesh.triangles.emplace_back(ring[0], ring[i - 1], ring[i]);
+            surface.source.push_back(kNoSource);
+        }
+    }
+    return edges;
+}
+
+std::size_t count_crowded(const TriangleMesh& mesh)
+{
+    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    std::size_t crowded = 0;
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (end < uses.size() && uses[end].edge == uses[begin].edge)
+            ++end;
+        crowded += end - begin > 2;
+    }
+    return crowded;
+}
+
+} // namespace
+
+void part_fans(WorkingSurface& surface, RepairReport& report)
+{
+    report.split_edges += count_crowded(surface.mesh);
+    const std::vector<std::uint32_t> partner = pair_sides(surface.mesh);
+    const Fans fans = find_fans(surface.mesh, partner);
+    const std::vector<std::uint32_t> next_fan = link_fans(surface.mesh, partner, fans);
+    const std::vector<Hole> holes =
+        walk_holes(surface.mesh, partner, fans, next_fan, one_sided_triangles(surface.mesh));
+    copy_points(surface, fans, next_fan, pinched_points(holes, surface.mesh.points.size()), report);
+    part_edges(surface, partner, report);
+}
+
+} // namespace vdb_shell::repair

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/repair/repair_mesh.h"
+
+#include "core/stage_progress.h"
+#include "mesh/components.h"
+#include "mesh/surface_defects.h"
+#include "repair/working_surface.h"
+#include "vdb_shell/core/error.h"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+void require_possible(const RepairOptions& options)
+{
+    const auto require = [](const char* name, double value) {
+        if (!(std::isfinite(value) && value >= 0))
+            throw InvalidOption(std::string("repair: ") + name + " is " + std::to_string(value) +
+                                ", must be finite and not negative");
+    };
+    require("weld_tolerance", options.weld_tolerance);
+    require("sliver_height", options.sliver_height);
+}
+
+/// Turns closed components that are oriented against their nesting.
+void turn_by_nesting(repair::WorkingSurface& surface, RepairReport& report)
+{
+    const MeshCheck check = check_mesh(surface.mesh);
+    if (check.inside_out_components() == 0)
+        return;
+    const std::vector<std::uint32_t> component_of = component_of_triangles(
+        sorted_edge_uses(surface.mesh.triangles), surface.mesh.triangles.size());
+    surface.mesh = turn_outward(std::move(surface.mesh), check);
+    for (std::size_t t = 0; t < component_of.size(); ++t)
+        if (check.components[component_of[t]].inside_out && surface.source[t] != kNoSource)
+            add_to(report.turned, surface.source[t]);
+}
+
+/// From triangles that are sound each for itself to a closed surface.
+void close_up(repair::WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
+              Interrupter* interrupter)
+{
+    surface.copies.clear();
+    repair::drop_sheets(surface, report);
+    repair::orient(surface, report);
+    repair::part_fans(surface, report);
+    repair::fill_holes(surface, options, report, interrupter);
+    turn_by_nesting(surface, report);
+    repair::move_copies_apart(surface, report);
+    // What touched before may be told apart now, and nest otherwise.
+    turn_by_nesting(surface, report);
+}
+
+/// Leaves out points that no triangle uses, so that every point has a pillar to stand on.
+void drop_unused_points(TriangleMesh& mesh, RepairReport& report)
+{
+    std::vector<std::uint32_t> new_index(mesh.points.size(), kNoSource);
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            new_index[t[corner]] = 0;
+    std::uint32_t kept = 0;
+    for (std::size_t v = 0; v < new_index.size(); ++v) {
+        if (new_index[v] == kNoSource)
+            continue;
+        mesh.points[kept] = mesh.points[v];
+        new_index[v] = kept++;
+    }
+    mesh.points.resize(kept);
+    for (openvdb::Vec3I& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            t[corner] = new_index[t[corner]];
+    for (HoleFill& hole : report.holes)
+        if (hole.first_point != kNoSource)
+            hole.first_point = new_index[hole.first_point];
+}
+
+} // namespace
+
+const char* name_of(FillMethod method)
+{
+    switch (method) {
+    case FillMethod::smooth:
+        return "smooth";
+    case FillMethod::membrane:
+        return "membrane";
+    case FillMethod::dihedral:
+        return "dihedral";
+    case FillMethod::area:
+        return "area";
+    case FillMethod::none:
+        break;
+    }
+    return "none";
+}
+
+RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
+                         Interrupter* interrupter)
+{
+    require_possible(options);
+    require_well_formed(mesh, "repair_mesh");
+    RepairReport report;
+    repair::WorkingSurface surface{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), {}};
+    std::iota(surface.source.begin(), surface.source.end(), 0U);
+    repair::weld_points(surface, options.weld_tolerance, report);
+    repair::drop_degenerate(surface, options.sliver_height, report);
+    repair::drop_duplicates(surface, report);
+    close_up(surface, options, report, interrupter);
+    constexpr int kMostCuts = 6;
+    for (int round = 0; round < kMostCuts && options.cut_crossings; ++round) {
+        if (!repair::cut_crossings(surface, round, report))
+            break;
+        close_up(surface, options, report, interrupter);
+    }
+    drop_unused_points(surface.mesh, report);
+    for (const std::uint32_t source : surface.source)
+        report.kept_triangles += source != kNoSource;
+    report.after = check_mesh(surface.mesh);
+    return {std::move(surface.mesh), std::move(surface.source), std::move(report)};
+}
+
+bool RepairReport::changed() const
+{
+    return welded_points.count + collapsed.count + degenerate.count + slivers.count + recut.count +
+               duplicates.count + sheets.count + turned.count + cut.count + copies + holes.size() >
+           0;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "repair/working_surface.h"
+
+#include "io/file_scan.h"
+#include "mesh/surface_defects.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+
+namespace vdb_shell::repair
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+using Cell = std::array<std::int64_t, 3>;
+
+Cell cell_of(const openvdb::Vec3s& point, double size)
+{
+    Cell cell{};
+    for (int axis = 0; axis < 3; ++axis)
+        cell[std::size_t(axis)] = static_cast<std::int64_t>(std::floor(double(point[axis]) / size));
+    return cell;
+}
+
+/// For each point the first point within the tolerance that stands for itself: chains of near
+/// points do not add up.
+std::vector<std::uint32_t> first_near_point(const std::vector<openvdb::Vec3s>& points,
+                                            double tolerance)
+{
+    std::map<Cell, std::vector<std::uint32_t>> grid;
+    std::vector<std::uint32_t> first(points.size());
+    for (std::uint32_t v = 0; v < points.size(); ++v) {
+        const Cell cell = cell_of(points[v], tolerance);
+        first[v] = v;
+        for (std::int64_t i = 0; i < 27; ++i) {
+            const auto entry =
+                grid.find({cell[0] + i % 3 - 1, cell[1] + i / 3 % 3 - 1, cell[2] + i / 9 - 1});
+            if (entry == grid.end())
+                continue;
+            for (const std::uint32_t u : entry->second)
+                if (u < first[v] && (Vec3d(points[u]) - Vec3d(points[v])).length() <= tolerance)
+                    first[v] = u;
+        }
+        if (first[v] == v)
+            grid[cell].push_back(v);
+    }
+    return first;
+}
+
+} // namespace
+
+void drop_triangles(WorkingSurface& surface, const std::vector<char>& drop)
+{
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < drop.size(); ++t) {
+        if (drop[t])
+            continue;
+        surface.mesh.triangles[kept] = surface.mesh.triangles[t];
+        surface.source[kept++] = surface.source[t];
+    }
+    surface.mesh.triangles.resize(kept);
+    surface.source.resize(kept);
+}
+
+void weld_points(WorkingSurface& surface, double tolerance, RepairReport& report)
+{
+    const std::vector<openvdb::Vec3s>& points = surface.mesh.points;
+    const std::vector<std::uint32_t> first =
+        tolerance > 0 ? first_near_point(points, tolerance) : first_equal_point(points);
+    for (std::uint32_t v = 0; v < first.size(); ++v)
+        if (first[v] != v)
+            add_to(report.welded_points, v);
+    std::vector<char> drop(surface.mesh.triangles.size());
+    for (std::uint32_t t = 0; t < drop.size(); ++t) {
+        Vec3I& corner = surface.mesh.triangles[t];
+        bool moved = false;
+        for (int k = 0; k < 3; ++k) {
+            moved |= points[corner[k]] != points[first[corner[k]]];
+            corner[k] = first[corner[k]];
+        }
+        drop[t] = corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
+        if (drop[t])
+            add_to(report.collapsed, t);
+        if (moved)
+            surface.source[t] = kNoSource;
+    }
+    drop_triangles(surface, drop);
+}
+
+} // namespace vdb_shell::repair

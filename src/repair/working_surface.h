@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "mesh/topology.h"
+#include "vdb_shell/repair/repair_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell::repair
+{
+
+/// What the steps of the repair pass on.
+struct WorkingSurface {
+    TriangleMesh mesh;
+    std::vector<std::uint32_t> source; ///< by triangle: of the input, or kNoSource
+    /// Points that stand in one place since they were parted; each list starts with the one that
+    /// stays there if it can.
+    std::vector<std::vector<std::uint32_t>> copies;
+};
+
+/// Drops the marked triangles.
+void drop_triangles(WorkingSurface& surface, const std::vector<char>& drop);
+
+// The steps, in order. Each adds what it did to the report.
+
+void weld_points(WorkingSurface& surface, double tolerance, RepairReport& report);
+void drop_degenerate(WorkingSurface& surface, double sliver_height, RepairReport& report);
+void drop_duplicates(WorkingSurface& surface, RepairReport& report);
+/// Sheets: pieces without which every edge of their rim has fewer faults; see docs/repair.md.
+void drop_sheets(WorkingSurface& surface, RepairReport& report);
+void orient(WorkingSurface& surface, RepairReport& report);
+/// Gives every fan of triangles its own point and every pair of triangles its own edge. Open fans
+/// share their point where the holes between them can be walked round.
+void part_fans(WorkingSurface& surface, RepairReport& report);
+void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
+                Interrupter* interrupter);
+/// Moves points that were parted out of each other's way.
+/// Triangles that cross or touch another one, or have no area.
+std::vector<char> crossing_triangles(const TriangleMesh& mesh);
+/// Drops crossing triangles, from round 1 on also those at open rims, from round 2 on with growing
+/// rings of neighbours; and the small pieces that this cuts off. False when there is nothing to
+/// cut.
+bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report);
+void move_copies_apart(WorkingSurface& surface, RepairReport& report);
+
+} // namespace vdb_shell::repair

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/report/report.h"
+
+#include "certify/certificate_findings.h"
+#include "core/option_names.h"
+#include "mesh/components_json.h"
+#include "mesh/placement_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <openvdb/Types.h>
+
+#include <limits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using nlohmann::ordered_json;
+
+double degrees(double radians)
+{
+    return radians * 180.0 / openvdb::math::pi<double>();
+}
+
+ordered_json spread_json(const Spread& spread, double (*convert)(double) = nullptr)
+{
+    const auto in_unit = [&](double value) { return convert ? convert(value) : value; };
+    return {{"min", in_unit(spread.min)},  {"p1", in_unit(spread.p1)},
+            {"p5", in_unit(spread.p5)},    {"median", in_unit(spread.median)},
+            {"p95", in_unit(spread.p95)},  {"max", in_unit(spread.max)},
+            {"mean", in_unit(spread.mean)}};
+}
+
+template <typename Element> ordered_json defect_json(const Defect<Element>& defect)
+{
+    return {{"count", defect.count}, {"first", defect.first}};
+}
+
+ordered_json read_json(const ReadReport& read)
+{
+    return {{"format", read.format},
+            {"file_vertices", read.file_vertices},
+            {"file_faces", read.file_faces},
+            {"polygons_triangulated", read.polygons_triangulated},
+            {"welded_vertices", read.welded_vertices},
+            {"unused_vertices", read.unused_vertices},
+            {"skipped_faces", read.skipped_faces},
+            {"placement", placement_json(read.placement)},
+            {"largest_rounding", read.largest_rounding}};
+}
+
+ordered_json contour_json(const ContourReport& contour)
+{
+    return {{"method", name_in_table(contour.method)},
+            {"volume_to_mesh_defects", contour.volume_to_mesh_defects},
+            {"triangles", contour.triangles},
+            {"simplified_triangles", contour.simplified_triangles},
+            {"simplification_repeats", contour.simplification_repeats},
+            {"components", contour.components},
+            {"dropped_components", contour.dropped_components}};
+}
+
+ordered_json distance_json(const DistanceFigures& distance)
+{
+    return {{"mean", distance.mean}, {"max", distance.max}, {"samples", distance.samples}};
+}
+
+ordered_json wrap_json(const WrapReport& wrap)
+{
+    return {{"voxel_size", wrap.voxel_size},
+            {"voxels", wrap.voxels},
+            {"boundary_share", wrap.boundary_share},
+            {"sheet_share", wrap.sheet_share},
+            {"interior_share", wrap.interior_share},
+            {"contour", contour_json(wrap.contour)},
+            {"input_to_wrap", distance_json(wrap.input_to_wrap)},
+            {"wrap_to_input", distance_json(wrap.wrap_to_input)}};
+}
+
+ordered_json mesh_json(const MeshCheck& mesh)
+{
+    return {{"points", mesh.points},
+            {"triangles", mesh.triangles},
+            {"volume", mesh.volume},
+            {"closed", mesh.closed()},
+            {"manifold", mesh.manifold()},
+            {"boundary_edges", mesh.boundary_edges.count},
+            {"non_manifold_edges", mesh.non_manifold_edges.count},
+            {"non_manifold_vertices", mesh.non_manifold_vertices.count},
+            {"inconsistent_edges", mesh.inconsistent_edges.count},
+            {"degenerate_triangles", mesh.degenerate_triangles.count},
+            {"duplicate_triangles", mesh.duplicate_triangles.count},
+            {"self_intersections", mesh.self_intersections.count},
+            {"first_self_intersections", mesh.self_intersections.first},
+            {"components", components_json(mesh.components)}};
+}
+
+ordered_json decimate_json(const DecimateReport& decimate)
+{
+    return {{"triangles_before", decimate.before},
+            {"triangles_wanted", decimate.wanted},
+            {"triangles", decimate.triangles},
+            {"reached", decimate.reached()},
+            {"input_to_result", distance_json(decimate.input_to_result)},
+            {"result_to_input", distance_json(decimate.result_to_input)},
+            {"repeats", decimate.repeats}};
+}
+
+ordered_json field_json(const FieldReport& field)
+{
+    return {{"origin", field.origin},
+            {"sparse", field.sparse},
+            {"voxel_size", field.voxel_size},
+            {"active_voxels", field.active_voxels},
+            {"memory_bytes", field.memory_bytes},
+            {"interior_depth", field.interior_depth},
+            {"smooth",
+             {{"mean_drift", field.smooth.mean_drift}, {"max_drift", field.smooth.max_drift}}}};
+}
+
+ordered_json lines_json(const LineReport& lines)
+{
+    ordered_json stops;
+    for (int reason = 0; reason < kStopReasonCount; ++reason)
+        stops[name_of(StopReason(reason))] = lines.stops[std::size_t(reason)];
+    return {{"min_visibility", lines.min_visibility},
+            {"blind_vertices", lines.blind_vertices},
+            {"stuck_vertices", lines.stuck_vertices},
+            {"stepped", lines.lines},
+            {"steps", lines.steps},
+            {"stop_reasons", stops},
+            {"length", spread_json(lines.length)},
+            {"length_voxels", spread_json(lines.length_voxels)}};
+}
+
+ordered_json growth_json(const GrowReport& grow)
+{
+    return {{"rounds", grow.rounds},
+            {"flips", grow.flips},
+            {"released_pins", grow.released},
+            {"fill_after_lines", grow.fill_after_lines},
+            {"quality_rounds", grow.quality_rounds},
+            {"tets_below_quality", grow.tets_below_quality},
+            {"vertices_below_quality", grow.vertices_below_quality}};
+}
+
+ordered_json tets_json(const ShellReport& report)
+{
+    return {{"tets", report.signs.tets},
+            {"inverted", report.signs.inverted.count},
+            {"first_inverted", report.signs.inverted.first},
+            {"flat", report.signs.flat.count},
+            {"first_flat", report.signs.flat.first}};
+}
+
+ordered_json conformity_json(const Conformity& conformity)
+{
+    return {{"conforming", conformity.conforming()},
+            {"crowded_faces", defect_json(conformity.crowded_faces)},
+            {"misoriented_faces", defect_json(conformity.misoriented_faces)},
+            {"stray_faces", defect_json(conformity.stray_faces)},
+            {"missing_triangles", defect_json(conformity.missing_triangles)}};
+}
+
+ordered_json quality_json(const QualityReport& quality)
+{
+    return {{"mean_ratio", spread_json(quality.mean_ratio)},
+            {"min_dihedral_degrees", spread_json(quality.min_dihedral_radians, degrees)},
+            {"max_dihedral_degrees", spread_json(quality.max_dihedral_radians, degrees)},
+            {"aspect", spread_json(quality.aspect)}};
+}
+
+ordered_json coverage_json(const Coverage& coverage)
+{
+    return {{"samples", coverage.samples},
+            {"in_none", coverage.in_none},
+            {"in_one", coverage.in_one},
+            {"in_several", coverage.in_several},
+            {"outside_covered", coverage.outside_covered},
+            {"covered_share", coverage.covered_share},
+            {"overlap_share", coverage.overlap_share},
+            {"standard_error", coverage.standard_error}};
+}
+
+ordered_json layers_json(const ShellReport& report)
+{
+    ordered_json layers = ordered_json::array();
+    for (const LayerFigures& layer : report.layers)
+        layers.push_back({{"tets", layer.tets},
+                          {"pinned_vertices", layer.pinned_vertices},
+                          {"volume", layer.volume},
+                          {"length", spread_json(layer.length)},
+                          {"quality", quality_json(layer.quality)}});
+    return layers;
+}
+
+ordered_json cut_json(const LayerReport& cut)
+{
+    return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}};
+}
+
+ordered_json scale_json(const ScaleReport& scale)
+{
+    return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
+}
+
+ordered_json refine_json(const RefineReport& refine)
+{
+    ordered_json rounds = ordered_json::array();
+    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
+        const RefineRound& round = refine.rounds[k];
+        rounds.push_back({{"triangles", round.triangles},
+                          {"tets", round.tets},
+                          {"fill", round.fill},
+                          {"gain_per_tet", refine.gain_per_tet(k)},
+                          {"triangles_cut", round.cut},
+                          {"barred_edges", round.barred_edges}});
+    }
+    return {{"rounds", rounds}, {"kept", refine.kept}, {"end", name_of(refine.end)}};
+}
+
+ordered_json outside_json(const OutsideReport& outside)
+{
+    return {{"lines", lines_json(outside.lines)},
+            {"growth", outside.grow ? growth_json(*outside.grow) : ordered_json()},
+            {"scale", outside.scale ? scale_json(*outside.scale) : ordered_json()}};
+}
+
+ordered_json overlaps_json(const Overlaps& overlaps)
+{
+    return {{"pairs", defect_json(overlaps.pairs)},
+            {"tets", overlaps.tets},
+            {"certified_tets", overlaps.certified_tets()},
+            {"uncertified_tets", defect_json(overlaps.uncertified)},
+            {"prisms", overlaps.prisms},
+            {"certified_prisms", overlaps.certified_prisms()},
+            {"uncertified_prisms", defect_json(overlaps.uncertified_prisms)},
+            {"certified_volume", overlaps.certified_volume}};
+}
+
+void add_findings(ordered_json& json, const Certificate& certificate)
+{
+    for_each_kind(certificate,
+                  [&](const char* name, const auto& defect) { json[name] = defect_json(defect); });
+}
+
+/// Findings stand under the certificate itself where there is one layer, else by layer.
+ordered_json certificate_json(const StackCertificate& certificate)
+{
+    const std::vector<Certificate>& layers = certificate.layers;
+    const PrismTest test = layers.empty() ? PrismTest::twelve_tets : layers.front().test;
+    ordered_json json{{"test", name_in_table(test)},
+                      {"certified", certificate.certified()},
+                      {"locally_valid", certificate.locally_valid()}};
+    if (layers.size() == 1) {
+        add_findings(json, layers.front());
+        return json;
+    }
+    json["hull_contacts"] = defect_json(certificate.hull_contacts);
+    json["hull_nested_wrongly"] = defect_json(certificate.hull_nested_wrongly);
+    json["layers"] = ordered_json::array();
+    for (const Certificate& layer : layers) {
+        ordered_json one{{"certified", layer.certified()},
+                         {"locally_valid", layer.locally_valid()}};
+        add_findings(one, layer);
+        json["layers"].push_back(one);
+    }
+    return json;
+}
+
+ordered_json costs_json(const std::vector<StageCost>& stages)
+{
+    ordered_json costs = ordered_json::array();
+    for (const StageCost& cost : stages)
+        costs.push_back({{"stage", cost.stage},
+                         {"seconds", cost.seconds},
+                         {"peak_memory_bytes", cost.peak_memory_bytes}});
+    return costs;
+}
+
+} // namespace
+
+std::string report_json(const ShellReport& report, bool with_costs)
+{
+    ordered_json json;
+    json["source"] = report.source;
+    json["read"] = report.read ? read_json(*report.read) : ordered_json();
+    json["repair"] =
+        report.repair ? ordered_json::parse(repair_json(*report.repair)) : ordered_json();
+    json["wrap"] = report.wrap ? wrap_json(*report.wrap) : ordered_json();
+    json["contour"] = report.contour ? contour_json(*report.contour) : ordered_json();
+    json["mesh"] = mesh_json(report.mesh);
+    json["mesh"]["split_vertices"] = defect_json(report.split_vertices);
+    json["mesh"]["vertex_copies"] = report.vertex_copies;
+    json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
+    json["subdivided_from"] =
+        report.subdivided_from > 0 ? ordered_json(report.subdivided_from) : ordered_json();
+    json["field"] = field_json(report.field);
+    json["side"] = name_in_table(report.side);
+    json["lines"] = lines_json(report.lines);
+    json["growth"] = report.grow ? growth_json(*report.grow) : ordered_json();
+    json["scale"] = report.scale ? scale_json(*report.scale) : ordered_json();
+    json["refine"] = report.refine ? refine_json(*report.refine) : ordered_json();
+    json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
+    json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
+    json["layers"] = layers_json(report);
+    json["prisms"] = {{"prisms", report.prisms},
+                      {"pinned_vertices", report.pinned_vertices},
+                      {"ripples", report.ripples}};
+    json["tets"] = tets_json(report);
+    json["conformity"] = conformity_json(report.conformity);
+    json["quality"] = quality_json(report.quality);
+    json["volume"] = {{"solid", report.solid_volume},
+                      {"shell", report.shell_volume},
+                      {"outside", report.outside_volume},
+                      {"fill", report.fill}};
+    json["coverage"] = coverage_json(report.coverage);
+    json["certificate"] =
+        report.certificate ? certificate_json(*report.certificate) : ordered_json();
+    json["overlaps"] = report.overlaps ? overlaps_json(*report.overlaps) : ordered_json();
+    if (with_costs)
+        json["stages"] = costs_json(report.stages);
+    // A file name may hold bytes that are no UTF-8.
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+} // namespace vdb_shell

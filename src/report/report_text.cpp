@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/report/report.h"
+
+#include "core/option_names.h"
+#include "mesh/placement_json.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <locale>
+#include <sstream>
+
+namespace vdb_shell
+{
+namespace
+{
+
+constexpr int kLabelWidth = 12;
+
+/// "label       text", one line.
+void line(std::ostringstream& out, const char* label, const std::string& text)
+{
+    out << std::left << std::setw(kLabelWidth) << label << text << '\n';
+}
+
+template <typename T> std::string number(T value, int digits = 4)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::setprecision(digits) << value;
+    return out.str();
+}
+
+std::string percent(double share)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << std::fixed << std::setprecision(2) << 100.0 * share << " %";
+    return out.str();
+}
+
+std::string spread(const Spread& values)
+{
+    return "min " + number(values.min) + ", median " + number(values.median) + ", max " +
+           number(values.max);
+}
+
+std::string mesh_lines(const MeshCheck& mesh)
+{
+    std::string text = number(mesh.points, 12) + " vertices, " + number(mesh.triangles, 12) +
+                       " triangles, " + number(mesh.components.size(), 12) +
+                       (mesh.components.size() == 1 ? " component" : " components");
+    text += mesh.closed() ? ", closed" : ", OPEN";
+    text += mesh.manifold() ? ", manifold" : ", NOT MANIFOLD";
+    if (!mesh.embedded())
+        text += ", " + number(mesh.self_intersections.count, 12) + " SELF-INTERSECTIONS";
+    return text;
+}
+
+std::string split_text(const ShellReport& report)
+{
+    std::string text = number(report.split_vertices.count, 12) +
+                       (report.split_vertices.count == 1 ? " vertex" : " vertices") +
+                       " of several fans, copied " + number(report.vertex_copies, 12) +
+                       (report.vertex_copies == 1 ? " time" : " times") + " (first";
+    for (const std::uint32_t vertex : report.split_vertices.first)
+        text += " " + number(vertex, 12);
+    return text + ")";
+}
+
+std::string contour_text(const ContourReport& contour)
+{
+    std::string text = number(contour.triangles, 12) + " triangles, simplified to " +
+                       number(contour.simplified_triangles, 12);
+    if (contour.method == ContourMethod::marching_tets)
+        text += "; by marching tets, for volume to mesh left " +
+                number(contour.volume_to_mesh_defects, 12) + " defects";
+    if (contour.dropped_components > 0)
+        text += "; " + number(contour.dropped_components, 12) + " inner components left out";
+    return text;
+}
+
+void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
+{
+    line(out, "wrap", "voxel " + number(wrap.voxel_size) + ", " + contour_text(wrap.contour));
+    line(out, "  input",
+         percent(wrap.boundary_share) + " of its area bounds the solid, " +
+             percent(wrap.sheet_share) + " thickened as sheets, " + percent(wrap.interior_share) +
+             " inside");
+    const auto distance = [&](const DistanceFigures& figures) {
+        return "mean " + number(figures.mean) + ", max " + number(figures.max) + " (" +
+               number(figures.max / wrap.voxel_size, 3) + " voxels)";
+    };
+    line(out, "  distance",
+         "input to wrap " + distance(wrap.input_to_wrap) + "; wrap to input " +
+             distance(wrap.wrap_to_input));
+}
+
+void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
+{
+    std::string text =
+        number(decimate.before, 12) + " triangles to " + number(decimate.triangles, 12);
+    if (!decimate.reached())
+        text += " (wanted " + number(decimate.wanted, 12) + ": no more can be had)";
+    line(out, "decimate",
+         text + "; farthest input to result " + number(decimate.input_to_result.max) +
+             ", result to input " + number(decimate.result_to_input.max));
+}
+
+void refine_lines(std::ostringstream& out, const RefineReport& refine)
+{
+    line(out, "refine",
+         number(refine.rounds.size() - 1, 12) + " rounds, kept " + number(refine.kept, 12) +
+             ", ended by " + name_of(refine.end));
+    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
+        const RefineRound& round = refine.rounds[k];
+        std::string text = number(round.triangles, 12) + " triangles, " + number(round.tets, 12) +
+                           " tets, fill " + percent(round.fill);
+        if (k > 0)
+            text += ", gained per added tet " + number(refine.gain_per_tet(k), 3);
+        line(out, ("  round " + number(k, 12)).c_str(), text);
+    }
+}
+
+void read_lines(std::ostringstream& out, const ReadReport& read)
+{
+    line(out, "read",
+         read.format + ": " + number(read.file_vertices, 12) + " vertices, " +
+             number(read.file_faces, 12) + " faces; " + number(read.polygons_triangulated, 12) +
+             " polygons triangulated, " + number(read.welded_vertices, 12) + " vertices welded, " +
+             number(read.unused_vertices, 12) + " unused, " +
+             number(read.skipped_faces.size(), 12) + " faces skipped");
+    if (read.placement.moves())
+        line(out, "  placed", placement_text(read.placement));
+}
+
+std::string stop_text(const LineReport& lines)
+{
+    std::string text;
+    for (int reason = 0; reason < kStopReasonCount; ++reason)
+        if (const std::size_t count = lines.stops[std::size_t(reason)])
+            text += (text.empty() ? "" : ", ") + std::string(name_of(StopReason(reason))) + " " +
+                    number(count, 12);
+    return text.empty() ? "none stepped" : text;
+}
+
+std::string volume_shares(const ShellReport& report)
+{
+    std::string text;
+    if (report.side != Side::outward)
+        text += ", fill " + percent(report.fill);
+    if (report.side != Side::inward)
+        text += ", outside " + number(report.outside_volume, 6) + " (" +
+                percent(report.outside_volume / report.solid_volume) + " of the solid's)";
+    return text;
+}
+
+std::string coverage_text(const Coverage& coverage, Side side)
+{
+    if (coverage.samples == 0)
+        return "not estimated";
+    return percent(coverage.covered_share) +
+           (side == Side::inward ? " of the solid (+- " : " of what the outer surface holds (+- ") +
+           percent(coverage.standard_error) + "), more than once " +
+           percent(coverage.overlap_share) + "; " + number(coverage.samples, 12) +
+           " points: " + number(coverage.in_none, 12) + " in no tet, " +
+           number(coverage.in_several, 12) + " in two or more";
+}
+
+std::string certificate_text(const StackCertificate& certificate)
+{
+    const std::vector<Certificate>& layers = certificate.layers;
+    if (certificate.certified())
+        return std::string("yes (") +
+               (!layers.empty() && layers.front().test == PrismTest::chosen_tets
+                    ? "the 3 chosen tets"
+                    : "12 tets") +
+               " of each prism positive, surfaces embedded and disjoint" +
+               (layers.size() > 1 ? ", in all " + number(layers.size()) + " layers)" : ")");
+    std::string text = certificate.locally_valid() ? "NO, only locally valid: " : "NO: ";
+    const std::vector<std::string> failures = certificate.failures();
+    for (std::size_t i = 0; i < failures.size(); ++i)
+        text += (i ? ", " : "") + failures[i];
+    return text;
+}
+
+void layer_lines(std::ostringstream& out, const ShellReport& report)
+{
+    if (report.cut)
+        line(out, "layers",
+             number(report.layers.size(), 12) + "; " + number(report.cut->moved, 12) +
+                 " points between them moved, " + number(report.cut->uncut, 12) +
+                 " pillars left whole");
+    for (std::size_t k = 0; k < report.layers.size(); ++k) {
+        const LayerFigures& layer = report.layers[k];
+        const std::string label = "  layer " + number(k);
+        line(out, label.c_str(),
+             number(layer.tets, 12) + " tets, volume " + number(layer.volume, 6) + ", lengths to " +
+                 number(layer.length.max) + ", " + number(layer.pinned_vertices, 12) +
+                 " pinned, mean ratio min " + number(layer.quality.mean_ratio.min) +
+                 ", 1 % under " + number(layer.quality.mean_ratio.p1) + ", median " +
+                 number(layer.quality.mean_ratio.median));
+    }
+}
+
+void line_figures(std::ostringstream& out, const LineReport& lines)
+{
+    line(out, "directions",
+         "smallest visibility " + number(lines.min_visibility) + ", " +
+             number(lines.blind_vertices, 12) + " blind vertices");
+    line(out, "lines",
+         number(lines.lines, 12) + " stepped, " + number(lines.steps, 12) + " steps, " +
+             number(lines.stuck_vertices, 12) + " stuck vertices");
+    line(out, "stops", stop_text(lines));
+    line(out, "lengths", spread(lines.length));
+    line(out, "  in voxels", spread(lines.length_voxels));
+}
+
+void growth_line(std::ostringstream& out, const GrowReport& grow)
+{
+    line(out, "growth",
+         number(grow.rounds, 12) + " rounds, " + number(grow.flips, 12) + " diagonals turned, " +
+             number(grow.released, 12) + " pins released");
+}
+
+/// What the stages after growth had to give up.
+void concession_lines(std::ostringstream& out, const ShellReport& report)
+{
+    if (report.grow && report.grow->quality_rounds > 0)
+        line(out, "min quality",
+             number(report.grow->quality_rounds, 12) +
+                 " rounds; still below: " + number(report.grow->tets_below_quality, 12) +
+                 " tets, " + number(report.grow->vertices_below_quality, 12) + " inner vertices");
+    if (report.scale)
+        line(out, "scale",
+             number(report.scale->shortened, 12) + " pillars shortened further, " +
+                 number(report.scale->pinned, 12) + " of them pinned");
+}
+
+std::string shown_share(const Overlaps& overlaps)
+{
+    return number(overlaps.certified_prisms(), 12) + " of " + number(overlaps.prisms, 12) +
+           " prisms certified by themselves";
+}
+
+/// What is wrong with the shell; what was not looked at is not called right.
+std::string verdict(const ShellReport& report)
+{
+    std::string wrong;
+    const auto add = [&](std::size_t count, const char* what) {
+        if (count > 0)
+            wrong += (wrong.empty() ? "" : ", ") + number(count, 12) + " " + what;
+    };
+    add(report.signs.inverted.count, "inverted tets");
+    add(report.signs.flat.count, "flat tets");
+    if (!report.conformity.conforming())
+        wrong += wrong.empty() ? "tets do not conform" : ", tets do not conform";
+    if (report.overlaps)
+        add(report.overlaps->pairs.count, "pairs of tets that overlap");
+    add(report.coverage.in_several, "sample points covered more than once");
+    add(report.coverage.outside_covered, "sample points covered outside the solid");
+    if (!wrong.empty())
+        return "NOT VALID: " + wrong +
+               (report.overlaps ? "; " + shown_share(*report.overlaps) : std::string());
+    if (report.certificate && report.certificate->certified())
+        return "no tet inverted, none overlapping: proven";
+    if (report.overlaps && report.overlaps->none())
+        return "no tet inverted, none overlapping: proven tet by tet; not certified as a whole";
+    if (report.coverage.samples == 0)
+        return "tets positive and conforming; overlaps not looked for, not certified";
+    return "tets positive and conforming, no overlap seen among the sample points; not certified";
+}
+
+void cost_lines(std::ostringstream& out, const std::vector<StageCost>& stages)
+{
+    double total = 0.0;
+    std::uint64_t peak = 0;
+    std::string text;
+    for (const StageCost& cost : stages) {
+        total += cost.seconds;
+        peak = std::max(peak, cost.peak_memory_bytes);
+        text += (text.empty() ? "" : ", ") + cost.stage + " " + number(cost.seconds, 3);
+    }
+    line(out, "seconds", number(total, 3) + " (" + text + ")");
+    line(out, "memory", number(double(peak) / (1 << 20), 4) + " MiB at most");
+}
+
+} // namespace
+
+std::string report_text(const ShellReport& report)
+{
+    constexpr double kDegrees = 57.29577951308232;
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    line(out, "source", report.source);
+    if (report.read)
+        read_lines(out, *report.read);
+    if (report.repair)
+        out << "repair\n" << repair_text(*report.repair);
+    if (report.wrap)
+        wrap_lines(out, *report.wrap);
+    if (report.contour)
+        line(out, "contour", contour_text(*report.contour));
+    if (report.decimate)
+        decimate_line(out, *report.decimate);
+    if (report.subdivided_from > 0)
+        line(out, "subdivide", "from " + number(report.subdivided_from, 12) + " triangles");
+    line(out, "mesh", mesh_lines(report.mesh));
+    if (report.vertex_copies > 0)
+        line(out, "split", split_text(report));
+    line(out, "field",
+         "voxel " + number(report.field.voxel_size) + ", " +
+             number(report.field.active_voxels, 12) + " active voxels, " +
+             number(double(report.field.memory_bytes) / (1 << 20)) + " MiB, depth " +
+             number(report.field.interior_depth) +
+             (report.field.origin.empty() ? "" : "; " + report.field.origin));
+    line(out, "drift",
+         "zero crossing at the vertices: mean " + number(report.field.smooth.mean_drift) +
+             ", max " + number(report.field.smooth.max_drift));
+    if (report.side != Side::inward)
+        line(out, "side", name_in_table(report.side));
+    line_figures(out, report.lines);
+    if (report.outside) {
+        line(out, "outward", "");
+        line_figures(out, report.outside->lines);
+    }
+    if (report.grow)
+        growth_line(out, *report.grow);
+    if (report.refine)
+        refine_lines(out, *report.refine);
+    concession_lines(out, report);
+    layer_lines(out, report);
+    line(out, "prisms",
+         number(report.prisms, 12) + ", " + number(report.pinned_vertices, 12) +
+             " pinned vertices, " + number(report.ripples, 12) + " ripples");
+    line(out, "tets",
+         number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
+             " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
+             (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+    line(out, "mean ratio",
+         spread(report.quality.mean_ratio) + "; 1 % under " + number(report.quality.mean_ratio.p1));
+    line(out, "dihedral",
+         "smallest " + number(kDegrees * report.quality.min_dihedral_radians.min) +
+             " degrees, largest " + number(kDegrees * report.quality.max_dihedral_radians.max));
+    line(out, "volume",
+         "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
+             volume_shares(report));
+    line(out, "coverage", coverage_text(report.coverage, report.side));
+    if (report.certificate)
+        line(out, "certified", certificate_text(*report.certificate));
+    if (report.overlaps)
+        line(out, "overlaps", report.overlaps->summary());
+    if (!report.stages.empty())
+        cost_lines(out, report.stages);
+    line(out, "verdict", verdict(report));
+    return out.str();
+}
+
+} // namespace vdb_shell

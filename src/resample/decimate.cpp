@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/resample/decimate.h"
+
+#include "core/stage_progress.h"
+#include "resample/simplify.h"
+#include "vdb_shell/core/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+constexpr std::size_t kFewestTriangles = 4; // a tetrahedron
+constexpr int kMostAttempts = 12;
+// Of the tolerance, where the distance turned out larger: collapses only look at the vertices.
+constexpr double kStricter = 0.7;
+constexpr double kSamplesAlongDiagonal = 256.0;
+
+void measure(DecimateReport& report, const TriangleMesh& input, const TriangleMesh& result,
+             double spacing, Interrupter* interrupter)
+{
+    report.triangles = result.triangles.size();
+    report.input_to_result = surface_distance(input, result, spacing, interrupter);
+    report.result_to_input = surface_distance(result, input, spacing, interrupter);
+}
+
+} // namespace
+
+void require_sensible(const DecimateOptions& options)
+{
+    if (options.triangles && *options.triangles < kFewestTriangles)
+        throw InvalidOption("decimate: triangles is " + std::to_string(*options.triangles) +
+                            ", must be at least 4");
+    if (options.tolerance && !(std::isfinite(*options.tolerance) && *options.tolerance > 0))
+        throw InvalidOption("decimate: tolerance is " + std::to_string(*options.tolerance) +
+                            ", must be positive and finite");
+}
+
+DecimateResult decimate(const TriangleMesh& mesh, const DecimateOptions& options,
+                        Interrupter* interrupter)
+{
+    require_sensible(options);
+    assert(options.triangles);
+    const StageProgress progress(interrupter, "decimate");
+    const double diagonal = diagonal_of(bounds_of(mesh.points));
+    const double tolerance = options.tolerance.value_or(diagonal);
+    const double spacing =
+        std::max(diagonal / kSamplesAlongDiagonal, std::min(tolerance / 4, diagonal));
+    DecimateResult out;
+    DecimateReport& report = out.report;
+    report.before = mesh.triangles.size();
+    report.wanted = *options.triangles;
+    double tried = tolerance;
+    for (int attempt = 0; attempt < kMostAttempts; ++attempt, tried *= kStricter) {
+        Simplified left = simplify(
+            mesh, {tried, std::numeric_limits<double>::infinity(), *options.triangles, false},
+            interrupter);
+        measure(report, mesh, left.mesh, spacing, interrupter);
+        report.repeats += left.repeats;
+        if (std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance) {
+            out.mesh = std::move(left.mesh);
+            return out;
+        }
+        ++report.repeats;
+    }
+    out.mesh = mesh;
+    measure(report, mesh, out.mesh, spacing, interrupter);
+    return out;
+}
+
+} // namespace vdb_shell

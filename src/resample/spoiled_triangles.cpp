@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resample/spoiled_triangles.h"
+
+#include "core/box_pairs.h"
+#include "core/exact.h"
+#include "core/parallel.h"
+#include "mesh/triangle_contacts.h"
+
+namespace vdb_shell
+{
+
+std::vector<char> spoiled_triangles(const TriangleMesh& mesh)
+{
+    std::vector<char> bad(mesh.triangles.size());
+    for_each_index(bad.size(), [&](std::size_t t) {
+        const openvdb::Vec3I& c = mesh.triangles[t];
+        bad[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
+    });
+    const TriangleContacts contacts(mesh.points, mesh.triangles);
+    const auto touch = [&](std::uint32_t a, std::uint32_t b) {
+        return !bad[a] && !bad[b] && contacts.touch(a, b);
+    };
+    for (const auto& [a, b] : overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch))
+        bad[a] = bad[b] = 1;
+    return bad;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/coarse_start.h"
+
+#include "support/shapes.h"
+#include "support/stacks.h"
+#include "vdb_shell/shell/sides.h"
+
+#include <tbb/global_control.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace
+{
+
+using namespace vdb_shell;
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+double fill_of(const PrismShell& shell)
+{
+    return 1 - signed_volume(shell.inner, shell.triangles) /
+                   signed_volume(shell.outer, shell.triangles);
+}
+
+TEST(CoarseStart, PillarsEndWhereThoseOfTheCoarseShellDo)
+{
+    // The coarse shell of a sphere ends at a third of its radius.
+    const TriangleMesh coarse = test::icosphere(3.0, 2), fine = test::icosphere(3.0, 4);
+    std::vector<Vec3d> inner;
+    for (const Vec3s& p : coarse.points)
+        inner.push_back(Vec3d(p) / 3.0);
+    Directions lines;
+    lines.inward.assign(fine.points.size(), Vec3d(0.0));
+    lines.visibility.assign(fine.points.size(), 0.7);
+    const growth::Pillars pillars =
+        growth::pillars_in(coarse, inner, fine, lines, growth::Bends::kept);
+    for (std::size_t v = 0; v < fine.points.size(); ++v) {
+        const Vec3d end = Vec3d(fine.points[v]) + pillars.length[v] * pillars.lines.inward[v];
+        // On a chord of the inner sphere, which lies up to 0.035 below its arc.
+        EXPECT_LE(end.length(), 1.0 + 1e-6);
+        EXPECT_GE(end.length(), 0.96);
+        EXPECT_GT(end.unit().dot(Vec3d(fine.points[v]).unit()), 0.999);
+        EXPECT_EQ(pillars.lines.visibility[v], 0.7);
+    }
+}
+
+TEST(CoarseStart, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
+{
+    const TriangleMesh sphere = test::icosphere(1.0, 2);
+    std::vector<Vec3d> outside;
+    for (const Vec3s& p : sphere.points)
+        outside.push_back(1.5 * Vec3d(p));
+    Directions lines;
+    for (const Vec3s& p : sphere.points)
+        lines.inward.push_back(-Vec3d(p).unit());
+    lines.visibility.assign(sphere.points.size(), 1.0);
+    const growth::Pillars pillars =
+        growth::pillars_in(sphere, outside, sphere, lines, growth::Bends::kept);
+    for (std::size_t v = 0; v < sphere.points.size(); ++v) {
+        EXPECT_EQ(pillars.lines.inward[v], lines.inward[v]);
+        EXPECT_NEAR(pillars.length[v], 0.5, 1e-6);
+    }
+}
+
+TEST(CoarseStart, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
+{
+    // One pillar is longer than all others.
+    const TriangleMesh coarse = test::icosphere(1.0, 1), fine = test::icosphere(1.0, 4);
+    std::vector<Vec3d> inner;
+    for (std::size_t v = 0; v < coarse.points.size(); ++v)
+        inner.push_back(Vec3d(coarse.points[v]) * (v == 0 ? 0.3 : 0.6));
+    Directions lines;
+    for (const Vec3s& p : fine.points)
+        lines.inward.push_back(-Vec3d(p).unit());
+    lines.visibility.assign(fine.points.size(), 1.0);
+    const auto tip = std::find(fine.points.begin(), fine.points.end(), coarse.points[0]);
+    ASSERT_NE(tip, fine.points.end());
+    const auto length = [&](growth::Bends bends) {
+        return growth::pillars_in(coarse, inner, fine, lines, bends)
+            .length[std::size_t(tip - fine.points.begin())];
+    };
+    EXPECT_NEAR(length(growth::Bends::kept), 0.7, 1e-6);
+    EXPECT_LT(length(growth::Bends::smoothed), 0.69);
+    EXPECT_GT(length(growth::Bends::smoothed), 0.6);
+}
+
+class GrownFromCoarse : public testing::TestWithParam<Method>
+{
+};
+
+TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThreads)
+{
+    GrowOptions options;
+    options.method = GetParam();
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    options.coarse_from = 0;
+    const GrowResult without = test::grown(mesh, options);
+    options.coarse_from = mesh.triangles.size();
+    const GrowResult with = test::grown(mesh, options);
+    test::expect_certified(one_layer(with.shell, with.split), test::test_of(options.method));
+    EXPECT_NE(with.shell.inner, without.shell.inner);
+    EXPECT_GT(fill_of(with.shell), fill_of(without.shell) - 0.01);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    const GrowResult alone = test::grown(mesh, options);
+    EXPECT_EQ(alone.shell.inner, with.shell.inner);
+    EXPECT_EQ(alone.split.order, with.split.order);
+}
+
+TEST(CoarseStart, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
+    ASSERT_EQ(levels.size(), 2U);
+    const auto all = double(mesh.triangles.size()), first = double(levels[0].mesh.triangles.size()),
+               last = double(levels[1].mesh.triangles.size());
+    EXPECT_NEAR(last, 1200, 50);
+    EXPECT_NEAR(all / first, first / last, 0.2);
+}
+
+TEST(CoarseStart, TheCoarsestSurfacesVerticesAreTheMeshs)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
+    const std::vector<std::uint32_t> vertices = vertices_of_coarsest(mesh, levels);
+    ASSERT_EQ(vertices.size(), levels.back().mesh.points.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+        EXPECT_EQ(mesh.points[vertices[v]], levels.back().mesh.points[v]);
+    EXPECT_EQ(vertices_of_coarsest(mesh, {}).size(), mesh.points.size());
+}
+
+TEST(CoarseStart, NoLevelsForFewTrianglesNorOutwardNorWithoutItsLevers)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    GrowOptions options;
+    options.coarse_from = mesh.triangles.size() + 1;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+    options.coarse_from = 0;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+    options = {};
+    EXPECT_TRUE(coarse_levels(reversed_surface(mesh), options).empty());
+    options.free_moves = false;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+    options = {};
+    options.top_down = false;
+    EXPECT_TRUE(coarse_levels(mesh, options).empty());
+}
+
+TEST(CoarseStart, ReadsLengthsOfTheCoarsestVerticesAlone)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    GrowOptions options;
+    options.coarse_from = 500;
+    GrowStart start{{}, coarse_levels(mesh, options)};
+    ASSERT_FALSE(start.levels.empty());
+    Directions directions;
+    for (const Vec3s& p : mesh.points)
+        directions.inward.push_back(-Vec3d(p).unit());
+    directions.visibility.assign(mesh.points.size(), 0.5);
+    const std::vector<double> cap(mesh.points.size(), std::numeric_limits<double>::infinity());
+    LineLengths all{std::vector<double>(mesh.points.size(), 0.4), {}, {}}, some = all;
+    some.length.assign(mesh.points.size(), 0.0);
+    for (const std::uint32_t v : vertices_of_coarsest(mesh, start.levels))
+        some.length[v] = all.length[v];
+    const auto grow = [&](const LineLengths& lengths, const GrowStart* from) {
+        return grow_shell(mesh, directions, lengths, cap, options, {}, nullptr, from).shell.inner;
+    };
+    EXPECT_EQ(grow(some, &start), grow(all, &start));
+    // Without levels growth makes its own.
+    EXPECT_EQ(grow(all, nullptr), grow(all, &start));
+}
+
+TEST(CoarseStart, IsThickerWhenRoundsAreAskedFor)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    GrowOptions options;
+    options.coarse_from = 500;
+    const GrowResult hasty = test::grown(mesh, options);
+    options.free_rounds = 40;
+    const GrowResult patient = test::grown(mesh, options);
+    EXPECT_GT(fill_of(patient.shell), fill_of(hasty.shell));
+    options.free_rounds = 3;
+    EXPECT_EQ(test::grown(mesh, options).report.rounds, 3U);
+}
+
+TEST(CoarseStart, IsMostlyDoneBeforeTheFirstRoundOnTheWhole)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(6);
+    ASSERT_GT(mesh.triangles.size(), 50000U);
+    GrowOptions options;
+    options.free_rounds = 0;
+    const GrowResult result = test::grown(mesh, options);
+    EXPECT_EQ(result.report.rounds, 0U);
+    EXPECT_GT(fill_of(result.shell), 0.95);
+    test::expect_certified(one_layer(result.shell, result.split), PrismTest::twelve_tets);
+}
+
+TEST_P(GrownFromCoarse, KeepsToTheCap)
+{
+    GrowOptions options;
+    options.method = GetParam();
+    options.coarse_from = 500;
+    const GrowResult result = test::grown(test::torus(2.0, 0.8, 48, 24), options, 0.125);
+    for (std::size_t v = 0; v < result.shell.inner.size(); ++v)
+        EXPECT_LE(result.shell.length(v), 0.125) << v;
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, GrownFromCoarse,
+                         testing::Values(Method::certified, Method::thickest));
+
+} // namespace

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/growth/grow.h"
+#include "vdb_shell/mesh/normals.h"
+
+#include "core/stage_progress.h"
+#include "growth/move_tests.h"
+#include "growth/pins.h"
+#include "growth/predicates.h"
+#include "growth/start.h"
+#include "support/files.h"
+#include "support/shapes.h"
+#include "support/stacks.h"
+#include "vdb_shell/certify/certificate.h"
+#include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/coverage.h"
+#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/io/read_mesh.h"
+#include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/pipeline.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace
+{
+
+using namespace vdb_shell;
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+using test::bumpy_sphere;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Case {
+    TriangleMesh mesh;
+    Directions directions;
+    LineLengths start; ///< none: growth finds its own start
+    std::vector<double> cap;
+};
+
+Case case_of(const TriangleMesh& mesh, double cap = kInfinity)
+{
+    Case c;
+    c.mesh = mesh;
+    c.directions.inward = pseudo_normals(mesh);
+    c.directions.visibility = visibility_of(mesh, c.directions.inward);
+    for (Vec3d& d : c.directions.inward)
+        d = -d;
+    const std::size_t count = mesh.points.size();
+    c.start = {std::vector<double>(count, 0.0), std::vector<std::uint32_t>(count, 0),
+               std::vector<StopReason>(count, StopReason::none)};
+    c.cap.assign(count, cap);
+    return c;
+}
+
+GrowResult grown(const Case& c, const GrowOptions& options = {}, Interrupter* interrupter = nullptr)
+{
+    return grow_shell(c.mesh, c.directions, c.start, c.cap, options, {}, interrupter);
+}
+
+GrowOptions thickest()
+{
+    GrowOptions options;
+    options.method = Method::thickest;
+    return options;
+}
+
+double fill_of(const PrismShell& shell)
+{
+    return 1 - signed_volume(shell.inner, shell.triangles) /
+                   signed_volume(shell.outer, shell.triangles);
+}
+
+void expect_all_positive(const PrismShell& shell, const PrismSplit& split)
+{
+    const TetSigns signs = count_tet_signs(make_tets(shell, split));
+    EXPECT_EQ(signs.inverted.count, 0U);
+    EXPECT_EQ(signs.flat.count, 0U);
+}
+
+/// The tets of all six orders of a prism are its twelve.
+void expect_twelve_positive(const PrismShell& shell)
+{
+    std::array<std::uint8_t, 3> order{0, 1, 2};
+    do {
+        expect_all_positive(
+            shell, {std::vector<std::array<std::uint8_t, 3>>(shell.triangles.size(), order), 0});
+    } while (std::next_permutation(order.begin(), order.end()));
+}
+
+/// The inner surface neither touches itself nor the outer one: with the inner surface turned
+/// inside out both together bound the shell. Precondition: no pins, which both surfaces share.
+void expect_embedded(const PrismShell& shell)
+{
+    const TriangleMesh inner{shell.inner, shell.triangles};
+    const MeshCheck check =
+        check_mesh(test::joined({shell.outer, shell.triangles}, test::reversed(inner)));
+    EXPECT_EQ(check.self_intersections.count, 0U);
+    EXPECT_EQ(check.degenerate_triangles.count, 0U);
+}
+
+void expect_sound(const GrowResult& result, Method method)
+{
+    if (method == Method::certified)
+        expect_twelve_positive(result.shell);
+    expect_all_positive(result.shell, result.split);
+    const PrismTest test =
+        method == Method::certified ? PrismTest::twelve_tets : PrismTest::chosen_tets;
+    for (const std::string& failure : certify_shell(result.shell, result.split, test).failures())
+        ADD_FAILURE() << failure;
+    EXPECT_TRUE(check_conformity(result.shell, make_tets(result.shell, result.split)).conforming());
+    EXPECT_GE(fill_of(result.shell), result.report.fill_after_lines - 1e-12);
+}
+
+std::size_t count_of(const PrismShell& shell, StopReason reason)
+{
+    return static_cast<std::size_t>(std::count(shell.stop.begin(), shell.stop.end(), reason));
+}
+
+/// A pyramid over a U. No point of the U sees all its sides, so no direction at the apex (the last
+/// vertex) sees all the faces there.
+TriangleMesh pyramid_over_u()
+{
+    TriangleMesh mesh;
+    mesh.points = {Vec3s(0, 0, 0), Vec3s(3, 0, 0), Vec3s(3, 3, 0),
+                   Vec3s(2, 3, 0), Vec3s(2, 1, 0), Vec3s(1, 1, 0),
+                   Vec3s(1, 3, 0), Vec3s(0, 3, 0), Vec3s(1.5F, 0.5F, 2)};
+    for (std::uint32_t i = 0; i < 8; ++i)
+        mesh.triangles.emplace_back(i, (i + 1) % 8, 8);
+    for (const auto& [a, b, c, d] :
+         {std::array<std::uint32_t, 4>{0, 1, 4, 5}, std::array<std::uint32_t, 4>{0, 5, 6, 7},
+          std::array<std::uint32_t, 4>{1, 2, 3, 4}}) {
+        mesh.triangles.emplace_back(a, c, b);
+        mesh.triangles.emplace_back(a, d, c);
+    }
+    return mesh;
+}
+
+// The inner surface of a convex or a round solid can collapse onto its centre, so nothing but
+// float32 and the size of the last steps (2e-4 of the diagonal, or the 0.2 % at which growth
+// is content) keeps the fill from 1.
+TEST(Grow, FillsConvexAndRoundSolids)
+{
+    for (const Method method : {Method::certified, Method::thickest}) {
+        GrowOptions options;
+        options.method = method;
+        for (const TriangleMesh& mesh :
+             {test::box(Vec3d(-1), Vec3d(1)), test::box(Vec3d(0), Vec3d(3, 1, 0.5)),
+              test::icosphere(1.0, 2), test::torus(1.0, 0.3, 32, 16)}) {
+            const GrowResult result = grown(case_of(mesh), options);
+            expect_sound(result, method);
+            expect_embedded(result.shell);
+            EXPECT_GT(fill_of(result.shell), 0.997);
+            EXPECT_EQ(count_of(result.shell, StopReason::pinned), 0U);
+            EXPECT_EQ(count_of(result.shell, StopReason::thickness), 0U);
+        }
+    }
+}
+
+TEST(Grow, ThickestIsThickerThanCertified)
+{
+    for (const TriangleMesh& mesh : {bumpy_sphere(), bumpy_sphere(4)}) {
+        GrowOptions options;
+        const double certified = fill_of(grown(case_of(mesh), options).shell);
+        options.method = Method::thickest;
+        const double thickest = fill_of(grown(case_of(mesh), options).shell);
+        RecordProperty("certified", std::to_string(certified));
+        // A solid filled to 0.998 gets no further round by either.
+        EXPECT_GE(thickest, std::min(certified + 0.0015, 0.998));
+    }
+}
+
+TEST(Grow, KeepsEveryStateValidWithoutSymmetry)
+{
+    const Case c = case_of(bumpy_sphere());
+    const GrowResult certified = grown(c);
+    expect_sound(certified, Method::certified);
+    expect_embedded(certified.shell);
+    EXPECT_GT(fill_of(certified.shell), 0.95);
+    const GrowResult more = grown(c, thickest());
+    expect_sound(more, Method::thickest);
+    expect_embedded(more.shell);
+    EXPECT_GT(fill_of(more.shell), 0.95);
+}
+
+TEST(Grow, IsValidWithEveryLeverOff)
+{
+    const Case c = case_of(bumpy_sphere());
+    for (bool GrowOptions::*lever :
+         {&GrowOptions::mend_directions, &GrowOptions::smooth_directions, &GrowOptions::top_down,
+          &GrowOptions::grow_lines, &GrowOptions::free_moves, &GrowOptions::soft_contacts,
+          &GrowOptions::flips}) {
+        GrowOptions options;
+        options.*lever = false;
+        options.free_rounds = 4;
+        const GrowResult result = grown(c, options);
+        expect_sound(result, options.method);
+        expect_embedded(result.shell);
+    }
+}
+
+TEST(Grow, FreeMovesWinWhereLinesAreStuck)
+{
+    const Case c = case_of(bumpy_sphere());
+    GrowOptions lines_only;
+    lines_only.free_moves = false;
+    const GrowResult lines = grown(c, lines_only), free = grown(c);
+    EXPECT_EQ(lines.report.rounds, 0U);
+    EXPECT_NEAR(fill_of(lines.shell), lines.report.fill_after_lines, 1e-12);
+    // Free moves do not wait for lines that are far from done.
+    EXPECT_LE(free.report.fill_after_lines, lines.report.fill_after_lines);
+    EXPECT_GT(fill_of(free.shell), fill_of(lines.shell) + 0.01);
+}
+
+/// Exact for these coordinates: differences of float32 have at most 25 bits, their squares 50.
+bool longer_than(const PrismShell& shell, std::size_t v, double length)
+{
+    long double squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const long double extent =
+            static_cast<long double>(shell.inner[v][axis]) - shell.outer[v][axis];
+        squared += extent * extent;
+    }
+    return squared > static_cast<long double>(length) * length;
+}
+
+TEST(Grow, GivesTheThicknessAskedForAlongFlatFaces)
+{
+    const TriangleMesh mesh = test::gridded_box(Vec3d(0), Vec3d(2), 4);
+    GrowOptions straight;
+    straight.smooth_directions = straight.free_moves = false;
+    const PrismShell shell = grown(case_of(mesh, 0.25), straight).shell;
+    std::size_t flat = 0;
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        int on_faces = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            on_faces += mesh.points[v][axis] == 0 || mesh.points[v][axis] == 2;
+        if (on_faces > 1)
+            continue;
+        ++flat;
+        EXPECT_EQ(shell.length(v), 0.25) << v;
+        EXPECT_EQ(shell.stop[v], StopReason::thickness);
+    }
+    EXPECT_EQ(flat, 6U * 9U);
+}
+
+TEST(Grow, NeverExceedsTheThickness)
+{
+    for (const Vec3d& shift : {Vec3d(0), Vec3d(1000, -700, 300)})
+        for (const Method method : {Method::certified, Method::thickest}) {
+            GrowOptions options;
+            options.method = method;
+            Case c = case_of(test::translated(bumpy_sphere(), shift), 0.1);
+            for (std::size_t v = 0; v < c.cap.size(); v += 3)
+                c.cap[v] = 0.05; // a painted thickness
+            c.cap[5] = 0;
+            const GrowResult result = grown(c, options);
+            expect_sound(result, method);
+            for (std::size_t v = 0; v < c.cap.size(); ++v) {
+                EXPECT_FALSE(longer_than(result.shell, v, c.cap[v])) << v;
+                EXPECT_LE(result.shell.length(v), c.cap[v]) << v;
+            }
+            EXPECT_TRUE(result.shell.pinned(5));
+            EXPECT_GT(count_of(result.shell, StopReason::thickness), c.cap.size() / 2);
+        }
+}
+
+TEST(Grow, PinsAVertexThatNoDirectionServes)
+{
+    const Case c = case_of(pyramid_over_u());
+    ASSERT_TRUE(check_mesh(c.mesh).embedded());
+    for (const Method method : {Method::certified, Method::thickest}) {
+        GrowOptions options;
+        options.method = method;
+        const GrowResult result = grown(c, options);
+        expect_sound(result, method);
+        EXPECT_TRUE(result.shell.pinned(8));
+        EXPECT_EQ(result.shell.stop[8], StopReason::pinned);
+        EXPECT_EQ(count_of(result.shell, StopReason::pinned), 1U);
+        EXPECT_GT(fill_of(result.shell), 0.3);
+    }
+}
+
+TEST(Grow, FillsTwoComponents)
+{
+    const TriangleMesh box = test::box(Vec3d(0), Vec3d(1));
+    const GrowResult result =
+        grown(case_of(test::joined(box, test::translated(box, Vec3d(1.001, 0, 0)))));
+    expect_sound(result, Method::certified);
+    expect_embedded(result.shell);
+    EXPECT_GT(fill_of(result.shell), 0.997);
+}
+
+TEST(Grow, GrowsFromBothSidesOfACavity)
+{
+    // The start may not jump over a cavity that lies within one prism of the outer surface.
+    for (const double half : {0.3, 0.02}) {
+        const TriangleMesh solid =
+            test::joined(test::box(Vec3d(-1), Vec3d(1)),
+                         test::translated(test::reversed(test::box(Vec3d(-half), Vec3d(half))),
+                                          Vec3d(0.25, 0.1, -0.5)));
+        const GrowResult result = grown(case_of(solid));
+        expect_sound(result, Method::certified);
+        expect_embedded(result.shell);
+        EXPECT_GT(fill_of(result.shell), 0.3);
+        const TetMesh tets = make_tets(result.shell, result.split);
+        CoverageOptions sampling;
+        sampling.samples = 20000;
+        const Coverage coverage = estimate_coverage(solid, tets, sampling);
+        EXPECT_EQ(coverage.in_several, 0U);
+        EXPECT_EQ(coverage.outside_covered, 0U);
+    }
+}
+
+// A cavity with hardly a shell of its own, that no line of the outer box meets: the start would
+// cover it with one prism, touching nothing.
+TEST(Grow, DoesNotStartAcrossACavity)
+{
+    const TriangleMesh solid =
+        test::joined(test::box(Vec3d(-1), Vec3d(1)),
+                     test::translated(test::reversed(test::box(Vec3d(-0.02), Vec3d(0.02))),
+                                      Vec3d(0.25, 0.1, -0.5)));
+    Case c = case_of(solid);
+    std::fill(c.cap.begin() + 8, c.cap.end(), 0.01);
+    const GrowResult result = grown(c);
+    expect_sound(result, Method::certified);
+    expect_embedded(result.shell);
+}
+
+TEST(Grow, EndsOnASurfaceThatCrossesItself)
+{
+    const TriangleMesh box = test::box(Vec3d(0), Vec3d(1));
+    const GrowResult result =
+        grown(case_of(test::joined(box, test::translated(box, Vec3d(0.5, 0.4, 0.3)))));
+    EXPECT_EQ(result.shell.inner.size(), 16U);
+}
+
+TEST(Grow, GivesTheSameBitsForAnyNumberOfThreads)
+{
+    const Case c = case_of(test::joined(
+        bumpy_sphere(), test::translated(test::torus(1, 0.3, 24, 12), Vec3d(4, 0, 0))));
+    GrowOptions options = thickest();
+    options.free_rounds = 10;
+    const auto with_threads = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return grown(c, options);
+    };
+    const GrowResult one = with_threads(1);
+    for (const std::size_t threads : {2, 7}) {
+        const GrowResult other = with_threads(threads);
+        EXPECT_EQ(std::memcmp(one.shell.inner.data(), other.shell.inner.data(),
+                              one.shell.inner.size() * sizeof(Vec3s)),
+                  0);
+        EXPECT_EQ(one.split.order, other.split.order);
+        EXPECT_EQ(one.shell.stop, other.shell.stop);
+        EXPECT_EQ(one.report.flips, other.report.flips);
+    }
+}
+
+class StopAfter : public Interrupter
+{
+public:
+    explicit StopAfter(int polls) : left_(polls) {}
+    bool wasInterrupted(int /*percent*/) override { return left_-- <= 0; }
+    int left() const { return left_; }
+
+private:
+    int left_;
+};
+
+TEST(Grow, StopsWhenAskedAtAnyPoint)
+{
+    const Case c = case_of(bumpy_sphere());
+    constexpr int kMany = 100000;
+    StopAfter never(kMany);
+    grown(c, {}, &never);
+    const int polls = kMany - never.left();
+    EXPECT_GT(polls, 10);
+    for (const int after : {0, 1, polls / 2, polls - 1}) {
+        StopAfter interrupter(after);
+        EXPECT_THROW(grown(c, {}, &interrupter), Cancelled) << after;
+    }
+}
+
+TEST(Grow, RefusesNegativeRounds)
+{
+    GrowOptions options;
+    options.free_rounds = -3;
+    try {
+        grown(case_of(test::box(Vec3d(0), Vec3d(1))), options);
+        FAIL();
+    } catch (const InvalidOption& error) {
+        EXPECT_NE(std::string(error.what()).find("free_rounds is -3"), std::string::npos);
+    }
+}
+
+TEST(Grow, HonoursTheUsersSplitUnderTwelveTets)
+{
+    const Case c = case_of(bumpy_sphere());
+    GrowOptions options;
+    options.free_rounds = 2;
+    const SplitOptions by_index{SplitRule::vertex_index, 1};
+    const GrowResult result = grow_shell(c.mesh, c.directions, c.start, c.cap, options, by_index);
+    EXPECT_EQ(result.split.order, split_prisms(result.shell, by_index).order);
+    expect_all_positive(result.shell, result.split);
+}
+
+// What is tested exactly has to be what is stored. g++ 12 merges neighbouring conversions into
+// vector code that keeps the double; this is the loop it did it in.
+TEST(Grow, RoundsToFloat32ForGood)
+{
+    for (int i = 1; i < 1000; ++i) {
+        const Vec3d start(0.1 * i, -0.7 * i, 1.0 / i), step(1.0 / 3, 1e-7 * i, -0.3);
+        const Vec3d x = growth::rounded(start + 0.37 * step);
+        for (int k = 0; k < 3; ++k) {
+            std::uint64_t bits = 0;
+            const double coordinate = x[k];
+            std::memcpy(&bits, &coordinate, sizeof bits);
+            EXPECT_EQ(bits & ((std::uint64_t(1) << 29) - 1), 0U) << "more than float32's 24 bits";
+        }
+    }
+}
+
+TEST(Grow, FillsRealMeshes)
+{
+    VDB_SHELL_NEEDS_REAL_MESHES();
+    for (const char* name : {"cow.obj", "diku.obj", "lamp.obj", "teapot.obj"}) {
+        SCOPED_TRACE(name);
+        const ReadResult read = read_mesh(test::real_meshes() / "paper" / name, {});
+        ShellOptions options;
+        options.level_set.resolution = 64;
+        const ShellResult result = build_shell(read.mesh, options, name);
+        EXPECT_EQ(result.report.signs.inverted.count, 0U);
+        EXPECT_EQ(result.report.signs.flat.count, 0U);
+        expect_twelve_positive(result.stack.layers[0]);
+        EXPECT_EQ(result.report.coverage.samples, ShellOptions{}.coverage.samples);
+        EXPECT_EQ(result.report.coverage.in_several, 0U);
+        EXPECT_EQ(result.report.coverage.outside_covered, 0U);
+        EXPECT_GT(result.report.fill, 0.95);
+    }
+}
+
+TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
+{
+    const Case c = case_of(test::icosphere(1, 1));
+    const growth::Connectivity mesh = growth::connect(c.mesh.points.size(), c.mesh.triangles);
+    growth::GrowState s = growth::make_state(mesh, c.mesh.points, c.cap);
+    growth::settle_start(s, c.directions, std::vector<double>(s.b.size(), 0.5),
+                         StageProgress(nullptr, "test"));
+    // Neighbours too: each is released beside pins that are not yet.
+    for (const int v : {0, 1, 11}) {
+        s.pinned[v] = 1;
+        s.b[v] = s.a[v];
+    }
+    EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0)), 0);
+    EXPECT_EQ(growth::release_pins(s, c.directions.visibility), 3);
+    for (int f = 0; f < mesh.face_count(); ++f) {
+        EXPECT_TRUE(growth::prism_valid(s, f));
+        const growth::InnerTriangle triangle(s, f);
+        for (int g = 0; g < mesh.face_count(); ++g)
+            EXPECT_FALSE(triangle.meets_outer(g) || (g != f && triangle.meets_inner(g)));
+    }
+    for (const int v : {0, 1, 11})
+        EXPECT_NE(s.b[v], s.a[v]);
+}
+
+} // namespace

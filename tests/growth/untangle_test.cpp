@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/untangle.h"
+
+#include "core/counter_random.h"
+#include "growth/move_tests.h"
+#include "growth/start.h"
+#include "support/shapes.h"
+
+#include <tbb/global_control.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace
+{
+
+using namespace vdb_shell;
+using namespace vdb_shell::growth;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+int invalid_prisms(const GrowState& s)
+{
+    int count = 0;
+    for (int f = 0; f < s.mesh->face_count(); ++f)
+        count += !prism_valid(s, f);
+    return count;
+}
+
+/// A sphere of radius 1 whose inner points, at 0.5, are thrown off their places by up to `noise`.
+struct NoisySphere {
+    TriangleMesh mesh = test::icosphere(1.0, 3);
+    Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
+    GrowState s;
+
+    explicit NoisySphere(double noise, double cap = kInfinity)
+        : s(make_state(connectivity, mesh.points, std::vector<double>(mesh.points.size(), cap)))
+    {
+        const CounterRandom random(7);
+        for (std::size_t v = 0; v < s.b.size(); ++v) {
+            Vec3d off;
+            for (std::uint64_t k = 0; k < 3; ++k)
+                off[static_cast<int>(k)] = noise * (2 * random.unit(3 * v + k) - 1);
+            s.b[v] = rounded(0.5 * s.a[v] + off);
+        }
+    }
+    std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(s.b.size(), 1); }
+    std::vector<std::uint8_t> none() const { return std::vector<std::uint8_t>(s.b.size(), 0); }
+};
+
+TEST(Untangle, MakesTheTwelveTetsOfEveryPrismPositive)
+{
+    NoisySphere sphere(0.06);
+    ASSERT_GT(invalid_prisms(sphere.s), 200);
+    std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
+    untangle(sphere.s, 60, look, moved);
+    EXPECT_EQ(invalid_prisms(sphere.s), 0);
+    EXPECT_EQ(std::count(look.begin(), look.end(), 1), 0);
+    // Nobody went further than the noise had sent them, give or take.
+    for (const Vec3d& p : sphere.s.b) {
+        EXPECT_GT(p.length(), 0.35);
+        EXPECT_LT(p.length(), 0.65);
+    }
+}
+
+TEST(Untangle, MovesAlongTheInnerSurfaceBeforeItMovesAcross)
+{
+    // Thrown about on their sphere, so that what is wrong can be put right there.
+    NoisySphere sphere(0.08);
+    for (Vec3d& p : sphere.s.b)
+        p = rounded(0.5 * p.unit());
+    const std::vector<Vec3d> before = sphere.s.b;
+    ASSERT_GT(invalid_prisms(sphere.s), 200);
+    std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
+    untangle(sphere.s, 60, look, moved);
+    EXPECT_EQ(invalid_prisms(sphere.s), 0);
+    double along = 0, across = 0;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+        const double height = sphere.s.b[v].dot(before[v].unit());
+        across += std::abs(sphere.s.b[v].length() - 0.5);
+        along += (sphere.s.b[v] - height * before[v].unit()).length();
+    }
+    EXPECT_LT(across, 0.1 * along);
+}
+
+TEST(Untangle, LeavesAloneWhatIsValid)
+{
+    NoisySphere sphere(0.0);
+    ASSERT_EQ(invalid_prisms(sphere.s), 0);
+    const std::vector<Vec3d> before = sphere.s.b;
+    std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
+    untangle(sphere.s, 5, look, moved);
+    EXPECT_EQ(sphere.s.b, before);
+    EXPECT_EQ(moved, sphere.none());
+}
+
+TEST(Untangle, LooksOnlyWhereItIsTold)
+{
+    NoisySphere sphere(0.06);
+    const std::vector<Vec3d> before = sphere.s.b;
+    std::vector<std::uint8_t> look = sphere.none(), moved = sphere.none();
+    untangle(sphere.s, 5, look, moved);
+    EXPECT_EQ(sphere.s.b, before);
+    look[100] = 1;
+    untangle(sphere.s, 1, look, moved);
+    for (std::size_t v = 0; v < before.size(); ++v)
+        EXPECT_EQ(sphere.s.b[v] != before[v], moved[v] != 0) << v;
+}
+
+TEST(Untangle, KeepsPinsAndTheCap)
+{
+    NoisySphere sphere(0.06, 0.52);
+    for (std::size_t v = 0; v < sphere.s.b.size(); ++v)
+        if (!within_cap(sphere.s, static_cast<int>(v), sphere.s.b[v]))
+            sphere.s.b[v] = rounded(0.52 * sphere.s.a[v]);
+    for (const int pin : {3, 40, 41}) {
+        sphere.s.pinned[pin] = 1;
+        sphere.s.b[pin] = sphere.s.a[pin];
+    }
+    std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
+    untangle(sphere.s, 20, look, moved);
+    for (int v = 0; v < sphere.s.mesh->vertices; ++v)
+        EXPECT_TRUE(within_cap(sphere.s, v, sphere.s.b[v])) << v;
+    for (const int pin : {3, 40, 41})
+        EXPECT_EQ(sphere.s.b[pin], sphere.s.a[pin]);
+}
+
+TEST(Untangle, IsTheSameForAnyNumberOfThreads)
+{
+    NoisySphere many(0.1), one(0.1);
+    std::vector<std::uint8_t> look = many.all(), moved = many.none();
+    untangle(many.s, 10, look, moved);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    std::vector<std::uint8_t> look_one = one.all(), moved_one = one.none();
+    untangle(one.s, 10, look_one, moved_one);
+    EXPECT_EQ(many.s.b, one.s.b);
+    EXPECT_EQ(moved, moved_one);
+}
+
+Directions radial(const NoisySphere& sphere)
+{
+    Directions directions;
+    for (const Vec3d& p : sphere.s.a)
+        directions.inward.push_back(-p);
+    directions.visibility.assign(sphere.s.a.size(), 1.0);
+    return directions;
+}
+
+int all_contacts(const GrowState& s)
+{
+    int count = 0;
+    for (int f = 0; f < s.mesh->face_count(); ++f) {
+        const InnerTriangle triangle(s, f);
+        for (int g = 0; g < s.mesh->face_count(); ++g)
+            count += (g > f && triangle.meets_inner(g)) || triangle.meets_outer(g);
+    }
+    return count;
+}
+
+TEST(SettleCarried, EndsValidAndLosesLittleWhereLittleIsWrong)
+{
+    NoisySphere sphere(0.0);
+    // All but one end at a tenth of the radius; that one goes through the middle and beyond.
+    std::vector<double> lengths(sphere.s.a.size(), 0.9);
+    lengths[100] = 1.15;
+    settle_carried(sphere.s, radial(sphere), lengths, StageProgress(nullptr, "test"));
+    EXPECT_EQ(invalid_prisms(sphere.s), 0);
+    EXPECT_EQ(all_contacts(sphere.s), 0);
+    EXPECT_EQ(std::count(sphere.s.pinned.begin(), sphere.s.pinned.end(), 1), 0);
+    int short_ones = 0;
+    for (std::size_t v = 0; v < lengths.size(); ++v)
+        short_ones += (sphere.s.b[v] - sphere.s.a[v]).length() < 0.85;
+    EXPECT_LT(short_ones, 12);
+}
+
+TEST(SettleCarried, EndsEvenWhereEverythingIsWrong)
+{
+    NoisySphere sphere(0.0);
+    settle_carried(sphere.s, radial(sphere), std::vector<double>(sphere.s.a.size(), 1.5),
+                   StageProgress(nullptr, "test"));
+    EXPECT_EQ(invalid_prisms(sphere.s), 0);
+    EXPECT_EQ(all_contacts(sphere.s), 0);
+}
+
+} // namespace
