@@ -73,7 +73,7 @@ struct ShellResult {
     /// The input, repaired and turned outward when asked, with copies of vertices of several fans
     /// where self-intersections are allowed.
     TriangleMesh surface;
-    openvdb::FloatGrid::Ptr level_set;
+    FloatGridPtr level_set;
     Directions directions; ///< of the side that the shell lies on; of both sides, inward
     /// Likewise. StopReason::none where no line was stepped: growth that begins on coarser surfaces
     /// has no use for more than those of the coarsest.

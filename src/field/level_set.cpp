@@ -10,6 +10,7 @@
 
 #include <openvdb/tools/Count.h>
 #include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <array>
@@ -261,6 +262,14 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
     auto grid = convert_nested(mesh, *transform, band, interrupter);
     finish_level_set(*grid, mesh);
     return grid;
+}
+
+void negate_level_set(openvdb::FloatGrid& level_set)
+{
+    openvdb::tools::foreach (level_set.beginValueAll(),
+                             [](const auto& value) { value.setValue(-*value); });
+    openvdb::FloatTree::RootNodeType& root = level_set.tree().root();
+    root.setBackground(-root.background(), false);
 }
 
 } // namespace vdb_shell

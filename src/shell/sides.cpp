@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/sides.h"
 
-#include <openvdb/tools/ValueTransformer.h>
-
 #include <cassert>
 #include <utility>
 
@@ -44,14 +42,6 @@ TriangleMesh reversed_surface(TriangleMesh mesh)
     for (openvdb::Vec3I& t : mesh.triangles)
         std::swap(t[1], t[2]);
     return mesh;
-}
-
-void negate_level_set(openvdb::FloatGrid& level_set)
-{
-    openvdb::tools::foreach (level_set.beginValueAll(),
-                             [](const auto& value) { value.setValue(-*value); });
-    openvdb::FloatTree::RootNodeType& root = level_set.tree().root();
-    root.setBackground(-root.background(), false);
 }
 
 double default_outward_thickness(const TriangleMesh& mesh)

@@ -14,7 +14,7 @@ namespace vdb_shell
 /// `name` is empty. Half floats are floats. Throws ReadError for a file that cannot be read, that
 /// has no such grid, several level sets and no name, or a grid that is not of floats; and
 /// GeometryError as require_level_set does. Messages name file, grid and property.
-openvdb::FloatGrid::Ptr read_level_set(const std::filesystem::path& path, const std::string& name);
+FloatGridPtr read_level_set(const std::filesystem::path& path, const std::string& name);
 
 /// Throws GeometryError when the grid's surface cannot be meshed: its class is not level set, its
 /// transform is no linear one (a frustum), a value is not finite, the background is not positive,

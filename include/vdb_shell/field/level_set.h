@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
-
-#include <openvdb/openvdb.h>
 
 #include <optional>
 
@@ -51,7 +50,11 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
 /// Throws InvalidOption (see above), GeometryError when no voxel centre lies inside ("voxel larger
 /// than the object") or when the estimated memory is over the limit, Cancelled. Same bits for any
 /// number of threads.
-openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
-                                          Interrupter* interrupter = nullptr);
+FloatGridPtr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
+                               Interrupter* interrupter = nullptr);
+
+/// phi becomes -phi everywhere, inactive values and the background included. In place; done twice
+/// it restores every bit.
+void negate_level_set(openvdb::FloatGrid& level_set);
 
 } // namespace vdb_shell

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
-
-#include <openvdb/openvdb.h>
 
 namespace vdb_shell
 {
@@ -24,8 +23,7 @@ enum class FieldRoute {
 /// Preconditions: closed, every edge of two triangles, oriented (cavities inward), no
 /// self-intersections; else signs are wrong. Throws as mesh_to_level_set does. Same bits for any
 /// number of threads.
-openvdb::FloatGrid::Ptr mesh_to_narrow_band(const TriangleMesh& mesh,
-                                            const LevelSetOptions& options,
-                                            Interrupter* interrupter = nullptr);
+FloatGridPtr mesh_to_narrow_band(const TriangleMesh& mesh, const LevelSetOptions& options,
+                                 Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell

@@ -4,8 +4,6 @@
 #include "vdb_shell/mesh/triangle_mesh.h"
 #include "vdb_shell/shell/shell_stack.h"
 
-#include <openvdb/openvdb.h>
-
 namespace vdb_shell
 {
 
@@ -23,10 +21,6 @@ enum class Side {
 
 /// Every triangle turned round: its second and third corner change places.
 TriangleMesh reversed_surface(TriangleMesh mesh);
-
-/// phi becomes -phi everywhere, inactive values and the background included. In place; done twice
-/// it restores every bit.
-void negate_level_set(openvdb::FloatGrid& level_set);
 
 /// The cap on outward lengths where the user gives none: a share kOutwardShare of the diagonal of
 /// the bounding box. Around a convex object there is no medial axis that could end a line, and no

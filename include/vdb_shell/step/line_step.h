@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 #include "vdb_shell/step/directions.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <optional>

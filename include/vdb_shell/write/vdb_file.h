@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/shell/shell_stack.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -22,8 +21,8 @@ inline constexpr int kLayeredSchema = 2; ///< the first that knows layers
 
 /// All that a shell's .vdb holds.
 struct ShellFile {
-    openvdb::FloatGrid::Ptr surface; ///< the level set
-    openvdb::FloatGrid::Ptr depth;   ///< see shell_depth_grid
+    FloatGridPtr surface; ///< the level set
+    FloatGridPtr depth;   ///< see shell_depth_grid
     ShellStack stack;
     TetMesh tets;
     std::string parameters_json;
@@ -71,8 +70,8 @@ struct ShellInfo {
 /// of smallest index. Class fog volume, background 0. Same bits for any number of threads. Throws
 /// InvalidOption for a voxel size that is not positive and finite or too small for 32-bit voxel
 /// coordinates, Cancelled.
-openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
-                                         Interrupter* interrupter = nullptr);
+FloatGridPtr shell_depth_grid(const TetMesh& tets, double voxel_size,
+                              Interrupter* interrupter = nullptr);
 
 /// Writes grids and metadata as docs/file_format.md says; `file` is not changed. The file (with
 /// PointPlacement::beside both files) appears whole or not at all. Same bytes for the same input,
@@ -96,6 +95,6 @@ std::filesystem::path points_file_of(const std::filesystem::path& path);
 /// A float grid of a .vdb, for painted thickness: by name, or the only float grid when `name` is
 /// empty. A grid saved with half floats is a float grid. Throws ReadError naming the grids that the
 /// file has, with their types.
-openvdb::FloatGrid::Ptr read_float_grid(const std::filesystem::path& path, const std::string& name);
+FloatGridPtr read_float_grid(const std::filesystem::path& path, const std::string& name);
 
 } // namespace vdb_shell
