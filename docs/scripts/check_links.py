@@ -6,20 +6,32 @@
 
 Looks at each .md below FOLDER but those in build folders: the file or folder that a link or picture names exists, and
 a page that it names with an anchor (`page.md#section`) has a heading of that name. Links to the web are not looked up.
+Pages that a source or a script names (`docs/theory.md`) must exist as well.
 Prints what is broken and ends with status 1, or says how many links there are.
 """
+import os
 import pathlib
 import re
 import sys
 
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
 FENCE = re.compile(r"^(```|~~~).*?^\1\s*$", re.MULTILINE | re.DOTALL)
-SKIPPED = {".git", "build", "node_modules"}
+MENTION = re.compile(r"(?<![\w./-])docs/[\w/]+\.(?:md|py)\b")
+SOURCES = {".h", ".cpp", ".py", ".sh", ".cmake", ".txt", ".json"}
+SKIPPED = {".git", ".cache", "node_modules"}
 
 
-def pages(folder):
-    return sorted(path for path in folder.rglob("*.md")
-                  if not SKIPPED & set(path.relative_to(folder).parts))
+def files(folder):
+    for place, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if name not in SKIPPED and not name.startswith("build"))
+        yield from (pathlib.Path(place) / name for name in sorted(names))
+
+
+def mentions(source):
+    """Line number and path of each page or script that a source names."""
+    for number, line in enumerate(source.read_text(errors="replace").splitlines(), 1):
+        for found in MENTION.finditer(line):
+            yield number, found[0]
 
 
 def anchors(page):
@@ -64,17 +76,31 @@ def fault(folder, page, address):
     return None
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1]).resolve()
+def broken_in(folder, path):
+    """How many links a file has, and what is wrong with them, a line each."""
     count, broken = 0, []
-    for page in pages(folder):
-        for line, address in links(page):
+    place = path.relative_to(folder)
+    if path.suffix == ".md":
+        for line, address in links(path):
             if re.match(r"[a-z][a-z0-9+.-]*:", address):
                 continue
             count += 1
-            wrong = fault(folder, page, address)
+            wrong = fault(folder, path, address)
             if wrong:
-                broken.append(f"{page.relative_to(folder)}:{line}: {address}: {wrong}")
+                broken.append(f"{place}:{line}: {address}: {wrong}")
+    elif path.suffix in SOURCES:
+        for line, page in mentions(path):
+            count += 1
+            if not (folder / page).exists():
+                broken.append(f"{place}:{line}: {page}: no such file")
+    return count, broken
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1]).resolve()
+    found = [broken_in(folder, path) for path in files(folder)]
+    broken = [line for _, lines in found for line in lines]
+    count = sum(number for number, _ in found)
     print("\n".join(broken) if broken else f"{count} links, all of them lead somewhere")
     return 1 if broken else 0
 
