@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Inspects, builds, repairs and wraps every mesh of a folder, and writes the table of docs/all_meshes.md.
+"""Inspects, builds, repairs and wraps every mesh of a folder, and writes the table of docs/measurements/all_meshes.md.
 
-    all_meshes.py COMMAND MESH_FOLDER docs/all_meshes.md [--quick] [--results FILE.json]
+    all_meshes.py COMMAND MESH_FOLDER docs/measurements/all_meshes.md [--quick] [--results FILE.json]
 
 COMMAND is the vdb_shell binary. --quick leaves out the meshes of more than 5000 triangles. --results keeps the
 finished runs in a file and takes them from there the next time; delete it when the command has changed.

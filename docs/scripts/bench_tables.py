@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tables and charts of docs/benchmarks.md, from the figures that benchmarks.py keeps."""
+"""The tables and charts of docs/measurements/benchmarks.md, from the figures that benchmarks.py keeps."""
 import statistics
 
 from bench_commands import DEEP, GMSH, LEVEL_SET, OURS, RIVALS, TETGEN

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures whole commands against each other and the stages by themselves; writes the tables of docs/benchmarks.md.
+"""Measures whole commands against each other and the stages by themselves; writes the tables of docs/measurements/benchmarks.md.
 
-    benchmarks.py COMMAND MESH_FOLDER docs/benchmarks.md [--suite PROGRAM] [--quick] [--minutes N] [--timeout SECONDS]
+    benchmarks.py COMMAND MESH_FOLDER docs/measurements/benchmarks.md [--suite PROGRAM] [--quick] [--minutes N] [--timeout SECONDS]
                   [--rounds N] [--bout-seconds SECONDS] [--results FILE.json] [--tables NAME ...]
 
 COMMAND is the vdb_shell binary. --suite is the program vdb_shell_benchmarks; without it the table of stages is left as

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A million Monte Carlo points in every clean mesh, in both methods; writes the tables of docs/monte_carlo.md.
+"""A million Monte Carlo points in every clean mesh, in both methods; writes the tables of docs/measurements/monte_carlo.md.
 
-    monte_carlo.py COMMAND MESH_FOLDER docs/monte_carlo.md [--quick] [--results FILE]
+    monte_carlo.py COMMAND MESH_FOLDER docs/measurements/monte_carlo.md [--quick] [--results FILE]
 
 --results keeps finished runs, so that a series can be continued; --quick leaves out the large meshes.
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Builds every mesh of a folder with the paper's methods and writes the table of docs/paper_methods.md.
+"""Builds every mesh of a folder with the paper's methods and writes the table of docs/measurements/paper_methods.md.
 
     paper_methods.py COMMAND MESH_FOLDER OUTPUT.md
 

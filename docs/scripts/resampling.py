@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures fill against the number of tets under resampling; writes the tables and the picture of the page.
 
-    resampling.py COMMAND MESH_FOLDER docs/resampling.md docs/images/resampling.svg [RESULTS.json]
+    resampling.py COMMAND MESH_FOLDER docs/measurements/resampling.md docs/measurements/images/resampling.svg [RESULTS.json]
 
 COMMAND is the vdb_shell binary. RESULTS.json keeps the finished runs, which are taken from there the next time; delete
 it when the command has changed.

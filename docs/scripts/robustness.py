@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Builds each clean mesh as it is and in seven disguises, and writes the tables of docs/robustness.md.
+"""Builds each clean mesh as it is and in seven disguises, and writes the tables of docs/measurements/robustness.md.
 
-    robustness.py COMMAND MESH_FOLDER docs/robustness.md [--quick] [--results FILE.json]
+    robustness.py COMMAND MESH_FOLDER docs/measurements/robustness.md [--quick] [--results FILE.json]
 
 COMMAND is the vdb_shell binary. --quick leaves out surfaces of more than 5000 triangles. --results keeps the finished
 runs in a file and takes them from there the next time; delete it when the command has changed.

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the stop tests on the situations of the paper's figure 2; writes the tables and the picture of the page.
 
-    symmetry_lines.py COMMAND MESH_FOLDER docs/symmetry_lines.md docs/images/symmetry_lines.svg
+    symmetry_lines.py COMMAND MESH_FOLDER docs/measurements/symmetry_lines.md docs/measurements/images/symmetry_lines.svg
 
 COMMAND is the vdb_shell binary. The shapes are made by symmetry_shapes.py.
 """

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures fill, CPU seconds and quality of the clean meshes, and writes the tables of docs/thickness.md.
+"""Measures fill, CPU seconds and quality of the clean meshes, and writes the tables of docs/measurements/thickness.md.
 
-    thickness.py COMMAND MESH_FOLDER docs/thickness.md [--quick] [--results FILE.json] [--tables NAME ...]
+    thickness.py COMMAND MESH_FOLDER docs/measurements/thickness.md [--quick] [--results FILE.json] [--tables NAME ...]
 
 COMMAND is the vdb_shell binary. --quick leaves out the meshes of more than 5000 triangles. --results keeps the
 finished runs in a file and takes them from there the next time; delete it when the command has changed. --tables

@@ -27,7 +27,8 @@ void drop_triangles(WorkingSurface& surface, const std::vector<char>& drop);
 void weld_points(WorkingSurface& surface, double tolerance, RepairReport& report);
 void drop_degenerate(WorkingSurface& surface, double sliver_height, RepairReport& report);
 void drop_duplicates(WorkingSurface& surface, RepairReport& report);
-/// Sheets: pieces without which every edge of their rim has fewer faults; see docs/repair.md.
+/// Sheets: pieces without which every edge of their rim has fewer faults; see
+/// docs/stages/repair.md.
 void drop_sheets(WorkingSurface& surface, RepairReport& report);
 void orient(WorkingSurface& surface, RepairReport& report);
 /// Gives every fan of triangles its own point and every pair of triangles its own edge. Open fans

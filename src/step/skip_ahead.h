@@ -11,7 +11,8 @@ namespace vdb_shell
 /// least of affine functions, one for each point of the surface, hence concave: if f is the point
 /// nearest to q(e), then at any earlier q(x) of the line the slope of the distance is at least the
 /// cosine of the angle under which q(x) sees f from behind. One look deep inside thus answers for
-/// all that lies before it, wherever f keeps within the cone of the test. docs/sparse_field.md.
+/// all that lies before it, wherever f keeps within the cone of the test.
+/// docs/stages/line_stepping.md.
 class SkipAhead
 {
 public:

@@ -48,9 +48,10 @@ struct WrapResult {
 /// sense, is over 0.6, together with all points within `sheet_voxels` of triangles that bound no
 /// such solid, or one thinner than 1.5 voxels: sheets, loose triangles, patches turned the wrong
 /// way. Gaps are closed by the surface where the winding number has that value. Features smaller
-/// than a voxel are lost. docs/wrap.md tells what to expect. Throws InvalidOption for options out
-/// of range, GeometryError for a mesh without triangles or without extent, or when float32 cannot
-/// hold the voxels at the mesh's coordinates, Cancelled. Same result for any number of threads.
+/// than a voxel are lost. docs/stages/wrap.md tells what to expect. Throws InvalidOption for
+/// options out of range, GeometryError for a mesh without triangles or without extent, or when
+/// float32 cannot hold the voxels at the mesh's coordinates, Cancelled. Same result for any number
+/// of threads.
 WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options,
                      Interrupter* interrupter = nullptr);
 

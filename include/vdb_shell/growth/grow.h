@@ -23,7 +23,7 @@ enum class Method {
     thickest,  ///< the same, then on with only the three chosen tets of each prism positive
 };
 
-/// Each lever is an option of its own; docs/thickness.md has its gain and cost.
+/// Each lever is an option of its own; docs/measurements/thickness.md has its gain and cost.
 struct GrowOptions {
     Method method = Method::certified;
     bool mend_directions = true;   ///< a direction that sees a triangle from behind, or nearly so,
@@ -44,7 +44,7 @@ struct GrowOptions {
     /// Upper bound on rounds of free moves, under each prism test. Unset: 40; but after a start on
     /// coarser surfaces (50,000 / triangles) squared under Method::certified, and they end sooner,
     /// when one wins little for what it costs, and ask only vertices that can win. Given, growth
-    /// takes its time: thicker (docs/benchmarks.md).
+    /// takes its time: thicker (docs/measurements/benchmarks.md).
     std::optional<int> free_rounds;
     /// Bound that the mean ratio of every tet should reach (shell/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the

@@ -84,12 +84,12 @@ struct RepairResult {
     RepairReport report;
 };
 /// Makes a closed, oriented, manifold surface of what is nearly one, and keeps the rest bit for bit
-/// (docs/repair.md): welds; drops triangles without area, repeats and sheets that bound no solid;
-/// orients consistently; parts fans and sheets that meet in a point or an edge; closes holes; turns
-/// components outward by their nesting. Holes of one-sided pieces stay open. What it cannot mend is
-/// in `report.after`; self-intersections of the input are only touched when asked (cut_crossings).
-/// Precondition as check_mesh, else InvalidOption; also for a tolerance that is negative or not
-/// finite. Same bytes for any number of threads.
+/// (docs/stages/repair.md): welds; drops triangles without area, repeats and sheets that bound no
+/// solid; orients consistently; parts fans and sheets that meet in a point or an edge; closes
+/// holes; turns components outward by their nesting. Holes of one-sided pieces stay open. What it
+/// cannot mend is in `report.after`; self-intersections of the input are only touched when asked
+/// (cut_crossings). Precondition as check_mesh, else InvalidOption; also for a tolerance that is
+/// negative or not finite. Same bytes for any number of threads.
 RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {},
                          Interrupter* interrupter = nullptr);
 
