@@ -2,8 +2,6 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/vdb_conventions.h"
 
-#include "command/exit_code.h"
-
 #include <CLI/CLI.hpp>
 
 #include <iostream>
@@ -12,7 +10,15 @@ namespace
 {
 
 using namespace vdb_shell;
-using namespace vdb_shell::command;
+
+/// Exit statuses; those of the command vdb_shell, so that a script need not tell the two apart.
+enum ExitCode {
+    success = 0,
+    internal_error = 1,
+    usage_error = 2,
+    read_error = 3,
+    check_failed = 7,
+};
 
 /// Prints the file's violations and returns whether there are none.
 bool keeps_conventions(const std::filesystem::path& file)

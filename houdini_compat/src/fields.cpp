@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fields.h"
 
-#include "io/scan_text.h"
+#include "vdb_shell/io/read_file.h"
 
 namespace vdb_shell::houdini
 {

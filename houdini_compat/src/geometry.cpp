@@ -3,7 +3,7 @@
 
 #include "vdb_shell/core/error.h"
 
-#include "io/scan_text.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
 #include <array>

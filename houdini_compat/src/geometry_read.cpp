@@ -2,10 +2,9 @@
 #include "vdb_shell/houdini/geometry_file.h"
 
 #include "geometry_parts.h"
-#include "io/polygon_soup.h"
-#include "io/scan_text.h"
 #include "json_read.h"
 #include "scf.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
 #include <string_view>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/houdini/geometry_file.h"
 
+#include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
 
-#include "core/atomic_file.h"
 #include "document_writer.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "json_read.h"
 
 #include "binary_kinds.h"
-#include "io/scan_text.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <openvdb/Types.h>
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/houdini/polygon_mesh.h"
 
-#include "io/coordinates.h"
-#include "io/polygon_soup.h"
-#include "io/scan_text.h"
+#include "vdb_shell/io/polygon_soup.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 namespace vdb_shell::houdini
 {
@@ -14,25 +13,22 @@ namespace
 {
 
 template <typename T>
-std::vector<openvdb::Vec3s> points_from(const std::vector<T>& values, std::size_t size,
-                                        const std::string& name, Coordinates& coordinates)
+std::vector<openvdb::Vec3d> points_from(const std::vector<T>& values, std::size_t size,
+                                        const std::string& name)
 {
-    std::vector<openvdb::Vec3s> points(values.size() / size);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            points[i][static_cast<int>(axis)] = coordinates.from_number(
-                name, {"point", i}, static_cast<double>(values[i * size + axis]),
-                static_cast<int>(axis));
-        if (size == 4 && values[i * size + 3] != T(1))
-            refuse(name, "point " + std::to_string(i) + ": P has the weight " +
-                             std::to_string(values[i * size + 3]) + ", only 1 can be read");
+    std::vector<openvdb::Vec3d> points;
+    points.reserve(values.size() / size);
+    for (std::size_t i = 0; i + size <= values.size(); i += size) {
+        points.emplace_back(values[i], values[i + 1], values[i + 2]);
+        if (size == 4 && values[i + 3] != T(1))
+            refuse(name, "point " + std::to_string(i / size) + ": P has the weight " +
+                             std::to_string(values[i + 3]) + ", only 1 can be read");
     }
     return points;
 }
 
-/// P as float32; up to Houdini 14 it has a fourth component, a weight.
-std::vector<openvdb::Vec3s> positions_of(const HoudiniGeometry& geometry, const std::string& name,
-                                         Coordinates& coordinates)
+/// P; up to Houdini 14 it has a fourth component, a weight.
+std::vector<openvdb::Vec3d> positions_of(const HoudiniGeometry& geometry, const std::string& name)
 {
     const Attribute* p = find(geometry.point_attributes, "P");
     if (!p)
@@ -40,9 +36,9 @@ std::vector<openvdb::Vec3s> positions_of(const HoudiniGeometry& geometry, const 
     const auto size = static_cast<std::size_t>(p->size);
     const bool sized = size == 3 || size == 4;
     if (const auto* singles = std::get_if<std::vector<float>>(&p->values); singles && sized)
-        return points_from(*singles, size, name, coordinates);
+        return points_from(*singles, size, name);
     if (const auto* doubles = std::get_if<std::vector<double>>(&p->values); doubles && sized)
-        return points_from(*doubles, size, name, coordinates);
+        return points_from(*doubles, size, name);
     refuse(name, "P has " + std::to_string(p->size) +
                      " components, or is not of floats; 3 or 4 floats are needed");
 }
@@ -62,34 +58,23 @@ ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
 {
     const HoudiniGeometry& geometry = read.geometry;
     require_polygons(geometry, name);
-    FileScan scan;
-    scan.format = name_of(read.format);
-    scan.file_vertices = geometry.points;
     PolygonSoup soup;
-    Coordinates coordinates;
-    if (options.recentre || options.rescale) {
-        Coordinates looked = Coordinates::first_look();
-        positions_of(geometry, name, looked);
-        coordinates = Coordinates(placement_for(looked.box(), options.recentre, options.rescale));
+    soup.format = name_of(read.format);
+    soup.points = positions_of(geometry, name);
+    soup.corners.reserve(geometry.vertex_point.size());
+    auto first = geometry.vertex_point.begin();
+    for (const Primitive& primitive : geometry.primitives) {
+        const auto last = first + static_cast<std::ptrdiff_t>(primitive.vertices);
+        if (first != last) {
+            // Houdini's polygons run clockwise. The first corner stays the first, so that fans
+            // keep their apex.
+            soup.corners.push_back(*first);
+            std::reverse_copy(first + 1, last, std::back_inserter(soup.corners));
+        }
+        soup.polygon_sizes.push_back(static_cast<std::uint32_t>(primitive.vertices));
+        first = last;
     }
-    soup.points = positions_of(geometry, name, coordinates);
-    std::size_t vertex = 0;
-    for (std::size_t i = 0; i < geometry.primitives.size(); ++i) {
-        const Primitive& primitive = geometry.primitives[i];
-        const auto first = geometry.vertex_point.begin() + static_cast<std::ptrdiff_t>(vertex);
-        Corners corners(first, first + static_cast<std::ptrdiff_t>(primitive.vertices));
-        // The first corner stays the first, so that fans keep their apex.
-        std::reverse(corners.begin() + 1, corners.end());
-        if (count_face(scan, corners))
-            soup.faces.push_back(std::move(corners));
-        vertex += primitive.vertices;
-    }
-    if (scan.file_faces == 0)
-        refuse(name, "it has no faces (and " + std::to_string(scan.file_vertices) + " vertices)");
-    ReadResult result = mesh_of_soup(name, scan, std::move(soup), options);
-    result.report.placement = coordinates.placement();
-    result.report.largest_rounding = coordinates.largest_rounding();
-    return result;
+    return mesh_of_polygons(soup, name, options);
 }
 
 ReadResult read_polygon_mesh(const std::filesystem::path& path, const ReadOptions& options)

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "vdb_shell/houdini/geometry.h"
+#include "vdb_shell/io/read_file.h"
 #include "vdb_shell/shell/shell_stack.h"
 
-#include "io/scan_text.h"
 #include "shell_names.h"
 
 #include <cstdint>

@@ -4,9 +4,9 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/shell/quality.h"
+#include "vdb_shell/write/shell_points.h"
 
 #include "shell_names.h"
-#include "write/point_grids.h"
 
 #include <nlohmann/json.hpp>
 

@@ -27,6 +27,7 @@ inline constexpr const char* kCreator = "creator";
 inline constexpr const char* kOpposite = "opposite";
 inline constexpr const char* kSourceVertex = "source_vertex";
 inline constexpr const char* kStopReason = "stop_reason";
+inline constexpr const char* kOuterStop = "stop_reason_outer"; ///< of the pillars above the skin
 inline constexpr const char* kPrism = "prism";
 inline constexpr const char* kLayer = "layer";
 inline constexpr const char* kSplitOrder = "split_order";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shell_columns.h"
-#include "write/point_grids.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -76,6 +76,13 @@ Ids find_own_points(const Columns& points, const std::vector<std::size_t>& surfa
         place = static_cast<std::uint32_t>(i);
     }
     return own;
+}
+
+/// Not equality of values: the checksum of a shell tells zeros of either sign apart.
+bool same_bits(const Vec3s& a, const Vec3s& b)
+{
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
 }
 
 /// The next surface below `above`. Its points are told by the points above where there are any.

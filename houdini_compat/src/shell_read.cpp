@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/shell_geometry.h"
+#include "vdb_shell/write/shell_points.h"
 
 #include "shell_columns.h"
-#include "write/point_grids.h"
 
 #include <cmath>
 #include <limits>

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/houdini/usd_file.h"
 
+#include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/write/shell_points.h"
+#include "vdb_shell/write/text_out.h"
 
-#include "core/atomic_file.h"
 #include "usd_text.h"
-#include "write/point_grids.h"
-#include "write/text_out.h"
-#include "write/vdb_metadata.h"
 
 #include <algorithm>
 #include <array>
@@ -128,7 +127,7 @@ void write_header(Stage& stage, const Samples& samples, const UsdOptions& option
     stage.line("#usda 1.0");
     stage.line("(");
     stage.line("    customLayerData = {");
-    stage.line("        string creator = \"" + creator_name() + "\"");
+    stage.line("        string creator = \"vdb_shell " VDB_SHELL_VERSION "\"");
     stage.line("    }");
     stage.line("    defaultPrim = \"shell\"");
     if (samples.size() > 1)

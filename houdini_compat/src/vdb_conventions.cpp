@@ -2,8 +2,8 @@
 #include "vdb_shell/houdini/vdb_conventions.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/io/vdb_header.h"
 
-#include "io/vdb_header.h"
 #include "vdb_rules.h"
 
 #include <openvdb/io/File.h>

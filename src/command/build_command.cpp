@@ -9,8 +9,8 @@
 #include "command/placement_options.h"
 #include "command/repair_command.h"
 #include "command/signals.h"
-#include "core/atomic_file.h"
 #include "report/stage_clock.h"
+#include "vdb_shell/core/atomic_file.h"
 
 #include <iostream>
 #include <utility>

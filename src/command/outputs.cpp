@@ -8,7 +8,7 @@
 #include "vdb_shell/write/tet_file.h"
 
 #include "command/bind.h"
-#include "core/atomic_file.h"
+#include "vdb_shell/core/atomic_file.h"
 
 #include <algorithm>
 #include <cctype>

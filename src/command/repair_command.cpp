@@ -6,7 +6,7 @@
 #include "command/exit_code.h"
 #include "command/placement_options.h"
 #include "command/signals.h"
-#include "core/atomic_file.h"
+#include "vdb_shell/core/atomic_file.h"
 
 #include <CLI/CLI.hpp>
 

@@ -2,7 +2,7 @@
 #include "command/signals.h"
 
 #include "command/exit_code.h"
-#include "core/atomic_file.h"
+#include "vdb_shell/core/atomic_file.h"
 
 #include <unistd.h>
 

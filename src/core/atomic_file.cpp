@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/atomic_file.h"
+#include "vdb_shell/core/atomic_file.h"
 
 #include "vdb_shell/core/error.h"
 

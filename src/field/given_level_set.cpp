@@ -2,8 +2,8 @@
 #include "vdb_shell/field/given_level_set.h"
 
 #include "field/field_sampler.h"
-#include "io/vdb_header.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/io/vdb_header.h"
 
 #include <openvdb/io/File.h>
 #include <openvdb/tools/Count.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "inspect/marks.h"
 
-#include "core/atomic_file.h"
+#include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
 
 #include <array>

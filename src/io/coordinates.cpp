@@ -21,7 +21,8 @@ std::string digits_of(double value)
     return {digits.data(), end};
 }
 
-/// Precondition: parse_coordinate took the word.
+/// The number that the word stands for, to the precision of double: what the rounding of the float
+/// is measured against. Precondition: parse_coordinate took the word.
 double exact_value(std::string_view word)
 {
     if (word[0] == '+')
@@ -52,6 +53,8 @@ void Coordinates::see(double exact, int axis)
     box_.high[axis] = std::max(box_.high[axis], exact);
 }
 
+// The square of a larger coordinate would not be finite in float32, so the stages that square
+// lengths could not work with it. A first look may see any size: the unit is chosen after it.
 void Coordinates::require_limit(const std::string& name, const Place& place, double exact,
                                 double value) const
 {
@@ -64,6 +67,7 @@ void Coordinates::require_limit(const std::string& name, const Place& place, dou
 float Coordinates::placed(const std::string& name, const Place& place, double exact, int axis)
 {
     const double local = (exact - placement_.origin[axis]) / placement_.unit;
+    // In double both steps are nearly exact, so that only the last one rounds.
     const float value = checked_coordinate(name, place, local);
     require_limit(name, place, exact, value);
     largest_rounding_ = std::max(largest_rounding_, std::abs(local - double(value)));
@@ -89,17 +93,6 @@ float Coordinates::from_number(const std::string& name, const Place& place, doub
     checked_coordinate(name, place, value);
     see(value, axis);
     return placed(name, place, value, axis);
-}
-
-void Coordinates::pass_on(std::string& stream, std::string_view word, float value) const
-{
-    if (!placement_.moves()) {
-        stream += word;
-        return;
-    }
-    std::array<char, 32> digits{};
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    stream.append(digits.data(), end);
 }
 
 } // namespace vdb_shell

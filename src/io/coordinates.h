@@ -21,10 +21,6 @@ public:
     float from_text(const std::string& name, const Place& place, std::string_view word, int axis);
     float from_number(const std::string& name, const Place& place, double value, int axis);
 
-    /// What a reader of text is to be given for a coordinate: the file's own word where nothing
-    /// moves.
-    void pass_on(std::string& stream, std::string_view word, float value) const;
-
     const Placement& placement() const { return placement_; }
     const Bounds& box() const { return box_; }                    ///< in the file's coordinates
     double largest_rounding() const { return largest_rounding_; } ///< in the mesh's units

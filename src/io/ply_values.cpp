@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -38,6 +39,7 @@ std::optional<PlyType> type_named(std::string_view word)
     return std::nullopt;
 }
 
+/// The header line by line. It is text in binary files as well.
 class HeaderParser
 {
 public:
@@ -68,6 +70,7 @@ public:
         }
         if (!has_format_)
             refuse(name_, "the header has no format line");
+        // Binary data begins right behind the line break of end_header.
         header_.bytes = bytes_.size() - lines_.rest().size();
         header_.lines = lines_.number();
         require_mesh();
@@ -100,6 +103,7 @@ private:
         element.name = cut_word(line);
         const std::int64_t count = parse_integer(
             name_, {"element count", header_.elements.size(), lines_.number()}, cut_word(line));
+        // OpenVDB and Houdini number points and faces with int32.
         if (count < 0 || count > INT32_MAX)
             complain("the number of \"" + element.name + "\" elements, " + std::to_string(count) +
                      ", is beyond the limit of " + std::to_string(INT32_MAX));
@@ -131,29 +135,49 @@ private:
         header_.elements.back().properties.push_back(std::move(property));
     }
 
+    template <typename Wanted>
+    static std::ptrdiff_t count_of(const PlyElement& element, const Wanted& wanted)
+    {
+        return std::count_if(element.properties.begin(), element.properties.end(), wanted);
+    }
+
+    void require_vertices(const PlyElement& element) const
+    {
+        for (const char* const axis : {"x", "y", "z"})
+            if (count_of(element,
+                         [&](const PlyProperty& p) { return !p.is_list && p.name == axis; }) != 1)
+                refuse(name_,
+                       std::string("the header gives its vertices not one property ") + axis);
+    }
+
+    void require_polygons(const PlyElement& element) const
+    {
+        const char* const what = element.name == "face" ? "faces" : "tristrips";
+        if (count_of(element, [](const PlyProperty& p) { return p.holds_corners(); }) != 1)
+            refuse(name_, std::string("the header gives its ") + what +
+                              " not one list \"vertex_indices\" (or \"vertex_index\")");
+    }
+
     void require_mesh() const
     {
         std::size_t vertex_elements = 0;
+        bool faces = false, strips = false;
         for (const PlyElement& element : header_.elements) {
-            auto count_of = [&](auto&& wanted) {
-                return std::count_if(element.properties.begin(), element.properties.end(), wanted);
-            };
-            if (element.name == "face" &&
-                count_of([](const PlyProperty& p) { return p.holds_corners(); }) != 1)
-                refuse(name_, "the header gives its faces not one list \"vertex_indices\" (or "
-                              "\"vertex_index\")");
-            if (element.name != "vertex")
-                continue;
-            ++vertex_elements;
-            for (const char* const axis : {"x", "y", "z"})
-                if (count_of([&](const PlyProperty& p) { return !p.is_list && p.name == axis; }) !=
-                    1)
-                    refuse(name_,
-                           std::string("the header gives its vertices not one property ") + axis);
+            if (element.name == "vertex") {
+                ++vertex_elements;
+                require_vertices(element);
+            } else if (element.name == "face" || element.name == "tristrips") {
+                require_polygons(element);
+                (element.name == "face" ? faces : strips) |= element.count > 0;
+            }
         }
         if (vertex_elements != 1)
             refuse(name_, "the header declares " + std::to_string(vertex_elements) +
                               " vertex elements where 1 is needed");
+        // Neither is said to replace the other, so reading both could double the surface.
+        if (faces && strips)
+            refuse(name_, "the header declares both faces and tristrips, which may be the same "
+                          "surface twice; one of them is needed");
     }
 
     const std::string& name_;
@@ -163,6 +187,7 @@ private:
     bool has_format_ = false;
 };
 
+/// A double holds every value of every type of the format exactly.
 template <typename Number> double number_at(const std::array<char, 8>& bytes)
 {
     Number value;
@@ -249,6 +274,7 @@ PlyValue PlyValues::next(PlyType type, const Place& place)
     const std::size_t size = size_of(type);
     if (data_.size() < size)
         refuse(name_, "the file ends in " + place.text() + ", before what its header declares");
+    // Values are not aligned, so they are copied before they are looked at.
     std::array<char, 8> bytes{};
     std::copy_n(data_.begin(), size, bytes.begin());
     if (encoding_ == PlyEncoding::big_endian)
@@ -265,6 +291,7 @@ std::size_t PlyValues::list_size(const PlyProperty& list, const Place& place)
     const Place at = here(place);
     const double size =
         text ? static_cast<double>(parse_integer(name_, at, value.word)) : value.number;
+    // A damaged length must not be believed: memory for the list is taken by it.
     const double most =
         static_cast<double>(bytes_left()) / static_cast<double>(text ? 1 : size_of(list.type));
     if (!(size >= 0 && size <= most))
@@ -276,6 +303,7 @@ std::size_t PlyValues::list_size(const PlyProperty& list, const Place& place)
 
 bool PlyValues::only_blanks_left()
 {
+    // Many writers end a binary file with a line break too.
     constexpr std::string_view kBlanks = " \t\r\n\v\f";
     return line_.find_first_not_of(kBlanks) == line_.npos &&
            data_.find_first_not_of(kBlanks) == data_.npos &&

@@ -49,7 +49,7 @@ struct PlyHeader {
 };
 
 /// Throws ReadError unless the header is complete, has one "vertex" element with scalar x, y, z,
-/// and has "face" elements, if any, with one list of corners.
+/// and gives "face" or "tristrips" elements, if any, one list of corners; not both of them.
 PlyHeader parse_ply_header(const std::string& name, std::string_view bytes);
 
 struct PlyValue {

@@ -1,122 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/polygon_soup.h"
+#include "vdb_shell/io/polygon_soup.h"
 
-#include "io/triangulate.h"
+#include "io/file_scan.h"
+#include "vdb_shell/core/error.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <system_error>
+#include <cstddef>
+#include <numeric>
 
 namespace vdb_shell
 {
-
-namespace fs = std::filesystem;
-
 namespace
 {
 
-/// Rewrites the corners to the first vertex of the same position; returns how many positions there
-/// are.
-std::size_t weld(PolygonSoup& soup)
+std::vector<openvdb::Vec3s> rounded_points(const PolygonSoup& soup, const std::string& name,
+                                           Coordinates& coordinates)
 {
-    const std::vector<std::uint32_t> first = first_equal_point(soup.points);
-    for (Corners& face : soup.faces)
-        for (std::uint32_t& corner : face)
-            corner = first[corner];
-    std::size_t different = 0;
-    for (std::size_t v = 0; v < first.size(); ++v)
-        different += first[v] == v;
-    return different;
+    std::vector<openvdb::Vec3s> points(soup.points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            points[i][axis] =
+                coordinates.from_number(name, {"point", i}, soup.points[i][axis], axis);
+    return points;
 }
 
-/// Triangulates the faces; those that cannot be are added to report.skipped_faces.
-void append_faces(PolygonSoup& soup, const FileScan& scan, ReadResult& result)
+/// Where the options ask for it, the points are looked through once for the box that they fill.
+Coordinates placed_coordinates(const PolygonSoup& soup, const std::string& name,
+                               const ReadOptions& options)
 {
-    std::vector<std::size_t>& skipped = result.report.skipped_faces;
-    std::size_t next_not_passed_on = 0, file_face = 0;
-    for (Corners& face : soup.faces) {
-        for (; next_not_passed_on < scan.skipped_faces.size() &&
-               scan.skipped_faces[next_not_passed_on] == file_face;
-             ++next_not_passed_on, ++file_face)
-            skipped.push_back(file_face);
-        if (tidy_polygon(face)) {
-            result.report.polygons_triangulated += face.size() > 3;
-            append_triangles(soup.points, face, result.mesh.triangles);
-        } else {
-            skipped.push_back(file_face);
-        }
-        ++file_face;
-    }
-    skipped.insert(skipped.end(),
-                   scan.skipped_faces.begin() + static_cast<std::ptrdiff_t>(next_not_passed_on),
-                   scan.skipped_faces.end());
+    if (!options.recentre && !options.rescale)
+        return Coordinates();
+    Coordinates looked = Coordinates::first_look();
+    rounded_points(soup, name, looked);
+    return Coordinates(placement_for(looked.box(), options.recentre, options.rescale));
 }
 
-/// Moves the points that triangles use to the mesh, in order; returns how many those are.
-std::size_t keep_used_points(const std::vector<openvdb::Vec3s>& points, TriangleMesh& mesh)
+/// Checks the corners as the scans of files do, so that nothing after this need look again.
+void add_polygons(const PolygonSoup& soup, const std::string& name, FileScan& scan)
 {
-    constexpr std::uint32_t kUnused = UINT32_MAX, kUsed = UINT32_MAX - 1;
-    std::vector<std::uint32_t> new_index(points.size(), kUnused);
-    for (const openvdb::Vec3I& t : mesh.triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            new_index[t[corner]] = kUsed;
-    for (std::size_t v = 0; v < points.size(); ++v) {
-        if (new_index[v] == kUnused)
-            continue;
-        new_index[v] = static_cast<std::uint32_t>(mesh.points.size());
-        mesh.points.push_back(points[v]);
+    auto corner = soup.corners.begin();
+    Polygon polygon;
+    for (std::size_t face = 0; face < soup.polygon_sizes.size(); ++face) {
+        polygon.assign(corner, corner + soup.polygon_sizes[face]);
+        corner += soup.polygon_sizes[face];
+        for (const std::uint32_t index : polygon)
+            require_corner(name, {"face", face}, index, soup.points.size(), std::to_string(index));
+        add_face(scan, polygon);
     }
-    for (openvdb::Vec3I& t : mesh.triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            t[corner] = new_index[t[corner]];
-    return mesh.points.size();
 }
 
 } // namespace
 
-ReadResult mesh_of_soup(const std::string& name, const FileScan& scan, PolygonSoup soup,
-                        const ReadOptions& options)
+ReadResult mesh_of_polygons(const PolygonSoup& soup, const std::string& name,
+                            const ReadOptions& options)
 {
-    ReadResult result;
-    result.report.format = scan.format;
-    result.report.file_vertices = scan.file_vertices;
-    result.report.file_faces = scan.file_faces;
-    const std::size_t vertices = options.weld ? weld(soup) : soup.points.size();
-    result.report.welded_vertices = scan.file_vertices - vertices;
-    append_faces(soup, scan, result);
-    const std::size_t used = keep_used_points(soup.points, result.mesh);
-    result.report.unused_vertices = vertices - used;
-    if (result.mesh.triangles.empty())
-        refuse(name, "none of its " + std::to_string(scan.file_faces) +
-                         " faces has three different corners (in float32; --recentre where the "
-                         "object lies far from the origin)");
-    return result;
-}
-
-std::string read_whole_file(const fs::path& path)
-{
-    const std::string name = path.string();
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status))
-        refuse(name, "there is no such file");
-    if (fs::is_directory(status))
-        refuse(name, "it is a folder, not a file");
-    if (!fs::is_regular_file(status))
-        refuse(name, "it is not a regular file");
-    std::ifstream in(path, std::ios::binary);
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (!in || error)
-        refuse(name, std::string("it cannot be opened: ") + std::strerror(errno));
-    std::string bytes(size, '\0');
-    in.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (static_cast<std::uintmax_t>(in.gcount()) != size)
-        refuse(name, "only " + std::to_string(in.gcount()) + " of its " + std::to_string(size) +
-                         " bytes can be read");
-    if (bytes.empty())
-        refuse(name, "the file is empty");
-    return bytes;
+    const std::size_t corners =
+        std::accumulate(soup.polygon_sizes.begin(), soup.polygon_sizes.end(), std::size_t(0));
+    if (corners != soup.corners.size())
+        throw InvalidOption(name + ": the polygons' sizes add up to " + std::to_string(corners) +
+                            ", but there are " + std::to_string(soup.corners.size()) + " corners");
+    Coordinates coordinates = placed_coordinates(soup, name, options);
+    FileScan scan;
+    scan.format = soup.format;
+    scan.file_vertices = soup.points.size();
+    scan.points = rounded_points(soup, name, coordinates);
+    add_polygons(soup, name, scan);
+    return mesh_of_scan(name, std::move(scan), coordinates, options);
 }
 
 } // namespace vdb_shell

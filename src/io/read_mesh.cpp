@@ -3,8 +3,7 @@
 
 #include "io/coordinates.h"
 #include "io/file_scan.h"
-#include "io/openmesh_read.h"
-#include "io/polygon_soup.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -16,41 +15,43 @@ namespace
 
 namespace fs = std::filesystem;
 
-FileScan scan_file(const fs::path& path, Coordinates& coordinates)
+using Scan = FileScan (*)(const std::string& name, std::string_view bytes, Coordinates&);
+
+Scan scan_for(const fs::path& path)
 {
-    const std::string name = path.string();
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension != ".obj" && extension != ".ply" && extension != ".off" && extension != ".stl")
-        refuse(name, "the extension \"" + extension +
-                         "\" is none of the mesh formats .obj, .ply, .off, .stl");
-    std::string bytes = read_whole_file(path);
-    FileScan scan = extension == ".obj"   ? scan_obj(name, bytes, coordinates)
-                    : extension == ".ply" ? scan_ply(name, bytes, coordinates)
-                    : extension == ".off" ? scan_off(name, bytes, coordinates)
-                                          : scan_stl(name, std::move(bytes), coordinates);
-    if (scan.file_faces == 0)
-        refuse(name, "it has no faces (and " + std::to_string(scan.file_vertices) + " vertices)");
-    return scan;
+    if (extension == ".obj")
+        return scan_obj;
+    if (extension == ".ply")
+        return scan_ply;
+    if (extension == ".off")
+        return scan_off;
+    if (extension == ".stl")
+        return scan_stl;
+    refuse(path.string(), "the extension \"" + extension +
+                              "\" is none of the mesh formats .obj, .ply, .off, .stl");
 }
 
 } // namespace
 
 ReadResult read_mesh(const fs::path& path, const ReadOptions& options)
 {
+    const std::string name = path.string();
+    const Scan scan = scan_for(path);
+    std::string bytes = read_whole_file(path);
     Coordinates coordinates;
     if (options.recentre || options.rescale) {
+        // The origin must be known before the first coordinate is rounded.
         Coordinates looked = Coordinates::first_look();
-        scan_file(path, looked);
+        scan(name, bytes, looked);
         coordinates = Coordinates(placement_for(looked.box(), options.recentre, options.rescale));
     }
-    const FileScan scan = scan_file(path, coordinates);
-    ReadResult result =
-        mesh_of_soup(path.string(), scan, read_with_openmesh(path.string(), scan), options);
-    result.report.placement = coordinates.placement();
-    result.report.largest_rounding = coordinates.largest_rounding();
-    return result;
+    FileScan found = scan(name, bytes, coordinates);
+    // A large file and the mesh that comes of it need not be in memory at the same time.
+    std::string().swap(bytes);
+    return mesh_of_scan(name, std::move(found), coordinates, options);
 }
 
 } // namespace vdb_shell

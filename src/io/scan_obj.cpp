@@ -2,29 +2,32 @@
 #include "io/file_scan.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 namespace vdb_shell
 {
 namespace
 {
 
-// OpenMesh's OBJ reader gives up on a texture coordinate beyond float range, takes corners that
-// come twice out of a face without a word, reads no line continuation, opens the material files
-// that are named, lets an index of 2^40 or a vertex of two coordinates pass, and goes by the
-// process's locale. The coordinates and corners are handed to its PLY reader, in binary: its
-// text reader takes as long as this scan.
+// The format: "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual.
+
+/// A face that names a vertex before the file has it.
+struct EarlyFace {
+    Place place;
+    std::int64_t largest_index; ///< counted from 0
+};
 
 struct ObjScan {
     const std::string& name;
     Coordinates& coordinates;
     FileScan scan;
-    std::string vertices, faces;       ///< bodies of the stream
-    std::vector<std::int64_t> largest; ///< 0-based, of each face
-    std::vector<std::size_t> line_of_face;
-    Corners corners; ///< of the face in hand
+    std::vector<EarlyFace> early_faces;
+    Polygon polygon; ///< of the face in hand; kept for its memory
 };
 
-void add_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
+/// What follows the third coordinate is passed over: a weight of rational curves, or a colour.
+void read_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
 {
     const std::size_t index = obj.scan.file_vertices++;
     const Place vertex{"vertex", index, line};
@@ -35,46 +38,85 @@ void add_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
             refuse(obj.name, vertex.text() + " has " + std::to_string(axis) +
                                  " coordinates where 3 are needed");
         point[axis] = obj.coordinates.from_text(obj.name, vertex, word, axis);
-        append_bytes(obj.vertices, point[axis]);
     }
     obj.scan.points.push_back(point);
 }
 
-void add_face(ObjScan& obj, std::string_view rest, std::size_t line)
+/// Corners are "vertex", "vertex/texture" or "vertex/texture/normal"; only the vertex is read.
+/// Negative indices count back from the last vertex so far.
+void read_face(ObjScan& obj, std::string_view rest, std::size_t line)
 {
     const Place face{"face", obj.scan.file_faces, line};
     const auto vertices = static_cast<std::int64_t>(obj.scan.file_vertices);
     std::int64_t largest = -1;
-    obj.corners.clear();
+    obj.polygon.clear();
     for (std::string_view word = cut_word(rest); !word.empty(); word = cut_word(rest)) {
-        if (word[0] == '#')
+        if (word[0] == '#') // a comment behind the corners
             break;
         const std::string_view vertex = word.substr(0, word.find('/'));
         const std::int64_t given = parse_integer(obj.name, face, vertex);
         const std::int64_t index = given < 0 ? vertices + given : given - 1;
-        // Above, the index may name a vertex that is still to come: see require_known_corners.
+        // An index above all vertices so far may name one that is still to come.
         if (index < 0 || index > INT32_MAX)
             require_corner(obj.name, face, -1, obj.scan.file_vertices, std::to_string(given));
-        obj.corners.push_back(static_cast<std::uint32_t>(index));
+        obj.polygon.push_back(static_cast<std::uint32_t>(index));
         largest = std::max(largest, index);
     }
-    if (obj.corners.size() < 3)
-        refuse(obj.name, face.text() + " has " + std::to_string(obj.corners.size()) +
+    if (obj.polygon.size() < 3)
+        refuse(obj.name, face.text() + " has " + std::to_string(obj.polygon.size()) +
                              " corners where at least 3 are needed");
-    obj.largest.push_back(largest);
-    obj.line_of_face.push_back(line);
-    if (!count_face(obj.scan, obj.corners))
-        return;
-    append_bytes(obj.faces, static_cast<std::int32_t>(obj.corners.size()));
-    for (const std::uint32_t corner : obj.corners)
-        append_bytes(obj.faces, static_cast<std::int32_t>(corner));
+    if (largest >= vertices)
+        obj.early_faces.push_back({face, largest});
+    add_face(obj.scan, obj.polygon);
 }
 
 void require_known_corners(const ObjScan& obj)
 {
-    for (std::size_t f = 0; f < obj.largest.size(); ++f)
-        require_corner(obj.name, {"face", f, obj.line_of_face[f]}, obj.largest[f],
-                       obj.scan.file_vertices, std::to_string(obj.largest[f] + 1));
+    for (const EarlyFace& face : obj.early_faces)
+        require_corner(obj.name, face.place, face.largest_index, obj.scan.file_vertices,
+                       std::to_string(face.largest_index + 1));
+}
+
+/// Most other statements say nothing about the surface and are passed over. Refuses those that do,
+/// and what was meant for a vertex or a face but is not spelled like one: a surface with a hole
+/// where a line was not understood would look like a sound one.
+void refuse_lost_surface(const ObjScan& obj, std::string_view keyword, std::size_t line)
+{
+    struct Statement {
+        std::string_view keyword;
+        const char* meaning;
+    };
+    static constexpr std::array<Statement, 5> kUnreadable{
+        {{"surf", "a free-form surface"},
+         {"bsp", "a B-spline patch"},
+         {"bzp", "a Bezier patch"},
+         {"cdp", "a Cardinal patch"},
+         {"call", "another file to be read in its place"}}};
+    const std::string at = "line " + std::to_string(line) + ": the keyword " + quoted(keyword);
+    for (const Statement& statement : kUnreadable)
+        if (keyword == statement.keyword)
+            refuse(obj.name, at + " stands for " + statement.meaning +
+                                 "; only vertices and polygons can be read");
+    for (const std::string_view known : {"v", "f", "fo"})
+        if (equal_ignoring_case(keyword, known))
+            refuse(obj.name, at + " is in capitals; in OBJ it is " + quoted(known));
+    const auto begins_number = [](unsigned char c) {
+        return std::isdigit(c) || c == '-' || c == '+' || c == '.';
+    };
+    if (keyword.size() > 1 && (keyword[0] == 'v' || keyword[0] == 'f') &&
+        begins_number(static_cast<unsigned char>(keyword[1])))
+        refuse(obj.name, at + " has no blank before its first number");
+}
+
+void read_statement(ObjScan& obj, std::string_view line, std::size_t number)
+{
+    const std::string_view keyword = cut_word(line);
+    if (keyword == "v")
+        read_vertex(obj, line, number);
+    else if (keyword == "f" || keyword == "fo") // the form of version 2.11
+        read_face(obj, line, number);
+    else if (!keyword.empty() && keyword[0] != '#')
+        refuse_lost_surface(obj, keyword, number);
 }
 
 /// The line without its final backslash, which joins the next one to it.
@@ -89,13 +131,11 @@ bool cut_continuation(std::string_view& line)
 
 } // namespace
 
-FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates& coordinates)
+FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
-    ObjScan obj{name, coordinates, {}, {}, {}, {}, {}, {}};
+    ObjScan obj{name, coordinates, {}, {}, {}};
     obj.scan.format = "OBJ";
-    obj.scan.reader = "ply";
-    obj.scan.binary = true;
-    Lines lines(bytes);
+    Lines lines(without_byte_order_mark(bytes));
     std::string joined;
     for (std::string_view line; lines.next(line);) {
         const std::size_t number = lines.number();
@@ -107,16 +147,9 @@ FileScan scan_obj(const std::string& name, const std::string& bytes, Coordinates
             }
             line = joined;
         }
-        const std::string_view keyword = cut_word(line);
-        if (keyword == "v")
-            add_vertex(obj, line, number);
-        else if (keyword == "f")
-            add_face(obj, line, number);
+        read_statement(obj, line, number);
     }
     require_known_corners(obj);
-    obj.scan.stream = plain_ply_header("binary_little_endian", "float", obj.scan.file_vertices,
-                                       obj.scan.faces_passed_on()) +
-                      obj.vertices + obj.faces;
     return std::move(obj.scan);
 }
 

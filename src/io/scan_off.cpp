@@ -9,135 +9,161 @@ namespace vdb_shell
 namespace
 {
 
-// OpenMesh's OFF reader knows no comments and no counts beside the keyword, and reads a stream by
-// the header of the file that it opened last. What stands in an OFF file after the header - lines
-// of coordinates, then of a number of corners and the corners - is the body of an ASCII PLY file
-// too, so the PLY reader is given it.
+// The format: Geomview's manual, "OFF files". Values may stand in any number of lines, except that
+// the colour of a face ends where its line does. The manual lets a vertex have a normal, a colour
+// and texture coordinates of fixed numbers, but programs write three or four numbers for a colour,
+// and write colours without saying so in the keyword. So the rest of a vertex's line is passed over
+// as well, in the same way.
 
-/// The next line that holds more than a comment.
-bool next_content(Lines& lines, std::string_view& line)
+/// The words of the file, without comments, and the line that each stands in.
+class OffWords
 {
-    while (lines.next(line)) {
-        line = line.substr(0, line.find('#'));
-        if (line.find_first_not_of(" \t\v\f") != line.npos)
-            return true;
+public:
+    OffWords(const std::string& name, std::string_view text) : name_(name), lines_(text) {}
+
+    /// Goes to the next line that holds a word, unless there are words left in this one. False at
+    /// the end of the file.
+    bool find()
+    {
+        while (line_.find_first_not_of(" \t\v\f") == line_.npos) {
+            if (!lines_.next(line_))
+                return false;
+            line_ = line_.substr(0, line_.find('#'));
+        }
+        return true;
     }
-    return false;
-}
+    /// Empty at the end of the file.
+    std::string_view next() { return find() ? cut_word(line_) : std::string_view(); }
+    /// The next word of this line; empty at its end.
+    std::string_view next_in_line() { return cut_word(line_); }
+    void skip_line() { line_ = {}; }
+    bool has_in_line(std::size_t count) const
+    {
+        std::string_view line = line_;
+        while (count > 0 && !cut_word(line).empty())
+            --count;
+        return count == 0;
+    }
+    std::size_t line() const { return lines_.number(); }
+    const std::string& name() const { return name_; }
 
-/// Checks the keyword and leaves what stands beside it in `rest`.
-void read_keyword(const std::string& name, Lines& lines, std::string_view& rest)
+private:
+    const std::string& name_;
+    Lines lines_;
+    std::string_view line_;
+};
+
+void read_keyword(OffWords& words)
 {
-    if (!next_content(lines, rest))
-        refuse(name, "the OFF file holds nothing");
-    const std::string_view keyword = cut_word(rest);
+    const std::string_view keyword = words.next();
+    if (keyword.empty())
+        refuse(words.name(), "the OFF file holds nothing");
     static constexpr std::array<std::string_view, 8> kKnown{"OFF",   "COFF",   "NOFF",   "CNOFF",
                                                             "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
     if (std::find(kKnown.begin(), kKnown.end(), keyword) == kKnown.end())
-        refuse(name, "the keyword " + quoted(keyword) +
-                         " where OFF, possibly with ST, C, N before it, is needed");
-    std::string_view words = rest;
-    if (cut_word(words) == "BINARY")
-        refuse(name, "binary OFF is not supported, only text (there are two ways of writing it, "
-                     "which cannot be told apart)");
+        refuse(words.name(), "the keyword " + quoted(keyword) +
+                                 " where OFF, possibly with ST, C, N before it, is needed");
 }
 
-std::array<std::size_t, 2> read_counts(const std::string& name, Lines& lines, std::string_view rest,
-                                       std::size_t file_size)
+std::array<std::size_t, 2> read_counts(OffWords& words, std::size_t file_size)
 {
-    if (rest.find_first_not_of(" \t\v\f") == rest.npos && !next_content(lines, rest))
-        refuse(name, "the file ends before the numbers of vertices and faces");
+    if (!words.find())
+        refuse(words.name(), "the file ends before the numbers of vertices and faces");
     std::array<std::size_t, 2> counts{};
     const char* const what[2] = {"vertices", "faces"};
     for (std::size_t i = 0; i < 2; ++i) {
-        const std::string_view word = cut_word(rest);
+        const std::string_view word = words.next_in_line();
+        if (i == 0 && word == "BINARY")
+            refuse(words.name(), "binary OFF is not supported, only text (there are two ways of "
+                                 "writing it, which cannot be told apart)");
         const std::int64_t count =
-            parse_integer(name, {"number of elements", i, lines.number()}, word);
+            parse_integer(words.name(), {"number of elements", i, words.line()}, word);
         // A vertex takes three digits and two blanks at least, a face more.
         if (count < 0 || static_cast<std::uint64_t>(count) > file_size / 5)
-            refuse(name, "the header declares " + std::to_string(count) + " " + what[i] +
-                             ", more than a file of " + std::to_string(file_size) +
-                             " bytes can hold");
+            refuse(words.name(), "the header declares " + std::to_string(count) + " " + what[i] +
+                                     ", more than a file of " + std::to_string(file_size) +
+                                     " bytes can hold");
         counts[i] = static_cast<std::size_t>(count);
     }
+    words.skip_line(); // the number of edges, which nothing depends on
     return counts;
 }
 
-void read_vertex(const std::string& name, const Lines& lines, std::string_view line,
-                 Coordinates& coordinates, FileScan& scan)
+[[noreturn]] void refuse_end(const OffWords& words, const char* what, std::size_t found,
+                             std::size_t declared)
 {
-    const Place vertex{"vertex", scan.points.size(), lines.number()};
-    openvdb::Vec3s point;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::string_view word = cut_word(line);
-        if (word.empty())
-            refuse(name, vertex.text() + " has " + std::to_string(axis) +
-                             " coordinates where 3 are needed");
-        point[axis] = coordinates.from_text(name, vertex, word, axis);
-        coordinates.pass_on(scan.stream, word, point[axis]);
-        scan.stream += axis < 2 ? ' ' : '\n';
-    }
-    scan.points.push_back(point);
+    refuse(words.name(), std::string("the file ends after ") + std::to_string(found) + " of the " +
+                             std::to_string(declared) + " " + what + " that its header declares");
 }
 
-void read_face(const std::string& name, const Lines& lines, std::string_view line, FileScan& scan,
-               std::string& faces)
+void read_vertices(OffWords& words, Coordinates& coordinates, FileScan& scan)
 {
-    const Place face{"face", scan.file_faces, lines.number()};
-    const std::int64_t count = parse_integer(name, face, cut_word(line));
-    if (count < 3)
-        refuse(name, face.text() + " has " + std::to_string(count) +
-                         " corners where at least 3 are needed");
-    Corners corners;
-    for (std::int64_t k = 0; k < count; ++k) {
-        const std::string_view word = cut_word(line);
-        if (word.empty())
-            refuse(name, face.text() + " declares " + std::to_string(count) + " corners and has " +
-                             std::to_string(k));
-        const std::int64_t index = parse_integer(name, face, word);
-        require_corner(name, face, index, scan.file_vertices, std::to_string(index));
-        corners.push_back(static_cast<std::uint32_t>(index));
+    // Where the first vertex is spread over lines, lines mean nothing and vertices have nothing but
+    // coordinates. Elsewhere a vertex has a line of its own, and one that lacks a number can be
+    // named.
+    const bool spread = words.find() && !words.has_in_line(3);
+    scan.points.reserve(scan.file_vertices);
+    while (scan.points.size() < scan.file_vertices) {
+        if (!words.find())
+            refuse_end(words, "vertices", scan.points.size(), scan.file_vertices);
+        const Place vertex{"vertex", scan.points.size(), words.line()};
+        openvdb::Vec3s point;
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::string_view word = spread ? words.next() : words.next_in_line();
+            if (word.empty())
+                refuse(words.name(), vertex.text() + " has " + std::to_string(axis) +
+                                         " coordinates where 3 are needed");
+            point[axis] = coordinates.from_text(
+                words.name(), {vertex.what, vertex.index, words.line()}, word, axis);
+        }
+        if (!spread)
+            words.skip_line();
+        scan.points.push_back(point);
     }
-    if (!count_face(scan, corners))
-        return;
-    faces += std::to_string(corners.size());
-    for (const std::uint32_t corner : corners)
-        faces += ' ' + std::to_string(corner);
-    faces += '\n';
+}
+
+void read_face(OffWords& words, FileScan& scan, Polygon& polygon)
+{
+    const Place face{"face", scan.file_faces, words.line()};
+    const std::int64_t count = parse_integer(words.name(), face, words.next());
+    if (count < 3)
+        refuse(words.name(), face.text() + " has " + std::to_string(count) +
+                                 " corners where at least 3 are needed");
+    polygon.clear();
+    for (std::int64_t k = 0; k < count; ++k) {
+        const std::string_view word = words.next();
+        if (word.empty())
+            refuse(words.name(), face.text() + " declares " + std::to_string(count) +
+                                     " corners and has " + std::to_string(k));
+        const Place here{face.what, face.index, words.line()};
+        const std::int64_t index = parse_integer(words.name(), here, word);
+        require_corner(words.name(), here, index, scan.file_vertices, std::to_string(index));
+        polygon.push_back(static_cast<std::uint32_t>(index));
+    }
+    words.skip_line(); // the colour of the face
+    add_face(scan, polygon);
 }
 
 } // namespace
 
-FileScan scan_off(const std::string& name, const std::string& bytes, Coordinates& coordinates)
+FileScan scan_off(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
     FileScan scan;
     scan.format = "OFF";
-    scan.reader = "ply";
-    Lines lines(bytes);
-    std::string_view line;
-    read_keyword(name, lines, line);
-    const auto [vertices, declared_faces] = read_counts(name, lines, line, bytes.size());
-    auto refuse_end = [&](const char* what, std::size_t found, std::size_t declared) {
-        refuse(name, std::string("the file ends after ") + std::to_string(found) + " of the " +
-                         std::to_string(declared) + " " + what + " that its header declares");
-    };
+    OffWords words(name, without_byte_order_mark(bytes));
+    read_keyword(words);
+    const auto [vertices, faces] = read_counts(words, bytes.size());
     scan.file_vertices = vertices;
-    while (scan.points.size() < vertices) {
-        if (!next_content(lines, line))
-            refuse_end("vertices", scan.points.size(), vertices);
-        read_vertex(name, lines, line, coordinates, scan);
+    read_vertices(words, coordinates, scan);
+    Polygon polygon;
+    while (scan.file_faces < faces) {
+        if (!words.find())
+            refuse_end(words, "faces", scan.file_faces, faces);
+        read_face(words, scan, polygon);
     }
-    std::string faces;
-    while (scan.file_faces < declared_faces) {
-        if (!next_content(lines, line))
-            refuse_end("faces", scan.file_faces, declared_faces);
-        read_face(name, lines, line, scan, faces);
-    }
-    if (next_content(lines, line))
-        refuse(name, "line " + std::to_string(lines.number()) + " goes on after the " +
-                         std::to_string(declared_faces) + " faces that the header declares");
-    scan.stream =
-        plain_ply_header("ascii", "float", vertices, scan.faces_passed_on()) + scan.stream + faces;
+    if (words.find())
+        refuse(name, "line " + std::to_string(words.line()) + " goes on after the " +
+                         std::to_string(faces) + " faces that the header declares");
     return scan;
 }
 

@@ -11,165 +11,202 @@ namespace vdb_shell
 namespace
 {
 
-// OpenMesh's PLY reader takes a list that it does not know for one value, drops properties that
-// stand before the corners of a face, and does not know every type of list. It is given the three
-// coordinates and the corners only, in the file's precision.
+// The format: Greg Turk, "The PLY Polygon File Format", 1994. "tristrips" come from the Stanford
+// scanning repository, whose larger models have no "face" element.
 
 struct PlyScan {
     const std::string& name;
     const PlyHeader& header;
     Coordinates& coordinates;
+    PlyValues values;
     FileScan scan;
-    bool single = false;         ///< all coordinates are float32
-    std::string vertices, faces; ///< bodies of the stream
+    std::size_t strips = 0; ///< so far, counted over all restarts
+    Polygon polygon;        ///< of the face in hand; kept for its memory
 };
 
-void skip_property(PlyValues& values, const PlyProperty& property, const Place& place)
+/// Values that are not wanted are stepped over one by one: only then is it known where the next
+/// element begins.
+void skip_property(PlyScan& ply, const PlyProperty& property, const Place& place)
 {
-    for (std::size_t n = property.is_list ? values.list_size(property, place) : 1; n > 0; --n)
-        values.next(property.type, place);
+    for (std::size_t n = property.is_list ? ply.values.list_size(property, place) : 1; n > 0; --n)
+        ply.values.next(property.type, place);
 }
 
-void read_vertex(PlyScan& ply, PlyValues& values, const PlyElement& element)
+void skip_element(PlyScan& ply, const PlyElement& element)
 {
-    const Place place{"vertex", ply.scan.points.size(), 0};
-    static constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
-    openvdb::Vec3s point;
-    std::array<PlyValue, 3> found;
-    for (const PlyProperty& property : element.properties) {
-        const auto axis = std::find(kAxes.begin(), kAxes.end(), property.name) - kAxes.begin();
-        if (axis == 3 || property.is_list) {
-            skip_property(values, property, place);
-            continue;
+    for (std::size_t i = 0; i < element.count; ++i)
+        for (const PlyProperty& property : element.properties)
+            skip_property(ply, property, {"element", i, 0});
+}
+
+/// Text goes straight to float32. By way of double it would be rounded twice.
+float coordinate(PlyScan& ply, const PlyProperty& property, const Place& place, int axis)
+{
+    const PlyValue value = ply.values.next(property.type, place);
+    return ply.header.is_text()
+               ? ply.coordinates.from_text(ply.name, ply.values.here(place), value.word, axis)
+               : ply.coordinates.from_number(ply.name, place, value.number, axis);
+}
+
+void read_vertices(PlyScan& ply, const PlyElement& element)
+{
+    // Which coordinate each property is, found once instead of for every vertex.
+    constexpr std::string_view kAxes = "xyz";
+    std::vector<std::size_t> axes;
+    for (const PlyProperty& property : element.properties)
+        axes.push_back(property.is_list || property.name.size() != 1 ? kAxes.npos
+                                                                     : kAxes.find(property.name));
+    ply.scan.points.reserve(element.count);
+    for (std::size_t v = 0; v < element.count; ++v) {
+        const Place place{"vertex", v, 0};
+        openvdb::Vec3s point;
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            const PlyProperty& property = element.properties[k];
+            if (axes[k] == kAxes.npos) {
+                skip_property(ply, property, place);
+                continue;
+            }
+            const int axis = static_cast<int>(axes[k]);
+            point[axis] = coordinate(ply, property, place, axis);
         }
-        const PlyValue value = values.next(property.type, place);
-        const int k = static_cast<int>(axis);
-        point[k] = ply.header.is_text()
-                       ? ply.coordinates.from_text(ply.name, values.here(place), value.word, k)
-                       : ply.coordinates.from_number(ply.name, place, value.number, k);
-        found[static_cast<std::size_t>(axis)] = value;
+        ply.scan.points.push_back(point);
     }
-    for (int k = 0; k < 3; ++k) {
-        const PlyValue& value = found[static_cast<std::size_t>(k)];
-        if (ply.header.is_text()) {
-            ply.coordinates.pass_on(ply.vertices, value.word, point[k]);
-            ply.vertices += ' ';
-        } else if (ply.single) {
-            append_bytes(ply.vertices, point[k]);
-        } else {
-            append_bytes(ply.vertices, value.number);
-        }
-    }
-    if (ply.header.is_text())
-        ply.vertices.back() = '\n';
-    ply.scan.points.push_back(point);
 }
 
 std::int64_t whole_number(const PlyScan& ply, const PlyValue& value, const Place& place)
 {
     if (ply.header.is_text())
         return parse_integer(ply.name, place, value.word);
+    // The corners may be stored as floats.
     if (value.number != std::floor(value.number) || std::abs(value.number) > 1e15)
         refuse(ply.name, place.text() + ": the vertex index " + std::to_string(value.number) +
                              " is not a whole number");
     return static_cast<std::int64_t>(value.number);
 }
 
-void pass_face_on(PlyScan& ply, const Corners& corners)
+std::uint32_t checked_corner(const PlyScan& ply, std::int64_t index, const Place& place)
 {
-    if (ply.header.is_text())
-        ply.faces += std::to_string(corners.size());
-    else
-        append_bytes(ply.faces, static_cast<std::int32_t>(corners.size()));
-    for (const std::uint32_t corner : corners) {
-        if (ply.header.is_text())
-            ply.faces += ' ' + std::to_string(corner);
-        else
-            append_bytes(ply.faces, static_cast<std::int32_t>(corner));
-    }
-    if (ply.header.is_text())
-        ply.faces += '\n';
+    require_corner(ply.name, place, index, ply.scan.file_vertices, std::to_string(index));
+    return static_cast<std::uint32_t>(index);
 }
 
-void read_face(PlyScan& ply, PlyValues& values, const PlyElement& element)
+void require_three(const PlyScan& ply, std::size_t corners, const Place& place)
+{
+    if (corners < 3)
+        refuse(ply.name, place.text() + " has " + std::to_string(corners) +
+                             " corners where at least 3 are needed");
+}
+
+void read_face(PlyScan& ply, const PlyProperty& list)
 {
     const Place place{"face", ply.scan.file_faces, 0};
-    Corners corners;
-    for (const PlyProperty& property : element.properties) {
-        if (!property.holds_corners()) {
-            skip_property(values, property, place);
-            continue;
-        }
-        const std::size_t count = values.list_size(property, place);
-        if (count < 3)
-            refuse(ply.name, values.here(place).text() + " has " + std::to_string(count) +
-                                 " corners where at least 3 are needed");
-        for (std::size_t k = 0; k < count; ++k) {
-            const PlyValue value = values.next(property.type, place);
-            const Place here = values.here(place);
-            const std::int64_t index = whole_number(ply, value, here);
-            require_corner(ply.name, here, index, ply.scan.file_vertices, std::to_string(index));
-            corners.push_back(static_cast<std::uint32_t>(index));
-        }
+    const std::size_t count = ply.values.list_size(list, place);
+    require_three(ply, count, ply.values.here(place));
+    ply.polygon.clear();
+    for (std::size_t k = 0; k < count; ++k) {
+        const PlyValue value = ply.values.next(list.type, place);
+        const Place here = ply.values.here(place);
+        ply.polygon.push_back(checked_corner(ply, whole_number(ply, value, here), here));
     }
-    if (count_face(ply.scan, corners))
-        pass_face_on(ply, corners);
 }
 
-void require_element(const PlyScan& ply, const PlyElement& element, const PlyValues& values)
+/// Each corner from the third on makes a triangle with the two before it. Every other one of them
+/// runs the other way round, and is turned so that all are seen from the same side.
+void add_strip(PlyScan& ply, const std::vector<std::uint32_t>& strip, const Place& place)
+{
+    if (strip.empty())
+        return;
+    require_three(ply, strip.size(), place);
+    for (std::size_t k = 0; k + 2 < strip.size(); ++k) {
+        const std::size_t turned = k % 2;
+        ply.polygon = {strip[k + turned], strip[k + 1 - turned], strip[k + 2]};
+        add_face(ply.scan, ply.polygon);
+    }
+    ++ply.strips;
+}
+
+/// A list of strips, each ended by -1 or by the end of the list.
+void read_strips(PlyScan& ply, const PlyProperty& list)
+{
+    constexpr std::int64_t kRestart = -1;
+    const std::size_t count = ply.values.list_size(list, {"triangle strip", ply.strips});
+    std::vector<std::uint32_t> strip;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Place place{"triangle strip", ply.strips};
+        const PlyValue value = ply.values.next(list.type, place);
+        const Place here = ply.values.here(place);
+        const std::int64_t index = whole_number(ply, value, here);
+        if (index != kRestart) {
+            strip.push_back(checked_corner(ply, index, here));
+            continue;
+        }
+        add_strip(ply, strip, here);
+        strip.clear();
+    }
+    add_strip(ply, strip, ply.values.here({"triangle strip", ply.strips}));
+}
+
+void read_polygons(PlyScan& ply, const PlyElement& element)
+{
+    const bool strips = element.name == "tristrips";
+    for (std::size_t i = 0; i < element.count; ++i) {
+        const Place place{strips ? "triangle strip" : "face",
+                          strips ? ply.strips : ply.scan.file_faces};
+        for (const PlyProperty& property : element.properties) {
+            if (!property.holds_corners())
+                skip_property(ply, property, place);
+            else if (strips)
+                read_strips(ply, property);
+            else
+                read_face(ply, property);
+        }
+        // Only now: other properties of the face may follow its corners.
+        if (!strips)
+            add_face(ply.scan, ply.polygon);
+    }
+}
+
+/// Memory is taken by the number of elements, so the rest of the file must be able to hold them.
+void require_element(const PlyScan& ply, const PlyElement& element)
 {
     const std::size_t least = element.least_size(ply.header.is_text());
-    if (least > 0 && element.count > values.bytes_left() / least + 1)
+    if (least > 0 && element.count > ply.values.bytes_left() / least + 1)
         refuse(ply.name, "the header declares " + std::to_string(element.count) + " \"" +
                              element.name + "\" elements of at least " + std::to_string(least) +
-                             " bytes, but only " + std::to_string(values.bytes_left()) +
+                             " bytes, but only " + std::to_string(ply.values.bytes_left()) +
                              " bytes of data are left");
 }
 
-void read_elements(PlyScan& ply, PlyValues& values)
+void read_elements(PlyScan& ply)
 {
     for (const PlyElement& element : ply.header.elements) {
-        require_element(ply, element, values);
-        const bool vertices = element.name == "vertex", faces = element.name == "face";
-        const std::size_t count = element.properties.empty() ? 0 : element.count;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (vertices)
-                read_vertex(ply, values, element);
-            else if (faces)
-                read_face(ply, values, element);
-            else
-                for (const PlyProperty& property : element.properties)
-                    skip_property(values, property, {"element", i, 0});
-        }
+        require_element(ply, element);
+        if (element.properties.empty()) // it has no data, however many it declares
+            continue;
+        if (element.name == "vertex")
+            read_vertices(ply, element);
+        else if (element.name == "face" || element.name == "tristrips")
+            read_polygons(ply, element);
+        else
+            skip_element(ply, element);
     }
-    if (!values.only_blanks_left())
+    if (!ply.values.only_blanks_left())
         refuse(ply.name, "data goes on after the last element that the header declares");
 }
 
 } // namespace
 
-FileScan scan_ply(const std::string& name, const std::string& bytes, Coordinates& coordinates)
+FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
-    const PlyHeader header = parse_ply_header(name, bytes);
-    PlyScan ply{name, header, coordinates, {}, true, {}, {}};
-    const bool text = header.is_text();
-    ply.scan.format = text ? "PLY (ASCII)" : "PLY (binary)";
-    ply.scan.reader = "ply";
-    for (const PlyElement& element : header.elements) {
-        if (element.name != "vertex")
-            continue;
-        ply.scan.file_vertices = element.count;
-        for (const PlyProperty& property : element.properties)
-            if (property.name == "x" || property.name == "y" || property.name == "z")
-                ply.single = ply.single && property.type == PlyType::float32;
-    }
-    ply.single = ply.single || coordinates.placement().moves();
-    PlyValues values(name, header, bytes);
-    read_elements(ply, values);
-    ply.scan.stream = plain_ply_header(text ? "ascii" : "binary_little_endian",
-                                       text || ply.single ? "float" : "double",
-                                       ply.scan.file_vertices, ply.scan.faces_passed_on()) +
-                      ply.vertices + ply.faces;
+    const std::string_view data = without_byte_order_mark(bytes);
+    const PlyHeader header = parse_ply_header(name, data);
+    PlyScan ply{name, header, coordinates, PlyValues(name, header, data), {}, 0, {}};
+    ply.scan.format = header.is_text() ? "PLY (ASCII)" : "PLY (binary)";
+    // Faces may stand before the vertices that they name.
+    for (const PlyElement& element : header.elements)
+        if (element.name == "vertex")
+            ply.scan.file_vertices = element.count;
+    read_elements(ply);
     return std::move(ply.scan);
 }
 

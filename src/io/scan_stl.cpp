@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/file_scan.h"
+#include "mesh/equal_points.h"
 
 #include <algorithm>
 #include <array>
@@ -10,9 +11,8 @@ namespace vdb_shell
 namespace
 {
 
-// OpenMesh's STL readers merge equal positions themselves and leave out facets of which two corners
-// are merged; both are foreseen here. They take any number of facets on trust and read nonsense
-// behind the end of the file.
+// STL knows no vertices, only three corners a facet, so equal positions are merged here whatever
+// the options say.
 
 constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 
@@ -24,67 +24,61 @@ std::uint32_t little_endian_32(const char* bytes)
     return value;
 }
 
-void put_little_endian(char* bytes, float value)
-{
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    for (int i = 0; i < 4; ++i)
-        bytes[i] = static_cast<char>(bits >> (8 * i) & 0xFF);
-}
-
-/// Turns three points a facet into what OpenMesh will make of them.
-void foresee_merging(FileScan& scan)
+/// Makes vertices of the corners that the facets repeat, and faces of the facets.
+void merge_corners(FileScan& scan)
 {
     scan.file_vertices = scan.points.size();
-    const std::vector<std::uint32_t> first = first_equal_point(scan.points);
-    for (std::size_t facet = 0; facet < scan.points.size() / 3; ++facet) {
-        Corners corners{first[3 * facet], first[3 * facet + 1], first[3 * facet + 2]};
-        count_face(scan, corners);
-    }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < first.size(); ++i)
-        if (first[i] == i)
+    std::vector<std::uint32_t> vertex = first_equal_point(scan.points);
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < vertex.size(); ++i) {
+        // An equal point stands before this one, and its number is known.
+        vertex[i] = vertex[i] == i ? kept : vertex[vertex[i]];
+        if (vertex[i] == kept)
             scan.points[kept++] = scan.points[i];
+    }
     scan.points.resize(kept);
+    Polygon polygon;
+    for (std::size_t i = 0; i < vertex.size(); i += 3) {
+        polygon = {vertex[i], vertex[i + 1], vertex[i + 2]};
+        add_face(scan, polygon);
+    }
 }
 
-FileScan scan_binary(const std::string& name, std::string bytes, Coordinates& coordinates)
+FileScan scan_binary(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
     if (bytes.size() < kHeaderBytes)
         refuse(name, "a file of " + std::to_string(bytes.size()) +
                          " bytes is neither text STL (there is no \"solid\") nor binary STL (whose "
                          "header has 84 bytes)");
     const std::size_t facets = little_endian_32(bytes.data() + 80);
+    // Also more bytes than declared: they may be the facets of a count that was written wrong.
     if (bytes.size() != kHeaderBytes + kFacetBytes * facets)
         refuse(name, "the header declares " + std::to_string(facets) + " facets, which take " +
                          std::to_string(kHeaderBytes + kFacetBytes * facets) +
                          " bytes, but the file has " + std::to_string(bytes.size()));
     FileScan scan;
     scan.format = "STL (binary)";
-    scan.reader = "stl";
-    scan.binary = true;
     scan.points.reserve(3 * facets);
     for (std::size_t facet = 0; facet < facets; ++facet) {
-        char* corner = bytes.data() + kHeaderBytes + kFacetBytes * facet + 12;
-        for (int k = 0; k < 3; ++k, corner += 12) {
+        // The normal is passed over: it follows from the corners, and many writers leave zero.
+        const char* coordinate = bytes.data() + kHeaderBytes + kFacetBytes * facet + 12;
+        for (int k = 0; k < 3; ++k) {
             openvdb::Vec3s point;
-            char* coordinate = corner;
             for (int axis = 0; axis < 3; ++axis, coordinate += 4) {
                 const std::uint32_t bits = little_endian_32(coordinate);
                 float value = 0;
                 std::memcpy(&value, &bits, sizeof bits);
                 point[axis] = coordinates.from_number(name, {"face", facet}, value, axis);
-                put_little_endian(coordinate, point[axis]);
             }
             scan.points.push_back(point);
         }
     }
-    scan.stream = std::move(bytes);
-    foresee_merging(scan);
+    merge_corners(scan);
     return scan;
 }
 
-/// The words of a text STL, with the line they stand in.
+/// The words of a text STL, with the line they stand in: line breaks mean nothing, except behind
+/// solid and endsolid.
 class Words
 {
 public:
@@ -126,10 +120,8 @@ void read_facet(const std::string& name, Words& words, Coordinates& coordinates,
             words.expect("outer", facet);
     words.expect("outer", facet);
     words.expect("loop", facet);
-    scan.stream += "facet normal 0 0 0\nouter loop\n";
     for (int k = 0; k < 3; ++k) {
         words.expect("vertex", facet);
-        scan.stream += "vertex";
         openvdb::Vec3s point;
         for (int axis = 0; axis < 3; ++axis) {
             const std::string_view word = words.next();
@@ -137,22 +129,17 @@ void read_facet(const std::string& name, Words& words, Coordinates& coordinates,
             if (word.empty())
                 refuse(name, face.text() + ": the file ends");
             point[axis] = coordinates.from_text(name, face, word, axis);
-            scan.stream += ' ';
-            coordinates.pass_on(scan.stream, word, point[axis]);
         }
-        scan.stream += '\n';
         scan.points.push_back(point);
     }
     words.expect("endloop", facet);
     words.expect("endfacet", facet);
-    scan.stream += "endloop\nendfacet\n";
 }
 
-FileScan scan_text(const std::string& name, const std::string& bytes, Coordinates& coordinates)
+FileScan scan_text(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
     FileScan scan;
     scan.format = "STL (ASCII)";
-    scan.reader = "stl";
     Words words(name, bytes);
     bool open = false;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
@@ -170,29 +157,32 @@ FileScan scan_text(const std::string& name, const std::string& bytes, Coordinate
                              " is needed");
         }
     }
+    // Without its end the file may have been cut short between two facets.
     if (open)
         refuse(name, "the file ends after " + std::to_string(scan.points.size() / 3) +
                          " facets, without endsolid");
-    foresee_merging(scan);
+    merge_corners(scan);
     return scan;
 }
 
 /// Binary files may begin with "solid" as well; a binary file says its own size.
-bool is_text(const std::string& bytes)
+bool is_text(std::string_view bytes)
 {
     if (bytes.size() >= kHeaderBytes &&
         bytes.size() == kHeaderBytes + kFacetBytes * little_endian_32(bytes.data() + 80))
         return false;
-    std::string_view start = std::string_view(bytes).substr(0, 4096);
+    std::string_view start = without_byte_order_mark(bytes.substr(0, 4096));
     return start.find('\0') == start.npos && equal_ignoring_case(cut_word(start), "solid");
 }
 
 } // namespace
 
-FileScan scan_stl(const std::string& name, std::string bytes, Coordinates& coordinates)
+FileScan scan_stl(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
-    return is_text(bytes) ? scan_text(name, bytes, coordinates)
-                          : scan_binary(name, std::move(bytes), coordinates);
+    // The header of a binary file may hold any bytes, so a byte-order mark is looked for in text
+    // only.
+    return is_text(bytes) ? scan_text(name, without_byte_order_mark(bytes), coordinates)
+                          : scan_binary(name, bytes, coordinates);
 }
 
 } // namespace vdb_shell

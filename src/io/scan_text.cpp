@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/scan_text.h"
 
-#include "vdb_shell/core/error.h"
-
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -30,6 +28,7 @@ bool names_no_finite_number(std::string_view word)
 {
     if (!word.empty() && (word[0] == '-' || word[0] == '+'))
         word.remove_prefix(1);
+    // Also "infinity" and "nan(0x7fffff)".
     const std::string_view start = word.substr(0, 3);
     return equal_ignoring_case(start, "nan") || equal_ignoring_case(start, "inf");
 }
@@ -46,30 +45,17 @@ bool is_tiny(std::string_view digits)
 
 } // namespace
 
-void refuse(const std::string& name, const std::string& what)
-{
-    throw ReadError(name + ": " + what);
-}
-
 std::string Place::text() const
 {
     return std::string(what) + " " + std::to_string(index) +
            (line == 0 ? "" : " (line " + std::to_string(line) + ")");
 }
 
-std::string quoted(std::string_view word)
-{
-    constexpr std::size_t kLongest = 40;
-    std::string text(word.substr(0, kLongest));
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return !std::isprint(c); }, '?');
-    return "\"" + text + (word.size() > kLongest ? "..." : "") + "\"";
-}
-
 float parse_coordinate(const std::string& name, const Place& place, std::string_view word)
 {
     if (names_no_finite_number(word))
         refuse_infinite(name, place, quoted(word));
+    // std::from_chars takes no plus sign, which other programs write.
     std::string_view digits = word;
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-')
         digits.remove_prefix(1);
@@ -129,6 +115,7 @@ bool Lines::next(std::string_view& line)
         return false;
     const std::size_t end = find_end(text_, 0, [](char c) { return c == '\n' || c == '\r'; });
     line = text_.substr(0, end);
+    // Files from different systems are joined, so each line may end in its own way.
     const bool crlf = text_.substr(end, 2) == "\r\n";
     text_.remove_prefix(std::min(end + (crlf ? 2 : 1), text_.size()));
     ++number_;
@@ -142,6 +129,12 @@ std::string_view cut_word(std::string_view& text)
     const std::string_view word = text.substr(begin, end - begin);
     text.remove_prefix(end);
     return word;
+}
+
+std::string_view without_byte_order_mark(std::string_view text)
+{
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.substr(0, kMark.size()) == kMark ? text.substr(kMark.size()) : text;
 }
 
 bool equal_ignoring_case(std::string_view a, std::string_view b)

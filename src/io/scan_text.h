@@ -3,6 +3,8 @@
 
 // What the scans of all text formats share. Numbers are parsed without the process's locale.
 
+#include "vdb_shell/io/read_file.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,9 +13,6 @@
 namespace vdb_shell
 {
 
-/// Throws ReadError "name: what".
-[[noreturn]] void refuse(const std::string& name, const std::string& what);
-
 /// An element of the file, put into words only when there is something to complain about.
 struct Place {
     const char* what;
@@ -21,9 +20,6 @@ struct Place {
     std::size_t line = 0;     ///< 0: in binary data
     std::string text() const; ///< "vertex 3 (line 7)"
 };
-
-/// `word` in quotes for a message, cut when long, with unprintable bytes replaced.
-std::string quoted(std::string_view word);
 
 /// A coordinate, correctly rounded to float32; refused when it is no number or not finite in
 /// float32.
@@ -51,6 +47,10 @@ private:
 
 /// Cuts the first blank-separated word off `text`; empty when there is none.
 std::string_view cut_word(std::string_view& text);
+
+/// `text` without the UTF-8 byte-order mark that some editors put before it: left in place it would
+/// become a part of the first word.
+std::string_view without_byte_order_mark(std::string_view text);
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 

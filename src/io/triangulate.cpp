@@ -12,8 +12,8 @@ namespace
 {
 
 using Vec2d = openvdb::Vec2d;
-using Polygon = std::vector<std::uint32_t>;
 
+/// Twice the vector area, which is normal to a planar polygon also where corners are reflex.
 openvdb::Vec3d newell_normal(const std::vector<openvdb::Vec3s>& points, const Polygon& polygon)
 {
     openvdb::Vec3d normal(0.0);
@@ -43,6 +43,8 @@ double doubled_area(const Vec2d& a, const Vec2d& b, const Vec2d& c)
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
+/// Left turns at all corners are not enough, since a polygon can wind twice. Seen from its first
+/// corner its other corners must be in order too.
 bool is_convex(const std::vector<Vec2d>& flat)
 {
     const std::size_t n = flat.size();
@@ -86,6 +88,7 @@ bool cut_ears(const std::vector<Vec2d>& flat, const Polygon& polygon,
         left[k] = k;
     while (left.size() > 2) {
         const std::size_t n = left.size();
+        // A simple polygon always has an ear; one that crosses itself need not.
         std::size_t k = 0;
         while (k < n && !is_ear(flat, polygon, left, k))
             ++k;
@@ -110,6 +113,7 @@ void append_triangles(const std::vector<openvdb::Vec3s>& points, const Polygon& 
         if (!is_convex(flat) && cut_ears(flat, polygon, triangles))
             return;
     }
+    // From a corner that comes twice, a fan would have triangles of two corners.
     const std::size_t n = polygon.size(), apex = first_unique_corner(polygon);
     for (std::size_t k = apex + 1; k + 1 < apex + n; ++k)
         triangles.emplace_back(polygon[apex], polygon[k % n], polygon[(k + 1) % n]);

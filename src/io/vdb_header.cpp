@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/vdb_header.h"
+#include "vdb_shell/io/vdb_header.h"
 
 #include "vdb_shell/core/error.h"
 
@@ -18,6 +18,7 @@ namespace
 
 namespace fs = std::filesystem;
 
+// Before version 222 voxels were compressed in another way.
 constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kOldestVersion = 222, kNewestVersion = 224;
 constexpr std::uint64_t kUuidLength = 36;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/atomic_file.h"
-#include "io/file_scan.h"
+#include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/read_mesh.h"
 
@@ -16,9 +15,6 @@ namespace vdb_shell
 namespace
 {
 
-// OpenMesh's writers want a half-edge mesh, which cannot hold every mesh, and print OBJ and OFF
-// coordinates with a fixed number of decimals.
-
 /// The shortest decimals that give the same number when read.
 template <typename Vec> void put_decimals(std::ostream& out, const Vec& point)
 {
@@ -32,6 +28,7 @@ template <typename Vec> void put_decimals(std::ostream& out, const Vec& point)
     out.put('\n');
 }
 
+/// Moved points are doubles: the digits of the float would put them elsewhere.
 void put(std::ostream& out, const openvdb::Vec3s& point, const Placement& placement)
 {
     if (placement.moves())
@@ -40,6 +37,7 @@ void put(std::ostream& out, const openvdb::Vec3s& point, const Placement& placem
         put_decimals(out, point);
 }
 
+/// Lowest byte first whatever the machine, as binary STL and the PLY header below say.
 void put_bits(std::ostream& out, std::uint32_t value)
 {
     for (int byte = 0; byte < 4; ++byte)
@@ -93,8 +91,11 @@ void write_off(std::ostream& out, const TriangleMesh& mesh, const Placement& pla
 void write_ply(std::ostream& out, const TriangleMesh& mesh, const Placement& placement)
 {
     const bool moves = placement.moves();
-    out << plain_ply_header("binary_little_endian", moves ? "double" : "float", mesh.points.size(),
-                            mesh.triangles.size());
+    const std::string type = moves ? "double" : "float";
+    out << "ply\nformat binary_little_endian 1.0\nelement vertex "
+        << std::to_string(mesh.points.size()) << "\nproperty " << type << " x\nproperty " << type
+        << " y\nproperty " << type << " z\nelement face " << std::to_string(mesh.triangles.size())
+        << "\nproperty list int int vertex_indices\nend_header\n";
     for (const openvdb::Vec3s& point : mesh.points)
         moves ? put_bits(out, placement.in_file(point)) : put_bits(out, point);
     for (const openvdb::Vec3I& t : mesh.triangles) {
@@ -106,6 +107,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const Placement& pla
 
 void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 {
+    // Must not begin with "solid", by which readers tell text.
     std::array<char, 80> header{};
     std::strcpy(header.data(), "vdb_shell");
     out.write(header.data(), header.size());
@@ -113,7 +115,7 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
     for (const openvdb::Vec3I& t : mesh.triangles) {
         const openvdb::Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
         openvdb::Vec3d normal = (b - a).cross(c - a);
-        normal.normalize();
+        normal.normalize(); // leaves zero as it is
         put_bits(out, openvdb::Vec3s(normal));
         for (int corner = 0; corner < 3; ++corner)
             put_bits(out, mesh.points[t[corner]]);

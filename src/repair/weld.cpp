@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "repair/working_surface.h"
 
-#include "io/file_scan.h"
+#include "mesh/equal_points.h"
 #include "mesh/surface_defects.h"
 
 #include <array>

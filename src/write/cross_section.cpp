@@ -3,7 +3,7 @@
 
 #include "vdb_shell/core/error.h"
 
-#include "core/atomic_file.h"
+#include "vdb_shell/core/atomic_file.h"
 #include "write/cut_picture.h"
 #include "write/plane_cut.h"
 

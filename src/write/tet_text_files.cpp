@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include "vdb_shell/write/text_out.h"
 #include "write/tet_formats.h"
-#include "write/text_out.h"
 
 namespace vdb_shell
 {

@@ -3,10 +3,10 @@
 
 #include "vdb_shell/core/error.h"
 
-#include "core/atomic_file.h"
 #include "core/parallel.h"
 #include "io/vdb_archive.h"
-#include "io/vdb_header.h"
+#include "vdb_shell/core/atomic_file.h"
+#include "vdb_shell/io/vdb_header.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/write/text_out.h"
 #include "write/tet_formats.h"
-#include "write/text_out.h"
 
 #include <cstdint>
 #include <cstring>

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/file_scan.h"
+#include "io/triangulate.h"
+#include "mesh/equal_points.h"
+
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+/// Rewrites the corners to the first vertex of the same position; returns how many positions there
+/// are.
+std::size_t weld(FileScan& scan)
+{
+    const std::vector<std::uint32_t> first = first_equal_point(scan.points);
+    for (std::uint32_t& corner : scan.corners)
+        corner = first[corner];
+    std::size_t different = 0;
+    for (std::size_t v = 0; v < first.size(); ++v)
+        different += first[v] == v;
+    return different;
+}
+
+/// Triangulates the polygons; those that welding left without a triangle join the faces that the
+/// scan skipped already, in the order of the file.
+void append_faces(const FileScan& scan, ReadResult& result)
+{
+    std::vector<std::size_t>& skipped = result.report.skipped_faces;
+    auto skipped_before = scan.skipped_faces.begin();
+    auto corner = scan.corners.begin();
+    std::size_t file_face = 0;
+    Polygon polygon;
+    // A polygon of n corners makes n - 2 triangles.
+    result.mesh.triangles.reserve(scan.corners.size() - 2 * scan.polygon_sizes.size());
+    for (const std::uint32_t size : scan.polygon_sizes) {
+        for (; skipped_before != scan.skipped_faces.end() && *skipped_before == file_face;
+             ++skipped_before)
+            skipped.push_back(file_face++);
+        polygon.assign(corner, corner + size);
+        corner += size;
+        // Welding may have made two corners of a polygon the same.
+        if (tidy_polygon(polygon)) {
+            result.report.polygons_triangulated += polygon.size() > 3;
+            append_triangles(scan.points, polygon, result.mesh.triangles);
+        } else {
+            skipped.push_back(file_face);
+        }
+        ++file_face;
+    }
+    skipped.insert(skipped.end(), skipped_before, scan.skipped_faces.end());
+}
+
+/// Copies the points that triangles use to the mesh, in order; returns how many those are.
+std::size_t keep_used_points(const std::vector<openvdb::Vec3s>& points, TriangleMesh& mesh)
+{
+    // Points that nothing uses would be isolated vertices, which every stage would have to expect.
+    constexpr std::uint32_t kUnused = UINT32_MAX, kUsed = UINT32_MAX - 1;
+    std::vector<std::uint32_t> new_index(points.size(), kUnused);
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            new_index[t[corner]] = kUsed;
+    mesh.points.reserve(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        if (new_index[v] == kUnused)
+            continue;
+        new_index[v] = static_cast<std::uint32_t>(mesh.points.size());
+        mesh.points.push_back(points[v]);
+    }
+    for (openvdb::Vec3I& t : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            t[corner] = new_index[t[corner]];
+    return mesh.points.size();
+}
+
+} // namespace
+
+ReadResult mesh_of_scan(const std::string& name, FileScan scan, const Coordinates& coordinates,
+                        const ReadOptions& options)
+{
+    if (scan.file_faces == 0)
+        refuse(name, "it has no faces (and " + std::to_string(scan.file_vertices) + " vertices)");
+    ReadResult result;
+    result.report.format = std::move(scan.format);
+    result.report.file_vertices = scan.file_vertices;
+    result.report.file_faces = scan.file_faces;
+    result.report.placement = coordinates.placement();
+    result.report.largest_rounding = coordinates.largest_rounding();
+    const std::size_t vertices = options.weld ? weld(scan) : scan.points.size();
+    result.report.welded_vertices = scan.file_vertices - vertices;
+    append_faces(scan, result);
+    const std::size_t used = keep_used_points(scan.points, result.mesh);
+    result.report.unused_vertices = vertices - used;
+    // In float32 a small object far from the origin falls together into a few points.
+    if (result.mesh.triangles.empty())
+        refuse(name, "none of its " + std::to_string(scan.file_faces) +
+                         " faces has three different corners (in float32; --recentre where the "
+                         "object lies far from the origin)");
+    return result;
+}
+
+} // namespace vdb_shell

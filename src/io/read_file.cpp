@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/io/read_file.h"
+
+#include "vdb_shell/core/error.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace vdb_shell
+{
+
+namespace fs = std::filesystem;
+
+std::string read_whole_file(const fs::path& path)
+{
+    const std::string name = path.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status))
+        refuse(name, "there is no such file");
+    if (fs::is_directory(status))
+        refuse(name, "it is a folder, not a file");
+    if (!fs::is_regular_file(status))
+        refuse(name, "it is not a regular file");
+    // A folder or a pipe can be opened as well, but has no size to read.
+    std::ifstream in(path, std::ios::binary);
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (!in || error)
+        refuse(name, std::string("it cannot be opened: ") + std::strerror(errno));
+    std::string bytes(size, '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (static_cast<std::uintmax_t>(in.gcount()) != size)
+        refuse(name, "only " + std::to_string(in.gcount()) + " of its " + std::to_string(size) +
+                         " bytes can be read");
+    if (bytes.empty())
+        refuse(name, "the file is empty");
+    return bytes;
+}
+
+void refuse(const std::string& name, const std::string& what)
+{
+    throw ReadError(name + ": " + what);
+}
+
+std::string quoted(std::string_view word)
+{
+    // A file of another kind may be a single word of many megabytes.
+    constexpr std::size_t kLongest = 40;
+    std::string text(word.substr(0, kLongest));
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return !std::isprint(c); }, '?');
+    return "\"" + text + (word.size() > kLongest ? "..." : "") + "\"";
+}
+
+} // namespace vdb_shell
