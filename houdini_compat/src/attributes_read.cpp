@@ -13,6 +13,10 @@ namespace vdb_shell::houdini
 namespace
 {
 
+// Attributes come in three layouts: a tuple per element, a list per component, and pages, in which
+// a value that fills a page is stored once. All are unfolded here into tuples.
+
+// Far beyond what Houdini writes, and small enough for products of them not to overflow.
 constexpr std::size_t kMostSize = 1 << 16, kMostPageSize = 1 << 24;
 
 /// A number of a file as the type of its storage.

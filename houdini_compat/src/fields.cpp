@@ -41,6 +41,7 @@ Fields::Fields(const Value& value, const Where& where) : where_(where)
             where.fail("a key of " + std::to_string(key.size()) + " bytes, at most " +
                        std::to_string(kLongestKey) + " are read");
         if (!by_key_.emplace(key, &(*items)[i + 1]).second)
+            // Which of the two is meant cannot be known.
             where.fail(vdb_shell::quoted(key) + " is there twice");
         keys_.push_back(&key);
     }

@@ -17,6 +17,9 @@ namespace vdb_shell::houdini
 namespace
 {
 
+// What is checked before a geometry is written, so that no file is made that the reader here would
+// refuse, or that would be read as something else.
+
 constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
 
 [[noreturn]] void reject(const std::string& what)
@@ -42,6 +45,7 @@ bool is_name(const std::string& name)
 
 template <typename Named> void require_names(const std::vector<Named>& list, const char* what)
 {
+    // Attributes and groups are found by name, so a second one of the same name would be lost.
     std::set<std::string> seen;
     for (const Named& one : list) {
         if (!is_name(one.name))
@@ -52,6 +56,7 @@ template <typename Named> void require_names(const std::vector<Named>& list, con
     }
 }
 
+/// -1 stands for the empty string.
 void require_indices(const Strings& strings, const std::string& where)
 {
     for (std::size_t i = 0; i < strings.index.size(); ++i)
@@ -101,6 +106,7 @@ void require_primitives(const HoudiniGeometry& geometry)
                    " vertices");
         vertices += primitive.vertices;
     }
+    // A primitive's vertices are found by counting those of all before it.
     if (vertices != geometry.vertex_point.size())
         reject("the primitives have " + std::to_string(vertices) +
                " vertices together, there are " + std::to_string(geometry.vertex_point.size()));

@@ -16,6 +16,8 @@ namespace vdb_shell::houdini
 namespace
 {
 
+/// The document part by part. Every length is held against the bytes that are left before memory
+/// is taken for it.
 class Parser
 {
 public:
@@ -25,6 +27,7 @@ public:
         const std::string_view mark = std::string_view(bytes).substr(0, kBinaryMark.size());
         if (mark != kBinaryMark && mark != kSwappedMark)
             refuse(name, "it does not begin with the mark of binary JSON");
+        // The file's order shows in its mark, the machine's in the first byte of a 1.
         const std::uint16_t one = 1;
         const bool little_host = *reinterpret_cast<const unsigned char*>(&one) == 1;
         swap_ = (mark == kBinaryMark) != little_host;
@@ -77,6 +80,7 @@ private:
         return static_cast<double>(static_cast<float>(value));
     }
 
+    /// A byte, or a byte that says how many of the following bytes are the length.
     std::uint64_t length()
     {
         const auto first = number<std::uint8_t>();
@@ -102,6 +106,7 @@ private:
         return made;
     }
 
+    /// Strings that come often are defined once and then named by a number.
     Text token()
     {
         const std::uint64_t id = length();
@@ -118,6 +123,7 @@ private:
         numbers.values.reserve(static_cast<std::size_t>(count));
         for (std::uint64_t i = 0; i < count; ++i)
             numbers.values.push_back(static_cast<Wide>(number<Stored>()));
+        // Nothing tells an empty array of numbers from an empty list.
         return count ? Value{std::move(numbers)} : Value{List{}};
     }
 
@@ -157,6 +163,7 @@ private:
         return {std::move(made)};
     }
 
+    /// An array of one kind of value, whose kind is said once.
     Value uniform()
     {
         const auto kind = static_cast<Kind>(number<std::uint8_t>());

@@ -43,6 +43,7 @@ std::vector<openvdb::Vec3d> positions_of(const HoudiniGeometry& geometry, const 
                      " components, or is not of floats; 3 or 4 floats are needed");
 }
 
+/// Leaving the tetrahedra out would make a surface of the rest that nobody has drawn.
 void require_polygons(const HoudiniGeometry& geometry, const std::string& name)
 {
     for (std::size_t i = 0; i < geometry.primitives.size(); ++i)

@@ -11,6 +11,9 @@ namespace vdb_shell::houdini
 namespace
 {
 
+// Primitives come in seven forms: each alone, or in runs of three spellings. All of them end as
+// calls of Collector, which alone knows how many vertices and primitives there may be.
+
 constexpr std::uint32_t kTetVertices = 4;
 
 /// Collects primitives and their vertices, never more of either than the file declares.
@@ -42,6 +45,8 @@ public:
     std::size_t vertex_count() const { return vertex_count_; }
     const Where& where() const { return where_; }
 
+    /// Houdini keeps no vertex without a primitive, so one that is left over says that the file is
+    /// damaged.
     void require_all() const
     {
         if (made_.size() != primitive_count_)
@@ -57,6 +62,7 @@ public:
     std::vector<std::uint32_t> take_order() { return std::move(order_); }
 
 private:
+    /// Refuses before memory is taken: a run may declare more vertices than there are bytes.
     void begin(PrimitiveType type, std::uint64_t vertices)
     {
         if (made_.size() == primitive_count_)
@@ -97,6 +103,7 @@ private:
                       "; only closed polygons and tetrahedra can be read");
 }
 
+/// An open polygon is a curve, and has no inside that a surface could be made of.
 void require_closed(const Collector& into, const Fields& fields)
 {
     const Value* closed = fields.find("closed");
@@ -128,6 +135,7 @@ void read_run(const Fields& fields, PrimitiveType type, Collector& into)
     if (type == PrimitiveType::tetrahedron) {
         add(kTetVertices, static_cast<std::int64_t>(primitives));
     } else if (const Value* runs = fields.find("nvertices_rle", "r_v")) {
+        // Pairs: a number of vertices, and how many primitives in a row have it.
         const auto& numbers = integers_of(*runs, where, "nvertices_rle");
         if (numbers.size() % 2 != 0)
             where.fail("\"nvertices_rle\" has " + std::to_string(numbers.size()) +
@@ -145,6 +153,7 @@ void read_run(const Fields& fields, PrimitiveType type, Collector& into)
                    std::to_string(primitives));
 }
 
+/// The names that single primitives have, and old runs.
 PrimitiveType type_of(const Collector& into, const std::string& name)
 {
     if (name == "Poly")
@@ -256,6 +265,7 @@ std::vector<std::uint32_t> read_primitives(const Value& topology, const Value& p
     geometry.vertex_point.reserve(order.size());
     for (const std::uint32_t vertex : order)
         geometry.vertex_point.push_back(vertex_point[vertex]);
+    // Files that Houdini wrote hold the vertices in order already, and then nothing need be moved.
     std::vector<std::uint32_t> unchanged(order.size());
     std::iota(unchanged.begin(), unchanged.end(), 0u);
     return order == unchanged ? std::vector<std::uint32_t>{} : order;

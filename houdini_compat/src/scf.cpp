@@ -16,7 +16,12 @@ namespace vdb_shell::houdini
 namespace
 {
 
+// The layout, in which all words are big-endian: the mark, the length of a preamble and the
+// preamble; the chunks; an index of where each chunk but the first starts, of the size of a chunk
+// and of the last one; the length of the index; the end mark.
+
 constexpr std::size_t kChunk = std::size_t(1) << 20;
+// One thread, so that the bytes do not depend on the number of cores.
 constexpr int kLevel = 5, kElementSize = 4, kOneThread = 1;
 constexpr std::size_t kAutomaticBlocks = 0;
 constexpr const char* kCodec = "lz4";
@@ -101,6 +106,7 @@ void append_chunk(const std::string& where, std::string_view packed, std::uint64
     if (held != wanted)
         refuse(where, "it holds " + std::to_string(held) + " bytes, the index says " +
                           std::to_string(wanted));
+    // What is declared must not take more memory than the file can stand for.
     if (wanted > kMostExpansion * packed.size())
         refuse(where, std::to_string(packed.size()) + " compressed bytes cannot hold " +
                           std::to_string(wanted));
@@ -124,6 +130,7 @@ ScfWriter::ScfWriter(Sink out) : out_(std::move(out))
 
 void ScfWriter::compress_chunk()
 {
+    // The first chunk starts at 0, which the index leaves out.
     if (compressed_ > 0)
         starts_.push_back(compressed_);
     std::string packed(chunk_.size() + BLOSC_MAX_OVERHEAD, '\0');
@@ -142,6 +149,7 @@ void ScfWriter::compress_chunk()
 void ScfWriter::write(const char* data, std::size_t size)
 {
     while (size > 0) {
+        // A full chunk waits until more comes, because the last one may be full as well.
         if (chunk_.size() == kChunk)
             compress_chunk();
         const std::size_t piece = std::min(size, kChunk - chunk_.size());

@@ -16,6 +16,9 @@ namespace
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
+// A shell is written once and read with suspicion: everything that is there twice must agree, and
+// all arrays together must have the checksum that was written.
+
 void read_layers(const Columns& detail, const std::string& name, Counts& counts)
 {
     counts.layers = detail.count(kLayers, ShellStack::kMostLayers);
@@ -36,6 +39,8 @@ void require_primitives(const HoudiniGeometry& geometry, const Counts& counts,
 {
     const std::size_t shown = counts.surfaces().size() * counts.triangles();
     const std::size_t found = geometry.primitives.size();
+    // Between the shown surfaces some triangles stand for prisms that have no tet, as many as there
+    // are; so with layers only a lower bound is known.
     if (counts.layered() ? counts.tets + shown > found : counts.tets + shown != found)
         refuse(name, "it has " + std::to_string(found) + " primitives, but " +
                          std::to_string(counts.tets) + " tets and " +
@@ -105,6 +110,7 @@ void read_triangles(const HoudiniGeometry& geometry, const Counts& counts, const
 {
     const std::size_t triangles = counts.triangles();
     const auto corner = [&](std::size_t i, int k) {
+        // Houdini's polygons run clockwise.
         constexpr int kTurned[] = {0, 2, 1};
         return geometry
             .vertex_point[4 * counts.tets + 3 * i + static_cast<std::size_t>(kTurned[k])];
@@ -142,6 +148,7 @@ void read_splits(const Columns& primitives, const Counts& counts,
     const auto said = [](std::size_t i, std::int32_t value) {
         return "of primitive " + std::to_string(i) + " has " + std::to_string(value);
     };
+    // Of each prism the first primitive that has told its diagonals.
     std::vector<std::size_t> teller(counts.prisms, prisms.size());
     stack.splits.resize(counts.layers);
     for (PrismSplit& split : stack.splits)
@@ -193,6 +200,7 @@ void read_tets(const HoudiniGeometry& geometry, const Columns& points, const Cou
     }
     for (std::size_t t = 0; t < counts.tets; ++t) {
         const auto corner = [&](std::size_t k) { return number[geometry.vertex_point[4 * t + k]]; };
+        // Houdini counts the corners of a tetrahedron with the other orientation.
         tets.tets.emplace_back(corner(0), corner(1), corner(3), corner(2));
         tets.prism.push_back(static_cast<std::uint32_t>(prisms[t] % counts.triangles()));
         tets.prism_layer.push_back(static_cast<std::uint8_t>(prisms[t] / counts.triangles()));
@@ -206,6 +214,7 @@ void read_placement(const HoudiniGeometry& geometry, const Columns& detail, Plac
     const auto& origin = detail.get<std::vector<double>>(kOrigin, 3);
     placement.origin = openvdb::Vec3d(origin[0], origin[1], origin[2]);
     placement.unit = detail.get<std::vector<double>>(kUnit, 1)[0];
+    // A unit that is no power of two would round the coordinates once more.
     int exponent = 0;
     if (!placement.origin.isFinite())
         detail.fail(kOrigin, "is not finite");

@@ -24,8 +24,8 @@ struct ReadOptions {
     bool rescale = false;
 };
 
-/// What a file said and what became of it. `file_*` is counted by a scan of the file of our own,
-/// independent of the reader, so that nothing can be lost silently.
+/// What a file said and what became of it. `file_*` counts what the file declares or lists, before
+/// anything is left out, so that the counts have to add up and nothing is lost without a word.
 struct ReadReport {
     std::string format;                    ///< "OBJ", "PLY (binary)", ...
     std::size_t file_vertices = 0;         ///< vertices that the file declares or lists
@@ -46,7 +46,7 @@ struct ReadResult {
     ReadReport report;
 };
 
-/// Reads OBJ, PLY, OFF or STL (ASCII and binary where the format has both), by extension.
+/// Reads OBJ, PLY, OFF or STL by extension; docs/mesh_files.md lists the forms that are understood.
 /// Polygons are triangulated: a fan when convex, else by cutting ears in the plane of the Newell
 /// normal, which is right for planar simple polygons (of up to 1000 corners; a fan beyond).
 /// Throws ReadError with file, element and value: missing, empty or truncated file, unknown
