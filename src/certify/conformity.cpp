@@ -166,7 +166,7 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
     append_surface_sides(free, mesh, sides, findings);
     const auto smallest_corner = [](const FaceSide& side) { return side.corners[0]; };
     sides = bucket_sort<FaceSide>(std::array{std::move(sides)}, mesh.points.size(), smallest_corner,
-                               std::less<>());
+                                  std::less<>());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
             ++last;

@@ -18,7 +18,8 @@ namespace vdb_shell
 /// items, as with the smallest vertex of an edge or a face. The result does not depend on how the
 /// items are spread over the parts if `less` tells all items of a key apart.
 template <typename Item, typename Parts, typename Key, typename Less>
-std::vector<Item> bucket_sort(const Parts& parts, std::size_t keys, const Key& key, const Less& less)
+std::vector<Item> bucket_sort(const Parts& parts, std::size_t keys, const Key& key,
+                              const Less& less)
 {
     // By key first the numbers, then the starts, then the ends.
     std::vector<std::size_t> ends(keys + 1, 0);

@@ -57,14 +57,17 @@ DecimateResult decimate(const TriangleMesh& mesh, const DecimateOptions& options
     DecimateReport& report = out.report;
     report.before = mesh.triangles.size();
     report.wanted = *options.triangles;
-    double tried = tolerance;
+    const bool bounded = options.tolerance.has_value();
+    double tried = bounded ? tolerance : std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < kMostAttempts; ++attempt, tried *= kStricter) {
         Simplified left = simplify(
-            mesh, {tried, std::numeric_limits<double>::infinity(), *options.triangles, false},
+            mesh,
+            {tried, std::numeric_limits<double>::infinity(), *options.triangles, false, bounded},
             interrupter);
         measure(report, mesh, left.mesh, spacing, interrupter);
         report.repeats += left.repeats;
-        if (std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance) {
+        if (!bounded ||
+            std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance) {
             out.mesh = std::move(left.mesh);
             return out;
         }

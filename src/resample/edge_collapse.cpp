@@ -23,8 +23,6 @@ constexpr double kLeastCosine = 0.766;
 // No collapse may make a triangle narrower than that, longest edge over height, unless one around
 // was narrower before.
 constexpr double kWorstAspect = 8.0;
-// Where the surface is flat the quadric error says nothing: then the shortest edge goes.
-constexpr double kLengthWeight = 1e-3;
 // Share of the vertices that may go in one round: the rounds stand for an order by error.
 constexpr double kShareOfRound = 0.2;
 
@@ -86,8 +84,6 @@ public:
         : limits_(limits), points_(mesh.points.size()), triangles_(mesh.triangles),
           quadric_(mesh.points.size()), best_(mesh.points.size()), touched_(mesh.points.size(), 1)
     {
-        if (bounds_distance())
-            gone_.resize(triangles_.size());
         const Vec3d origin = mesh.points.empty() ? Vec3d(0.0) : Vec3d(mesh.points.front());
         for (std::size_t v = 0; v < points_.size(); ++v)
             points_[v] = Vec3d(mesh.points[v]) - origin;
@@ -98,6 +94,8 @@ public:
                 quadric_[t[k]].add_plane(cross / length, -cross.dot(points_[t[0]]) / length,
                                          0.5 * length);
         }
+        if (bounds_distance())
+            place_samples();
     }
 
     void run()
@@ -109,6 +107,25 @@ public:
     const std::vector<Vec3I>& triangles() const { return triangles_; }
 
 private:
+    /// The vertices, by their own numbers; after them, if wanted, the middles of triangles and
+    /// edges, each with a triangle that it lies on.
+    void place_samples()
+    {
+        samples_ = points_;
+        samples_of_.resize(triangles_.size());
+        for (std::size_t t = 0; t < triangles_.size() && limits_.between_vertices; ++t) {
+            const Vec3I& c = triangles_[t];
+            const auto add = [&](const Vec3d& p) {
+                samples_of_[t].push_back(static_cast<std::uint32_t>(samples_.size()));
+                samples_.push_back(p);
+            };
+            add((points_[c[0]] + points_[c[1]] + points_[c[2]]) / 3.0);
+            for (int k = 0; k < 3; ++k)
+                if (c[k] < c[(k + 1) % 3])
+                    add(0.5 * (points_[c[k]] + points_[c[(k + 1) % 3]]));
+        }
+    }
+
     bool bounds_distance() const { return std::isfinite(limits_.distance); }
     bool is_fixed(std::size_t v) const { return !limits_.fixed.empty() && limits_.fixed[v]; }
 
@@ -145,12 +162,12 @@ private:
             if (triangles_[t][0] == triangles_[t][1])
                 continue;
             if (bounds_distance() && left != t)
-                gone_[left] = std::move(gone_[t]);
+                samples_of_[left] = std::move(samples_of_[t]);
             triangles_[left++] = triangles_[t];
         }
         triangles_.resize(left);
         if (bounds_distance())
-            gone_.resize(left);
+            samples_of_.resize(left);
     }
 
     /// Vertices in the order of what their collapses cost, as many as a round may take.
@@ -186,36 +203,36 @@ private:
                     corners[k] = corners[k] == v ? u : corners[k];
         }
         if (bounds_distance())
-            hand_over_vertices(v);
+            hand_over_samples(v);
         quadric_[u] += quadric_[v];
         best_[v] = {};
     }
 
-    /// After v has gone: it and those that its triangles stood for go to the nearest of what is
+    /// After v has gone: it and the samples of its triangles go to the nearest of those that are
     /// left around it.
-    void hand_over_vertices(std::uint32_t v)
+    void hand_over_samples(std::uint32_t v)
     {
-        std::vector<std::uint32_t> homeless{v};
+        std::vector<std::uint32_t> samples{v};
         Fan fan;
         std::vector<std::uint32_t> left;
         for (const std::uint32_t t : around_.around(v)) {
-            homeless.insert(homeless.end(), gone_[t].begin(), gone_[t].end());
-            gone_[t].clear();
+            samples.insert(samples.end(), samples_of_[t].begin(), samples_of_[t].end());
+            samples_of_[t].clear();
             const Vec3I& c = triangles_[t];
             if (c[0] == c[1])
                 continue;
             left.push_back(t);
             fan.push_back({points_[c[0]], points_[c[1]], points_[c[2]]});
         }
-        for (const std::uint32_t w : homeless) {
+        for (const std::uint32_t w : samples) {
             std::size_t nearest = 0;
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t i = 0; i < fan.size(); ++i) {
-                const double squared = squared_distance(fan[i], points_[w]);
+                const double squared = squared_distance(fan[i], samples_[w]);
                 if (squared < least)
                     least = squared, nearest = i;
             }
-            gone_[left[nearest]].push_back(w);
+            samples_of_[left[nearest]].push_back(w);
         }
     }
 
@@ -254,7 +271,7 @@ private:
                 length2 > limits_.longest_edge * limits_.longest_edge)
                 continue;
             candidates.push_back(
-                {std::max(0.0, error) + kLengthWeight * quadric_[v].area * length2, u});
+                {std::max(0.0, error) + limits_.length_weight * quadric_[v].area * length2, u});
         }
         std::sort(candidates.begin(), candidates.end(), [](const Collapse& a, const Collapse& b) {
             return a.cost != b.cost ? a.cost < b.cost : a.onto < b.onto;
@@ -301,8 +318,8 @@ private:
         return common == 2 && (degree > 3 || ring.size() > 3);
     }
 
-    /// Whether all vertices that the triangles around v stand for, and v itself, are near enough to
-    /// one of those that the collapse would leave.
+    /// Whether v and all samples of the triangles around it are near enough to one of the triangles
+    /// that the collapse would leave.
     bool keeps_distance(std::uint32_t v, std::uint32_t u, Fan& fan) const
     {
         if (!bounds_distance())
@@ -319,21 +336,22 @@ private:
         const double most = limits_.distance * limits_.distance;
         const auto is_near = [&](std::uint32_t w) {
             return std::any_of(fan.begin(), fan.end(), [&](const std::array<Vec3d, 3>& triangle) {
-                return squared_distance(triangle, points_[w]) <= most;
+                return squared_distance(triangle, samples_[w]) <= most;
             });
         };
         const auto around = around_.around(v);
         return is_near(v) && std::all_of(around.begin(), around.end(), [&](std::uint32_t t) {
-                   return std::all_of(gone_[t].begin(), gone_[t].end(), is_near);
+                   return std::all_of(samples_of_[t].begin(), samples_of_[t].end(), is_near);
                });
     }
 
     const CollapseLimits& limits_;
     std::vector<Vec3d> points_;
     std::vector<Vec3I> triangles_;
-    /// By triangle, the vertices that have gone and are nearest to it; kept only where the distance
-    /// is bounded.
-    std::vector<std::vector<std::uint32_t>> gone_;
+    // Kept only where the distance is bounded: points of the input, and by triangle those that have
+    // no vertex any more and are nearest to it.
+    std::vector<Vec3d> samples_;
+    std::vector<std::vector<std::uint32_t>> samples_of_;
     std::vector<Quadric> quadric_;
     std::vector<Collapse> best_;
     std::vector<std::uint8_t> touched_; ///< in the round before

@@ -18,10 +18,17 @@ struct CollapseLimits {
     std::size_t fewest_triangles = 0; ///< collapses end where so many are left
     /// How far a vertex that has gone may lie from the triangles that took its place.
     double distance = kNone;
+    /// Bound that distance for the middles of the input's edges and triangles too: on a surface of
+    /// few triangles the vertices say little about what lies between them.
+    bool between_vertices = false;
     double longest_edge = kNone; ///< longer edges stay
     /// The quadric error of a collapse: squared distances from the planes of all triangles that a
     /// vertex stands for, times their areas.
     double quadric_error = kNone;
+    /// Added to the quadric error: this times the area around the vertex times the squared length
+    /// of the edge. Where the surface is flat the quadric error says nothing, and the shortest edge
+    /// goes.
+    double length_weight = 1e-3;
     std::vector<char> fixed; ///< by vertex: it stays; empty: none has to
 };
 

@@ -8,6 +8,7 @@
 #include "resample/spoiled_triangles.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace vdb_shell
@@ -18,6 +19,8 @@ namespace
 using openvdb::Vec3s;
 
 constexpr int kMaxRepeats = 12;
+// By which share of its size, each time, the box around triangles that touch is widened.
+constexpr double kMarginOfSize = 0.25;
 
 /// Boxes around all triangles that spoil the surface; empty when it is sound.
 std::vector<FloatBox> spoiled_places(const TriangleMesh& mesh)
@@ -31,20 +34,23 @@ std::vector<FloatBox> spoiled_places(const TriangleMesh& mesh)
     return places;
 }
 
-void hold_points_near(const std::vector<FloatBox>& places, float margin, const TriangleMesh& mesh,
-                      std::vector<char>& held)
+/// Fixes the vertices in the boxes, widened by a quarter of their own size for each time that this
+/// was not enough, so that it cannot stall; but no wider than what the tolerance can have moved.
+void fix_vertices_in(std::vector<FloatBox> places, int repeat, double tolerance,
+                     const TriangleMesh& mesh, std::vector<char>& fixed)
 {
+    for (FloatBox& box : places) {
+        const FourFloats size = box.hi - box.lo;
+        const float most = std::max({size[0], size[1], size[2]});
+        const auto margin =
+            static_cast<float>(repeat * std::min(2.0 * tolerance, kMarginOfSize * double(most)));
+        box.lo -= four(margin);
+        box.hi += four(margin);
+    }
     for_each_index(mesh.points.size(), [&](std::size_t v) {
         const Vec3s& p = mesh.points[v];
-        for (const FloatBox& box : places) {
-            bool in = true;
-            for (int axis = 0; axis < 3; ++axis)
-                in &= p[axis] >= box.lo[axis] - margin && p[axis] <= box.hi[axis] + margin;
-            if (in) {
-                held[v] = 1;
-                return;
-            }
-        }
+        fixed[v] = fixed[v] || std::any_of(places.begin(), places.end(),
+                                           [&](const FloatBox& box) { return box.contains(p); });
     });
 }
 
@@ -65,18 +71,23 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
     const double tolerance = limits.tolerance;
     if (!(tolerance > 0.0))
         return {mesh, 0};
-    CollapseLimits collapse{limits.fewest_triangles, tolerance, limits.longest_edge,
-                            limits.bound_quadric ? std::pow(tolerance, 4) : CollapseLimits::kNone,
-                            std::vector<char>(mesh.points.size())};
+    CollapseLimits collapse;
+    collapse.fewest_triangles = limits.fewest_triangles;
+    collapse.distance = tolerance;
+    collapse.between_vertices = limits.between_vertices;
+    collapse.longest_edge = limits.longest_edge;
+    if (limits.bound_quadric)
+        collapse.quadric_error = std::pow(tolerance, 4);
+    // By the error alone: with coarsen's weight of the length fandisk was five times as far away.
+    collapse.length_weight = 0;
+    collapse.fixed.resize(mesh.points.size());
     for (int repeat = 0; repeat <= kMaxRepeats; ++repeat) {
         progress.stop_if_interrupted(100 * repeat / (kMaxRepeats + 1));
         TriangleMesh left = collapse_edges(mesh, collapse).mesh;
         const std::vector<FloatBox> places = spoiled_places(left);
         if (places.empty())
             return is_sound(left) ? Simplified{std::move(left), repeat} : Simplified{mesh, repeat};
-        // Wider each time, so that holding cannot stall.
-        hold_points_near(places, static_cast<float>(2.0 * repeat * tolerance), mesh,
-                         collapse.fixed);
+        fix_vertices_in(places, repeat, tolerance, mesh, collapse.fixed);
     }
     return {mesh, kMaxRepeats};
 }
