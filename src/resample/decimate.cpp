@@ -12,6 +12,9 @@
 #include <string>
 #include <utility>
 
+// Takes a bound on the distance and keeps it: the collapses bound it at sampled points only, so the
+// distance is measured on the result, and where it is too large all is done anew, more strictly.
+
 namespace vdb_shell
 {
 namespace
@@ -19,7 +22,7 @@ namespace
 
 constexpr std::size_t kFewestTriangles = 4; // a tetrahedron
 constexpr int kMostAttempts = 12;
-// Of the tolerance, where the distance turned out larger: collapses only look at the vertices.
+// By what the tolerance of the collapses is multiplied where the measured distance is too large.
 constexpr double kStricter = 0.7;
 constexpr double kSamplesAlongDiagonal = 256.0;
 

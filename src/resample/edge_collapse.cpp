@@ -10,6 +10,13 @@
 #include <cmath>
 #include <limits>
 
+// Takes a closed surface and leaves one of some of its vertices. Each vertex knows the cheapest of
+// its allowed collapses; a round sorts the cheapest of these and does all that do not touch one
+// done before, so that what was looked at in parallel still holds. Costs are those of Garland and
+// Heckbert 1997, "Surface simplification using quadric error metrics", on the edge's own ends.
+// The distance is bounded as Klein, Liebich, Strasser 1996, "Mesh reduction with error control" do:
+// by points of the input that each triangle keeps for those that it has replaced.
+
 namespace vdb_shell
 {
 namespace

@@ -11,6 +11,10 @@
 #include <algorithm>
 #include <cmath>
 
+// Takes an embedded surface and leaves an embedded one: edge collapses know nothing of triangles
+// that are not neighbours, so exact tests look for contacts afterwards. The vertices around these
+// are fixed, and the collapses begin anew from the input.
+
 namespace vdb_shell
 {
 namespace

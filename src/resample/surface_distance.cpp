@@ -15,6 +15,9 @@
 #include <string>
 #include <vector>
 
+// Takes two surfaces and samples the first: triangles are cut into pieces of about one size, and
+// the nearest triangle of the second is looked up for the middle of each, and for all vertices.
+
 namespace vdb_shell
 {
 namespace
