@@ -2,7 +2,7 @@
 #include "vdb_shell/certify/conformity.h"
 
 #include "certify/tet_faces.h"
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 
 #include <algorithm>
 #include <array>
@@ -165,8 +165,8 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
             sides.push_back(side_of(tet_face(mesh.tets[i], corner), i, false));
     append_surface_sides(free, mesh, sides, findings);
     const auto smallest_corner = [](const FaceSide& side) { return side.corners[0]; };
-    sides = deal_out<FaceSide>(std::array{std::move(sides)}, mesh.points.size(), smallest_corner,
-                               std::less<>());
+    sides = bucket_sort<FaceSide>(std::array{std::move(sides)}, mesh.points.size(), smallest_corner,
+                                  std::less<>());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
             ++last;

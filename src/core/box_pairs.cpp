@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/box_pairs.h"
 
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const Ke
                     });
         },
         1);
-    return deal_out<Pair>(
+    return bucket_sort<Pair>(
         parts, boxes.size(), [](const Pair& pair) { return pair[0]; },
         [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field/deep_field.h"
 
-#include "field/nearest_on_triangle.h"
+#include "mesh/nearest_on_triangle.h"
+#include "mesh/triangle_corners.h"
 
 #include <cmath>
 
@@ -31,11 +32,8 @@ float DeepField::value(const openvdb::Coord& at, const openvdb::Coord& base,
 
 Vec3d DeepField::nearest_point(const Vec3d& world, TriangleTree::Seed& seed) const
 {
-    const openvdb::Vec3I& t = mesh_.triangles[tree_.nearest(world, kProbeTolerance, seed).triangle];
-    return nearest_on_triangle(
-               {Vec3d(mesh_.points[t[0]]), Vec3d(mesh_.points[t[1]]), Vec3d(mesh_.points[t[2]])},
-               world)
-        .point;
+    const std::uint32_t triangle = tree_.nearest(world, kProbeTolerance, seed).triangle;
+    return nearest_on_triangle(triangle_corners(mesh_, triangle), world).point;
 }
 
 } // namespace vdb_shell

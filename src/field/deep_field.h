@@ -2,7 +2,7 @@
 #pragma once
 
 #include "field/field_sampler.h"
-#include "field/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
 namespace vdb_shell
 {

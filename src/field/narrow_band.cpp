@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/field/narrow_band.h"
 
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "field/eight_distances.h"
@@ -143,7 +143,7 @@ std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::siz
             }
         },
         1);
-    return deal_out_by_column<LeafTriangle>(
+    return bucket_sort_by_column<LeafTriangle>(
         parts, [](const LeafTriangle& pair) { return pair.column(); }, std::less<>());
 }
 

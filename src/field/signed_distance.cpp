@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field/signed_distance.h"
 
-#include "field/nearest_on_triangle.h"
+#include "mesh/nearest_on_triangle.h"
 #include "vdb_shell/mesh/normals.h"
 
 #include <algorithm>

@@ -2,9 +2,10 @@
 #include "growth/coarse_start.h"
 
 #include "core/parallel.h"
-#include "field/nearest_on_triangle.h"
-#include "field/triangle_tree.h"
+#include "mesh/nearest_on_triangle.h"
 #include "mesh/topology.h"
+#include "mesh/triangle_corners.h"
+#include "mesh/triangle_tree.h"
 #include "vdb_shell/mesh/normals.h"
 
 #include <array>
@@ -41,8 +42,7 @@ Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
                    std::uint32_t triangle, const Vec3d& at)
 {
     const openvdb::Vec3I& t = coarse.triangles[triangle];
-    const std::array<Vec3d, 3> corner{Vec3d(coarse.points[t[0]]), Vec3d(coarse.points[t[1]]),
-                                      Vec3d(coarse.points[t[2]])};
+    const std::array<Vec3d, 3> corner = triangle_corners(coarse, triangle);
     const std::array<double, 3> weight = weights_in(corner, nearest_on_triangle(corner, at).point);
     Vec3d end(0.0);
     for (std::size_t k = 0; k < 3; ++k)

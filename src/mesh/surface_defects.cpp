@@ -2,7 +2,7 @@
 #include "mesh/surface_defects.h"
 
 #include "core/box_pairs.h"
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "mesh/triangle_contacts.h"
@@ -116,7 +116,7 @@ std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
     entries.reserve(mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
         entries.emplace_back(sorted_corners(mesh.triangles[t]), t);
-    const std::vector<Entry> sorted = deal_out<Entry>(
+    const std::vector<Entry> sorted = bucket_sort<Entry>(
         std::array{std::move(entries)}, mesh.points.size(),
         [](const Entry& entry) { return entry.first[0]; }, std::less<>());
     std::vector<char> duplicate(mesh.triangles.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/topology.h"
 
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -89,7 +89,7 @@ std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangl
     std::uint32_t vertices = 0;
     for (const EdgeUse& use : uses)
         vertices = std::max(vertices, use.edge[1] + 1);
-    return deal_out<EdgeUse>(
+    return bucket_sort<EdgeUse>(
         std::array{std::move(uses)}, vertices, [](const EdgeUse& use) { return use.edge[0]; },
         [](const EdgeUse& x, const EdgeUse& y) {
             return std::tie(x.edge[1], x.triangle, x.side) <

@@ -12,6 +12,9 @@
 #include <string>
 #include <utility>
 
+// Takes a bound on the distance and keeps it: the collapses bound it at sampled points only, so the
+// distance is measured on the result, and where it is too large all is done anew, more strictly.
+
 namespace vdb_shell
 {
 namespace
@@ -19,7 +22,7 @@ namespace
 
 constexpr std::size_t kFewestTriangles = 4; // a tetrahedron
 constexpr int kMostAttempts = 12;
-// Of the tolerance, where the distance turned out larger: collapses only look at the vertices.
+// By what the tolerance of the collapses is multiplied where the measured distance is too large.
 constexpr double kStricter = 0.7;
 constexpr double kSamplesAlongDiagonal = 256.0;
 
@@ -57,14 +60,17 @@ DecimateResult decimate(const TriangleMesh& mesh, const DecimateOptions& options
     DecimateReport& report = out.report;
     report.before = mesh.triangles.size();
     report.wanted = *options.triangles;
-    double tried = tolerance;
+    const bool bounded = options.tolerance.has_value();
+    double tried = bounded ? tolerance : std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < kMostAttempts; ++attempt, tried *= kStricter) {
         Simplified left = simplify(
-            mesh, {tried, std::numeric_limits<double>::infinity(), *options.triangles, false},
+            mesh,
+            {tried, std::numeric_limits<double>::infinity(), *options.triangles, false, bounded},
             interrupter);
         measure(report, mesh, left.mesh, spacing, interrupter);
         report.repeats += left.repeats;
-        if (std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance) {
+        if (!bounded ||
+            std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance) {
             out.mesh = std::move(left.mesh);
             return out;
         }

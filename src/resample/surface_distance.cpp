@@ -3,19 +3,20 @@
 
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "mesh/nearest_on_triangle.h"
 #include "mesh/triangle_area.h"
+#include "mesh/triangle_corners.h"
+#include "mesh/triangle_tree.h"
 #include "resample/triangle_pieces.h"
 #include "vdb_shell/core/error.h"
 
-#include <embree3/rtcore.h>
-#include <openvdb/math/Proximity.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
+
+// Takes two surfaces and samples the first: triangles are cut into pieces of about one size, and
+// the nearest triangle of the second is looked up for the middle of each, and for all vertices.
 
 namespace vdb_shell
 {
@@ -26,107 +27,12 @@ using openvdb::Vec3d;
 
 // Past this many points the answer would not change and memory would.
 constexpr double kMostSamples = 134217728.0;
-
-/// Embree's tree over the triangles of a mesh; nearest points in doubles.
-class NearestPoint
-{
-public:
-    explicit NearestPoint(const TriangleMesh& mesh) : mesh_(mesh), centre_(mesh.points.front())
-    {
-        device_ = rtcNewDevice(nullptr);
-        if (!device_)
-            throw std::runtime_error("Embree could not be started");
-        scene_ = rtcNewScene(device_);
-        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);
-        rtcSetGeometryUserPrimitiveCount(geometry,
-                                         static_cast<unsigned int>(mesh.triangles.size()));
-        rtcSetGeometryUserData(geometry, this);
-        rtcSetGeometryBoundsFunction(geometry, store_bounds, nullptr);
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene_, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene_);
-    }
-    ~NearestPoint()
-    {
-        rtcReleaseScene(scene_);
-        rtcReleaseDevice(device_);
-    }
-    NearestPoint(const NearestPoint&) = delete;
-    NearestPoint& operator=(const NearestPoint&) = delete;
-
-    double distance(const Vec3d& point) const
-    {
-        const Vec3d relative = point - centre_;
-        RTCPointQuery query;
-        query.x = static_cast<float>(relative[0]);
-        query.y = static_cast<float>(relative[1]);
-        query.z = static_cast<float>(relative[2]);
-        query.radius = std::numeric_limits<float>::infinity();
-        query.time = 0.0F;
-        RTCPointQueryContext context;
-        rtcInitPointQueryContext(&context);
-        Search search{*this, point, std::numeric_limits<double>::infinity()};
-        rtcPointQuery(scene_, &query, &context, visit, &search);
-        return std::sqrt(search.squared);
-    }
-
-private:
-    struct Search {
-        const NearestPoint& tree;
-        Vec3d point;
-        double squared;
-    };
-
-    Vec3d corner(unsigned int triangle, int k) const
-    {
-        return Vec3d(mesh_.points[mesh_.triangles[triangle][k]]);
-    }
-
-    static void store_bounds(const RTCBoundsFunctionArguments* arguments)
-    {
-        const auto& self = *static_cast<const NearestPoint*>(arguments->geometryUserPtr);
-        Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
-        for (int k = 0; k < 3; ++k) {
-            const Vec3d p = self.corner(arguments->primID, k) - self.centre_;
-            low = openvdb::math::minComponent(low, p);
-            high = openvdb::math::maxComponent(high, p);
-        }
-        RTCBounds& bounds = *arguments->bounds_o;
-        bounds.lower_x = down(low[0]), bounds.lower_y = down(low[1]), bounds.lower_z = down(low[2]);
-        bounds.upper_x = up(high[0]), bounds.upper_y = up(high[1]), bounds.upper_z = up(high[2]);
-    }
-    static float down(double x)
-    {
-        return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
-    }
-    static float up(double x)
-    {
-        return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
-    }
-
-    static bool visit(RTCPointQueryFunctionArguments* arguments)
-    {
-        auto& search = *static_cast<Search*>(arguments->userPtr);
-        const NearestPoint& self = search.tree;
-        const unsigned int t = arguments->primID;
-        Vec3d uvw;
-        const Vec3d nearest = openvdb::math::closestPointOnTriangleToPoint(
-            self.corner(t, 0), self.corner(t, 1), self.corner(t, 2), search.point, uvw);
-        const double squared = (nearest - search.point).lengthSqr();
-        if (!(squared < search.squared))
-            return false;
-        search.squared = squared;
-        // The query's own point is rounded: look a little further than the distance found.
-        arguments->query->radius = up(std::sqrt(squared) * (1 + 1e-6));
-        return true;
-    }
-
-    const TriangleMesh& mesh_;
-    Vec3d centre_;
-    RTCDevice device_ = nullptr;
-    RTCScene scene_ = nullptr;
-};
+// A search begins where the one before it ended. Of triangles that are equally near to the last
+// bit of a float this may decide which is found, so runs of points that follow each other are cut
+// at fixed places, not where threads happen to cut them.
+constexpr std::size_t kPointsInRun = 256;
+// A surface that is a single point has no diagonal to measure in.
+constexpr double kLeastUnit = 1e-30;
 
 struct Samples {
     std::vector<Vec3d> points;
@@ -154,6 +60,29 @@ Samples sample(const TriangleMesh& mesh, double spacing)
     return samples;
 }
 
+/// The distance of each point to the surface: the tree says in floats which triangle is nearest,
+/// and doubles how far that is. So it is never too short, and too long by no more than the
+/// rounding of a float of the size of the surface.
+std::vector<double> distances_to(const TriangleMesh& surface, const std::vector<Vec3d>& points)
+{
+    const TriangleTree tree(surface, std::max(diagonal_of(bounds_of(surface.points)), kLeastUnit));
+    std::vector<double> distances(points.size());
+    const std::size_t runs = (points.size() + kPointsInRun - 1) / kPointsInRun;
+    for_each_index(
+        runs,
+        [&](std::size_t run) {
+            TriangleTree::Seed seed = TriangleTree::kNoSeed;
+            const std::size_t end = std::min(points.size(), (run + 1) * kPointsInRun);
+            for (std::size_t i = run * kPointsInRun; i < end; ++i) {
+                const std::uint32_t t = tree.nearest(points[i], 0.0F, seed).triangle;
+                const Vec3d on = nearest_on_triangle(triangle_corners(surface, t), points[i]).point;
+                distances[i] = (on - points[i]).length();
+            }
+        },
+        1);
+    return distances;
+}
+
 } // namespace
 
 DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& to, double spacing,
@@ -165,10 +94,7 @@ DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& t
                             std::to_string(from.triangles.size()) + " and " +
                             std::to_string(to.triangles.size()) + " triangles");
     const Samples samples = sample(from, spacing);
-    const NearestPoint nearest(to);
-    std::vector<double> distances(samples.points.size());
-    for_each_index(distances.size(),
-                   [&](std::size_t i) { distances[i] = nearest.distance(samples.points[i]); });
+    const std::vector<double> distances = distances_to(to, samples.points);
     progress.stop_if_interrupted(100);
     DistanceFigures figures;
     figures.samples = distances.size();

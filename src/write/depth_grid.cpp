@@ -2,7 +2,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/vdb_file.h"
 
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 #include "core/four_floats.h"
 #include "core/lanes.h"
 #include "core/parallel.h"
@@ -387,7 +387,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
     const double layers = deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
     const Parts parts = make_parts(tets, voxel_size, layers);
-    const auto jobs = deal_out_by_column<Job>(
+    const auto jobs = bucket_sort_by_column<Job>(
         parts.jobs,
         [](const Job& job) {
             return std::array<std::int64_t, 2>{job.x, job.y};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field/deep_field.h"
-#include "field/nearest_on_triangle.h"
+#include "mesh/nearest_on_triangle.h"
 #include "step/march.h"
 #include "support/files.h"
 #include "support/shapes.h"

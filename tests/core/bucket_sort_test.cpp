@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/deal_out.h"
+#include "core/bucket_sort.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ std::vector<Item> mixed_items(std::size_t count, std::uint32_t keys)
 
 std::vector<Item> dealt(const std::vector<std::vector<Item>>& parts, std::size_t keys)
 {
-    return deal_out<Item>(
+    return bucket_sort<Item>(
         parts, keys, [](const Item& item) { return item[0]; }, std::less<>());
 }
 
@@ -35,7 +35,7 @@ TEST(DealOut, SortsWhatStandsOverColumns)
         std::vector<std::array<std::int64_t, 3>> items;
         for (std::int64_t i = 0; i < 3000; ++i)
             items.push_back({(i * 7919 % 50 - 25) * apart, (i * 104729 % 70 - 35) * apart, i % 11});
-        const auto found = deal_out_by_column<std::array<std::int64_t, 3>>(
+        const auto found = bucket_sort_by_column<std::array<std::int64_t, 3>>(
             std::array{items},
             [](const auto& item) {
                 return std::array{item[0], item[1]};
@@ -44,7 +44,7 @@ TEST(DealOut, SortsWhatStandsOverColumns)
         std::sort(items.begin(), items.end());
         EXPECT_EQ(found, items) << apart;
     }
-    EXPECT_TRUE(deal_out_by_column<Item>(
+    EXPECT_TRUE(bucket_sort_by_column<Item>(
                     std::vector<std::vector<Item>>(),
                     [](const Item& item) {
                         return std::array<std::int64_t, 2>{item[0], item[1]};

@@ -18,7 +18,8 @@ namespace vdb_shell
 /// items, as with the smallest vertex of an edge or a face. The result does not depend on how the
 /// items are spread over the parts if `less` tells all items of a key apart.
 template <typename Item, typename Parts, typename Key, typename Less>
-std::vector<Item> deal_out(const Parts& parts, std::size_t keys, const Key& key, const Less& less)
+std::vector<Item> bucket_sort(const Parts& parts, std::size_t keys, const Key& key,
+                              const Less& less)
 {
     // By key first the numbers, then the starts, then the ends.
     std::vector<std::size_t> ends(keys + 1, 0);
@@ -44,7 +45,7 @@ std::vector<Item> deal_out(const Parts& parts, std::size_t keys, const Key& key,
 /// The same where place(item), two whole numbers, says over which column an item stands: by the
 /// first, the second and `less`, which has to put items in that order by itself.
 template <typename Item, typename Parts, typename Place, typename Less>
-std::vector<Item> deal_out_by_column(const Parts& parts, const Place& place, const Less& less)
+std::vector<Item> bucket_sort_by_column(const Parts& parts, const Place& place, const Less& less)
 {
     using Column = std::array<std::int64_t, 2>;
     constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
@@ -61,7 +62,7 @@ std::vector<Item> deal_out_by_column(const Parts& parts, const Place& place, con
     constexpr std::int64_t kMostKeys = 1 << 16;
     const std::int64_t width = high[1] - low[1] + 1, columns = (high[0] - low[0] + 1) * width;
     const std::int64_t columns_to_a_key = 1 + columns / kMostKeys;
-    return deal_out<Item>(
+    return bucket_sort<Item>(
         parts, std::size_t(columns / columns_to_a_key + 1),
         [&](const Item& item) {
             const Column at = place(item);

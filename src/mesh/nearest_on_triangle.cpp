@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "field/nearest_on_triangle.h"
+#include "mesh/nearest_on_triangle.h"
 
 namespace vdb_shell
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "field/triangle_tree.h"
+#include "mesh/triangle_tree.h"
 
 #include "core/parallel.h"
 

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "resample/edge_collapse.h"
+
+#include "core/parallel.h"
+#include "mesh/nearest_on_triangle.h"
+#include "mesh/topology.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+// Takes a closed surface and leaves one of some of its vertices. Each vertex knows the cheapest of
+// its allowed collapses; a round sorts the cheapest of these and does all that do not touch one
+// done before, so that what was looked at in parallel still holds. Costs are those of Garland and
+// Heckbert 1997, "Surface simplification using quadric error metrics", on the edge's own ends.
+// The distance is bounded as Klein, Liebich, Strasser 1996, "Mesh reduction with error control" do:
+// by points of the input that each triangle keeps for those that it has replaced.
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+
+// A triangle may turn by 40 degrees in one collapse; more is a fold in the making.
+constexpr double kLeastCosine = 0.766;
+// No collapse may make a triangle narrower than that, longest edge over height, unless one around
+// was narrower before.
+constexpr double kWorstAspect = 8.0;
+// Share of the vertices that may go in one round: the rounds stand for an order by error.
+constexpr double kShareOfRound = 0.2;
+
+/// Squared distances from planes, weighted by area: x'Ax + 2 b'x + c, relative to an origin.
+struct Quadric {
+    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, one = 0;
+    double area = 0;
+
+    void add_plane(const Vec3d& n, double offset, double weight)
+    {
+        xx += weight * n[0] * n[0], xy += weight * n[0] * n[1], xz += weight * n[0] * n[2];
+        yy += weight * n[1] * n[1], yz += weight * n[1] * n[2], zz += weight * n[2] * n[2];
+        x += weight * n[0] * offset, y += weight * n[1] * offset, z += weight * n[2] * offset;
+        one += weight * offset * offset;
+        area += weight;
+    }
+    Quadric& operator+=(const Quadric& q)
+    {
+        xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
+        x += q.x, y += q.y, z += q.z, one += q.one, area += q.area;
+        return *this;
+    }
+    double at(const Vec3d& p) const
+    {
+        return p[0] * (xx * p[0] + 2 * (xy * p[1] + xz * p[2] + x)) +
+               p[1] * (yy * p[1] + 2 * (yz * p[2] + y)) + p[2] * (zz * p[2] + 2 * z) + one;
+    }
+};
+
+struct Collapse {
+    double cost = std::numeric_limits<double>::infinity();
+    std::uint32_t onto = 0;
+};
+
+Vec3d cross_of(const Vec3d& a, const Vec3d& b, const Vec3d& c)
+{
+    return (b - a).cross(c - a);
+}
+
+/// The corner that follows v.
+std::uint32_t corner_after(const Vec3I& triangle, std::uint32_t v)
+{
+    return triangle[0] == v ? triangle[1] : triangle[1] == v ? triangle[2] : triangle[0];
+}
+
+/// Longest edge over height, squared.
+double squared_aspect(const Vec3d& a, const Vec3d& b, const Vec3d& c, double squared_cross)
+{
+    const double longest =
+        std::max({(b - a).lengthSqr(), (c - b).lengthSqr(), (a - c).lengthSqr()});
+    return squared_cross > 0 ? longest * longest / squared_cross
+                             : std::numeric_limits<double>::infinity();
+}
+
+class Collapser
+{
+public:
+    Collapser(const TriangleMesh& mesh, const CollapseLimits& limits)
+        : limits_(limits), points_(mesh.points.size()), triangles_(mesh.triangles),
+          quadric_(mesh.points.size()), best_(mesh.points.size()), touched_(mesh.points.size(), 1)
+    {
+        const Vec3d origin = mesh.points.empty() ? Vec3d(0.0) : Vec3d(mesh.points.front());
+        for (std::size_t v = 0; v < points_.size(); ++v)
+            points_[v] = Vec3d(mesh.points[v]) - origin;
+        for (const Vec3I& t : triangles_) {
+            const Vec3d cross = cross_of(points_[t[0]], points_[t[1]], points_[t[2]]);
+            const double length = cross.length();
+            for (int k = 0; k < 3 && length > 0; ++k)
+                quadric_[t[k]].add_plane(cross / length, -cross.dot(points_[t[0]]) / length,
+                                         0.5 * length);
+        }
+        if (bounds_distance())
+            place_samples();
+    }
+
+    void run()
+    {
+        while (triangles_.size() > limits_.fewest_triangles && round()) {
+        }
+    }
+
+    const std::vector<Vec3I>& triangles() const { return triangles_; }
+
+private:
+    /// The vertices, by their own numbers; after them, if wanted, the middles of triangles and
+    /// edges, each with a triangle that it lies on.
+    void place_samples()
+    {
+        samples_ = points_;
+        samples_of_.resize(triangles_.size());
+        for (std::size_t t = 0; t < triangles_.size() && limits_.between_vertices; ++t) {
+            const Vec3I& c = triangles_[t];
+            const auto add = [&](const Vec3d& p) {
+                samples_of_[t].push_back(static_cast<std::uint32_t>(samples_.size()));
+                samples_.push_back(p);
+            };
+            add((points_[c[0]] + points_[c[1]] + points_[c[2]]) / 3.0);
+            for (int k = 0; k < 3; ++k)
+                if (c[k] < c[(k + 1) % 3])
+                    add(0.5 * (points_[c[k]] + points_[c[(k + 1) % 3]]));
+        }
+    }
+
+    bool bounds_distance() const { return std::isfinite(limits_.distance); }
+    bool is_fixed(std::size_t v) const { return !limits_.fixed.empty() && limits_.fixed[v]; }
+
+    /// False where nothing is left to collapse.
+    bool round()
+    {
+        around_ = triangles_around_vertices(points_.size(), triangles_);
+        for_each_range(points_.size(), [&](std::size_t begin, std::size_t end) {
+            Scratch scratch;
+            for (std::size_t v = begin; v < end; ++v)
+                if (touched_[v] || touched_[best_[v].onto])
+                    best_[v] = best_collapse(static_cast<std::uint32_t>(v), scratch);
+        });
+        std::fill(touched_.begin(), touched_.end(), 0);
+        std::size_t done = 0;
+        const std::size_t wanted = (triangles_.size() - limits_.fewest_triangles + 1) / 2;
+        for (const std::uint32_t v : cheapest()) {
+            const std::uint32_t u = best_[v].onto;
+            if (done == wanted)
+                break;
+            if (touched_[v] || touched_[u])
+                continue;
+            collapse(v, u);
+            ++done;
+        }
+        drop_collapsed();
+        return done > 0;
+    }
+
+    void drop_collapsed()
+    {
+        std::size_t left = 0;
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            if (triangles_[t][0] == triangles_[t][1])
+                continue;
+            if (bounds_distance() && left != t)
+                samples_of_[left] = std::move(samples_of_[t]);
+            triangles_[left++] = triangles_[t];
+        }
+        triangles_.resize(left);
+        if (bounds_distance())
+            samples_of_.resize(left);
+    }
+
+    /// Vertices in the order of what their collapses cost, as many as a round may take.
+    std::vector<std::uint32_t> cheapest() const
+    {
+        std::vector<std::uint32_t> order;
+        for (std::size_t v = 0; v < best_.size(); ++v)
+            if (std::isfinite(best_[v].cost))
+                order.push_back(static_cast<std::uint32_t>(v));
+        const auto before = [&](std::uint32_t v, std::uint32_t w) {
+            return best_[v].cost != best_[w].cost ? best_[v].cost < best_[w].cost : v < w;
+        };
+        const auto least = std::ptrdiff_t(kShareOfRound * double(triangles_.size()) / 2) + 1;
+        if (std::ptrdiff_t(order.size()) > least) {
+            std::nth_element(order.begin(), order.begin() + least, order.end(), before);
+            order.resize(std::size_t(least));
+        }
+        std::sort(order.begin(), order.end(), before);
+        return order;
+    }
+
+    void collapse(std::uint32_t v, std::uint32_t u)
+    {
+        for (const std::uint32_t t : around_.around(v))
+            for (int k = 0; k < 3; ++k)
+                touched_[triangles_[t][k]] = 1;
+        for (const std::uint32_t t : around_.around(v)) {
+            Vec3I& corners = triangles_[t];
+            if (corners[0] == u || corners[1] == u || corners[2] == u)
+                corners = Vec3I(u); // to be removed
+            else
+                for (int k = 0; k < 3; ++k)
+                    corners[k] = corners[k] == v ? u : corners[k];
+        }
+        if (bounds_distance())
+            hand_over_samples(v);
+        quadric_[u] += quadric_[v];
+        best_[v] = {};
+    }
+
+    /// After v has gone: it and the samples of its triangles go to the nearest of those that are
+    /// left around it.
+    void hand_over_samples(std::uint32_t v)
+    {
+        std::vector<std::uint32_t> samples{v};
+        Fan fan;
+        std::vector<std::uint32_t> left;
+        for (const std::uint32_t t : around_.around(v)) {
+            samples.insert(samples.end(), samples_of_[t].begin(), samples_of_[t].end());
+            samples_of_[t].clear();
+            const Vec3I& c = triangles_[t];
+            if (c[0] == c[1])
+                continue;
+            left.push_back(t);
+            fan.push_back({points_[c[0]], points_[c[1]], points_[c[2]]});
+        }
+        for (const std::uint32_t w : samples) {
+            std::size_t nearest = 0;
+            double least = std::numeric_limits<double>::infinity();
+            for (std::size_t i = 0; i < fan.size(); ++i) {
+                const double squared = squared_distance(fan[i], samples_[w]);
+                if (squared < least)
+                    least = squared, nearest = i;
+            }
+            samples_of_[left[nearest]].push_back(w);
+        }
+    }
+
+    using Fan = std::vector<std::array<Vec3d, 3>>;
+    static double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& p)
+    {
+        return (nearest_on_triangle(triangle, p).point - p).lengthSqr();
+    }
+
+    /// What a thread needs to look at one vertex after another.
+    struct Scratch {
+        std::vector<std::uint32_t> ring;
+        std::vector<Collapse> candidates;
+        Fan fan;
+    };
+
+    Collapse best_collapse(std::uint32_t v, Scratch& scratch) const
+    {
+        auto& [ring, candidates, fan] = scratch;
+        ring.clear(), candidates.clear();
+        if (is_fixed(v))
+            return {};
+        double worst_aspect = kWorstAspect * kWorstAspect;
+        for (const std::uint32_t t : around_.around(v)) {
+            const Vec3I& c = triangles_[t];
+            // Closed and consistent: each neighbour is once the next corner.
+            ring.push_back(corner_after(c, v));
+            const Vec3d &p = points_[c[0]], &q = points_[c[1]], &r = points_[c[2]];
+            worst_aspect =
+                std::max(worst_aspect, squared_aspect(p, q, r, cross_of(p, q, r).lengthSqr()));
+        }
+        for (const std::uint32_t u : ring) {
+            const double error = quadric_[v].at(points_[u]) + quadric_[u].at(points_[u]);
+            const double length2 = (points_[u] - points_[v]).lengthSqr();
+            if (error > limits_.quadric_error ||
+                length2 > limits_.longest_edge * limits_.longest_edge)
+                continue;
+            candidates.push_back(
+                {std::max(0.0, error) + limits_.length_weight * quadric_[v].area * length2, u});
+        }
+        std::sort(candidates.begin(), candidates.end(), [](const Collapse& a, const Collapse& b) {
+            return a.cost != b.cost ? a.cost < b.cost : a.onto < b.onto;
+        });
+        for (const Collapse& candidate : candidates)
+            if (keeps_shape(v, candidate.onto, worst_aspect) &&
+                keeps_manifold(ring, candidate.onto) && keeps_distance(v, candidate.onto, fan))
+                return candidate;
+        return {};
+    }
+
+    bool keeps_shape(std::uint32_t v, std::uint32_t u, double worst_aspect) const
+    {
+        for (const std::uint32_t t : around_.around(v)) {
+            const Vec3I& c = triangles_[t];
+            if (c[0] == u || c[1] == u || c[2] == u)
+                continue;
+            std::array<Vec3d, 3> p{points_[c[0]], points_[c[1]], points_[c[2]]};
+            const Vec3d before = cross_of(p[0], p[1], p[2]);
+            for (int k = 0; k < 3; ++k)
+                if (c[k] == v)
+                    p[static_cast<std::size_t>(k)] = points_[u];
+            const Vec3d after = cross_of(p[0], p[1], p[2]);
+            const double squared = after.lengthSqr(), dot = before.dot(after);
+            if (!(dot > 0 &&
+                  dot * dot > kLeastCosine * kLeastCosine * before.lengthSqr() * squared))
+                return false;
+            if (squared_aspect(p[0], p[1], p[2], squared) > worst_aspect)
+                return false;
+        }
+        return true;
+    }
+
+    /// The link condition (Dey et al. 1999, "Topology preserving edge contraction"): the two ends
+    /// have the edge's two opposite corners as common neighbours, and no other.
+    bool keeps_manifold(const std::vector<std::uint32_t>& ring, std::uint32_t u) const
+    {
+        int common = 0, degree = 0;
+        for (const std::uint32_t t : around_.around(u)) {
+            const std::uint32_t w = corner_after(triangles_[t], u);
+            common += std::find(ring.begin(), ring.end(), w) != ring.end();
+            ++degree;
+        }
+        return common == 2 && (degree > 3 || ring.size() > 3);
+    }
+
+    /// Whether v and all samples of the triangles around it are near enough to one of the triangles
+    /// that the collapse would leave.
+    bool keeps_distance(std::uint32_t v, std::uint32_t u, Fan& fan) const
+    {
+        if (!bounds_distance())
+            return true;
+        fan.clear();
+        for (const std::uint32_t t : around_.around(v)) {
+            const Vec3I& c = triangles_[t];
+            if (c[0] == u || c[1] == u || c[2] == u)
+                continue;
+            fan.emplace_back();
+            for (int k = 0; k < 3; ++k)
+                fan.back()[std::size_t(k)] = points_[c[k] == v ? u : c[k]];
+        }
+        const double most = limits_.distance * limits_.distance;
+        const auto is_near = [&](std::uint32_t w) {
+            return std::any_of(fan.begin(), fan.end(), [&](const std::array<Vec3d, 3>& triangle) {
+                return squared_distance(triangle, samples_[w]) <= most;
+            });
+        };
+        const auto around = around_.around(v);
+        return is_near(v) && std::all_of(around.begin(), around.end(), [&](std::uint32_t t) {
+                   return std::all_of(samples_of_[t].begin(), samples_of_[t].end(), is_near);
+               });
+    }
+
+    const CollapseLimits& limits_;
+    std::vector<Vec3d> points_;
+    std::vector<Vec3I> triangles_;
+    // Kept only where the distance is bounded: points of the input, and by triangle those that have
+    // no vertex any more and are nearest to it.
+    std::vector<Vec3d> samples_;
+    std::vector<std::vector<std::uint32_t>> samples_of_;
+    std::vector<Quadric> quadric_;
+    std::vector<Collapse> best_;
+    std::vector<std::uint8_t> touched_; ///< in the round before
+    VertexTriangles around_;
+};
+
+} // namespace
+
+Coarsened collapse_edges(const TriangleMesh& mesh, const CollapseLimits& limits)
+{
+    Collapser collapser(mesh, limits);
+    collapser.run();
+    Coarsened out;
+    std::vector<std::uint32_t> place(mesh.points.size(), 0);
+    for (const Vec3I& t : collapser.triangles())
+        for (int k = 0; k < 3; ++k)
+            place[t[k]] = 1;
+    for (std::size_t v = 0; v < place.size(); ++v) {
+        if (place[v] == 0)
+            continue;
+        place[v] = static_cast<std::uint32_t>(out.from.size());
+        out.mesh.points.push_back(mesh.points[v]);
+        out.from.push_back(static_cast<std::uint32_t>(v));
+    }
+    for (const Vec3I& t : collapser.triangles())
+        out.mesh.triangles.emplace_back(place[t[0]], place[t[1]], place[t[2]]);
+    return out;
+}
+
+} // namespace vdb_shell
