@@ -115,21 +115,20 @@ void require_sensible(const BuildArguments& arguments)
 
 OptionSections describe(BuildArguments& a)
 {
-    OptionSections sections{
-        {"", {preset_option(a.preset)}},
-        {"",
-         in_group("Output", {option("", a.report, "--report", "Write all figures as JSON"),
-                             option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
-                             option("", a.progress, "--progress",
-                                    "Name each stage on standard error as it begins")})},
-        {"", in_group("Lines", {option("", a.thickness_grid, "--thickness-grid",
-                                       "Float grid of largest lengths: FILE.vdb or "
-                                       "FILE.vdb:GRID")})},
-        {"read", describe(a.read)}};
+    OptionSections sections{{"", {preset_option(a.preset)}}};
     for (OptionSection& section : describe(a.outputs))
         sections.push_back(std::move(section));
+    const OptionList figures{
+        option("", a.report, "--report", "Write all figures as JSON"),
+        option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
+        option("", a.progress, "--progress", "Name each stage on standard error as it begins")};
+    const Option painted = option("", a.thickness_grid, "--thickness-grid",
+                                  "Float grid of largest lengths: FILE.vdb or FILE.vdb:GRID");
+    sections.push_back({"", in_group("Output", figures)});
+    sections.push_back({"read", describe(a.read)});
     for (OptionSection& section : describe(a.shell))
         sections.push_back(std::move(section));
+    sections.push_back({"", in_group("Lines", {painted})});
     return sections;
 }
 

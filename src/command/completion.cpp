@@ -47,7 +47,7 @@ void write_values(std::ostream& out, const CommandEntry& command)
 
 void write_flags(std::ostream& out, const CommandEntry& command)
 {
-    out << "    " << command.name << ") flags='--help";
+    out << "    " << (command.name.empty() ? "''" : command.name) << ") flags='--help";
     for (const BoundOption& bound : command.bound->options)
         if (!bound.option.flag.empty())
             for (const std::string& flag : flags_of(bound.option))

@@ -59,7 +59,7 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
         require_in_range(section.options, section.key);
     if (options.refine.rounds > 0 && options.side == Side::outward)
         throw InvalidOption("refine: rounds is " + std::to_string(options.refine.rounds) +
-                            ", but an outward shell has no solid to fill");
+                            " (--refine-rounds), but an outward shell has no solid to fill");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&

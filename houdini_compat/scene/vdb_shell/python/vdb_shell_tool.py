@@ -59,17 +59,19 @@ def is_possible(option, value):
 
 def parameter_of(option):
     name = option["flag"].lstrip("-").replace("-", "_")
-    kind, default, unset = KINDS[option["type"]], option["default"], None
+    kind, default, low, unset = KINDS[option["type"]], option["default"], None, None
     if kind in ("int", "float"):
         number = {"int": int, "float": float}[kind]
+        limits = option["range"]
+        low = limits.get("at_least", limits.get("above", 0 if option["type"] == "unsigned" else None))
         if option["may_be_unset"]:
             # Houdini's numbers cannot be empty: the first that is impossible means none.
-            unset = number(-1 if is_possible(option, 0) else 0)
+            low = unset = number(-1 if is_possible(option, 0) else 0)
         default = unset if default is None else number(default)
-    low = option["range"].get("at_least", option["range"].get("above", 0 if option["type"] == "unsigned" else None))
-    if unset is not None:
-        low = unset
-    return Parameter(name, name.replace("_", " ").title(), kind, default or ("" if kind == "text" else default),
+        low = None if low is None else number(low)
+    if kind == "text":
+        default = default or ""
+    return Parameter(name, name.replace("_", " ").title(), kind, default,
                      tuple(option["choices"]) or None, option["flag"], option["help"], option["group"], low, unset)
 
 
