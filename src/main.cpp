@@ -5,6 +5,7 @@
 #include "command/exit_code.h"
 #include "command/file_commands.h"
 #include "command/inspect_command.h"
+#include "command/options_command.h"
 #include "command/repair_command.h"
 #include "command/signals.h"
 
@@ -14,12 +15,73 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace
 {
 
 using namespace vdb_shell;
 using namespace vdb_shell::command;
+
+struct Arguments {
+    int threads = 0;
+    BuildArguments build;
+    InspectArguments inspect;
+    RepairArguments repair;
+    FileArguments info, convert, check;
+    OptionsArguments options;
+};
+
+/// A subcommand with its options, and what it does.
+struct Subcommand {
+    CLI::App* app = nullptr;
+    BoundOptions bound;
+    std::function<int()> run;
+};
+
+BoundOptions add_threads(CLI::App& app, int& threads)
+{
+    Option option = vdb_shell::option("", threads, "--threads",
+                                      "Threads to use; 0 is all. Results do not depend on it")
+                        .in(Unit::count)
+                        .within(at_least(0));
+    return bind(app, {{"", in_group("Options", {option})}});
+}
+
+std::vector<CommandEntry> entries_of(const BoundOptions& global,
+                                     const std::vector<Subcommand>& commands)
+{
+    std::vector<CommandEntry> entries{{"", "", &global}};
+    for (const Subcommand& command : commands)
+        entries.push_back(
+            {command.app->get_name(), command.app->get_description(), &command.bound});
+    return entries;
+}
+
+void add_commands(CLI::App& app, Arguments& a, const BoundOptions& global,
+                  std::vector<Subcommand>& commands)
+{
+    const auto add = [&](const char* name, const char* help, auto add_options, auto& arguments,
+                         std::function<int()> run) {
+        CLI::App* subcommand = app.add_subcommand(name, help);
+        commands.push_back({subcommand, add_options(*subcommand, arguments), std::move(run)});
+    };
+    add("build", "Build a shell from a triangle surface", add_build_command, a.build,
+        [&a] { return run_build(a.build); });
+    add("inspect", "Say what stands in the way of a shell, and what mends it", add_inspect_command,
+        a.inspect, [&a] { return run_inspect(a.inspect); });
+    add("repair", "Close and mend a surface, keeping what is sound", add_repair_command, a.repair,
+        [&a] { return run_repair(a.repair); });
+    add("info", "Print what a shell's file holds", add_info_command, a.info,
+        [&a] { return run_info(a.info); });
+    add("convert", "Write other formats from a shell's file", add_convert_command, a.convert,
+        [&a] { return run_convert(a.convert); });
+    add("check", "Verify that a shell's file is what it claims", add_check_command, a.check,
+        [&a] { return run_check(a.check); });
+    add("options", "List the options, for people, programs and shells", add_options_command,
+        a.options, [&] { return run_options(a.options, entries_of(global, commands)); });
+}
 
 int run(int argc, char** argv)
 {
@@ -28,53 +90,28 @@ int run(int argc, char** argv)
     app.set_version_flag("--version", "vdb_shell " VDB_SHELL_VERSION);
     app.require_subcommand(1);
     app.fallthrough();
-    int threads = 0;
-    app.add_option("--threads", threads, "Threads to use; 0 is all. Results do not depend on it")
-        ->capture_default_str()
-        ->check(CLI::NonNegativeNumber);
-
-    BuildArguments build;
-    InspectArguments inspect;
-    RepairArguments repair;
-    FileArguments info, convert, check;
-    CLI::App& build_app = *app.add_subcommand("build", "Build a shell from a triangle surface");
-    CLI::App& inspect_app =
-        *app.add_subcommand("inspect", "Say what stands in the way of a shell, and what mends it");
-    CLI::App& repair_app =
-        *app.add_subcommand("repair", "Close and mend a surface, keeping what is sound");
-    CLI::App& info_app = *app.add_subcommand("info", "Print what a shell's file holds");
-    CLI::App& convert_app =
-        *app.add_subcommand("convert", "Write other formats from a shell's file");
-    CLI::App& check_app =
-        *app.add_subcommand("check", "Verify that a shell's file is what it claims");
-    add_build_command(build_app, build);
-    add_inspect_command(inspect_app, inspect);
-    add_repair_command(repair_app, repair);
-    add_info_command(info_app, info);
-    add_convert_command(convert_app, convert);
-    add_check_command(check_app, check);
+    Arguments arguments;
+    BoundOptions global = add_threads(app, arguments.threads);
+    std::vector<Subcommand> commands;
+    add_commands(app, arguments, global, commands);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? success : usage_error;
     }
 
+    apply(global);
     std::unique_ptr<tbb::global_control> limit;
-    if (threads > 0)
+    if (arguments.threads > 0)
         limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                      static_cast<std::size_t>(threads));
+                                                      std::size_t(arguments.threads));
     catch_signals();
-    if (build_app.parsed())
-        return run_build(build);
-    if (inspect_app.parsed())
-        return run_inspect(inspect);
-    if (repair_app.parsed())
-        return run_repair(repair);
-    if (info_app.parsed())
-        return run_info(info);
-    if (convert_app.parsed())
-        return run_convert(convert);
-    return run_check(check);
+    for (Subcommand& command : commands)
+        if (command.app->parsed()) {
+            apply(command.bound);
+            return command.run();
+        }
+    return internal_error; // the parser wants a command
 }
 
 int status_of(const std::exception& error)

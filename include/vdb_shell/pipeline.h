@@ -13,6 +13,7 @@
 #include "vdb_shell/layers/cut_layers.h"
 #include "vdb_shell/layers/scale_thickness.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/report/report.h"
 #include "vdb_shell/resample/decimate.h"
@@ -60,6 +61,12 @@ struct ShellOptions {
     SplitOptions split;
     CoverageOptions coverage;
 };
+/// A section for each stage, with the names that the fields above have.
+OptionSections describe(ShellOptions& options);
+
+/// Throws InvalidOption for an option out of its range, and for options that contradict each other
+/// whatever the surface. `thickness_grid`: there will be one.
+void require_sensible(const ShellOptions& options, bool thickness_grid = false);
 
 /// The lines of one side, towards which they grow: Directions::inward of an outward line is the
 /// surface's outward direction.
@@ -108,5 +115,11 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
 
 /// The options as JSON, as they are stored in a shell's .vdb.
 std::string options_json(const ShellOptions& options);
+
+/// `base` with what the JSON object says, which may be a part of what options_json writes. Throws
+/// ReadError for a text that is no JSON object, InvalidOption for a key that is none and a value
+/// that is impossible; messages open with `name`, the file.
+ShellOptions options_from_json(const std::string& json, ShellOptions base = {},
+                               const std::string& name = "options");
 
 } // namespace vdb_shell

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/certify/coverage.h"
 
+#include "vdb_shell/options/option.h"
+
 #include "certify/cell_grid.h"
 #include "certify/solid_cells.h"
 #include "certify/tet_faces.h"
@@ -385,6 +387,16 @@ void require_solid(const TriangleMesh& surface)
 }
 
 } // namespace
+
+OptionList describe(CoverageOptions& o)
+{
+    return in_group("Tets",
+                    {option("samples", o.samples, "--samples",
+                            "Monte Carlo points inside the solid; 0 leaves the estimate out")
+                         .in(Unit::count),
+                     option("seed", o.seed, "--samples-seed", "Seed of the Monte Carlo points")
+                         .in(Unit::seed)});
+}
 
 Coverage estimate_coverage(const TriangleMesh& surface, const TetMesh& tets,
                            const CoverageOptions& options, Interrupter* interrupter)

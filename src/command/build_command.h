@@ -4,20 +4,19 @@
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
 
+#include "command/bound_options.h"
 #include "command/outputs.h"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 namespace vdb_shell::command
 {
 
 struct BuildArguments {
-    std::filesystem::path mesh; ///< or a level set: FILE.vdb or FILE.vdb:GRID
+    std::filesystem::path preset; ///< file of options
+    std::filesystem::path mesh;   ///< or a level set: FILE.vdb or FILE.vdb:GRID
     ReadOptions read;
-    bool repair = false;
-    RepairOptions repair_options; ///< for `repair`
     ShellOptions shell;
     std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID
     Outputs outputs;
@@ -26,7 +25,10 @@ struct BuildArguments {
     bool progress = false;
 };
 
-void add_build_command(CLI::App& app, BuildArguments& arguments);
+/// All that the command can be given, and that a file of options can have.
+OptionSections describe(BuildArguments& arguments);
+
+BoundOptions add_build_command(CLI::App& app, BuildArguments& arguments);
 
 /// Reads, builds, writes; prints the figures to standard output. Throws what the stages throw.
 int run_build(const BuildArguments& arguments);

@@ -7,13 +7,15 @@
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/write/verify_file.h"
 
-#include "command/bind.h"
 #include "command/exit_code.h"
 #include "command/signals.h"
 
 #include <nlohmann/json.hpp>
 
+#include <CLI/CLI.hpp>
+
 #include <iostream>
+#include <utility>
 
 namespace vdb_shell::command
 {
@@ -42,23 +44,26 @@ void print_grid(const openvdb::FloatGrid& grid)
 
 } // namespace
 
-void add_info_command(CLI::App& app, FileArguments& arguments)
+BoundOptions add_info_command(CLI::App& app, FileArguments& arguments)
 {
     add_file(app, arguments);
-    app.add_flag("--json", arguments.json,
-                 "Print the stored parameters and report as one JSON object");
+    Option json = option("", arguments.json, "--json",
+                         "Print the stored parameters and report as one JSON object");
+    return bind(app, {{"", in_group("Options", {json})}});
 }
 
-void add_convert_command(CLI::App& app, FileArguments& arguments)
+BoundOptions add_convert_command(CLI::App& app, FileArguments& arguments)
 {
     add_file(app, arguments);
-    add_output_options(app, arguments.outputs);
-    app.get_option("--output")->required();
+    OptionSections sections = describe(arguments.outputs);
+    find_by_flag(sections.front().options, "--output")->required = true;
+    return bind(app, std::move(sections));
 }
 
-void add_check_command(CLI::App& app, FileArguments& arguments)
+BoundOptions add_check_command(CLI::App& app, FileArguments& arguments)
 {
     add_file(app, arguments);
+    return {};
 }
 
 int run_info(const FileArguments& arguments)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "command/bound_options.h"
 #include "command/outputs.h"
 
 #include <filesystem>
@@ -21,9 +22,9 @@ struct FileArguments {
     bool json = false; ///< info only: the stored parameters and report as JSON
 };
 
-void add_info_command(CLI::App& app, FileArguments& arguments);
-void add_convert_command(CLI::App& app, FileArguments& arguments);
-void add_check_command(CLI::App& app, FileArguments& arguments);
+BoundOptions add_info_command(CLI::App& app, FileArguments& arguments);
+BoundOptions add_convert_command(CLI::App& app, FileArguments& arguments);
+BoundOptions add_check_command(CLI::App& app, FileArguments& arguments);
 
 int run_info(const FileArguments& arguments);
 int run_convert(const FileArguments& arguments);

@@ -4,7 +4,7 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
-#include "command/placement_options.h"
+#include "command/surface_input.h"
 #include "vdb_shell/core/atomic_file.h"
 
 #include <CLI/CLI.hpp>
@@ -14,22 +14,31 @@
 namespace vdb_shell::command
 {
 
-void add_inspect_command(CLI::App& app, InspectArguments& arguments)
+namespace
 {
-    app.add_option("mesh", arguments.mesh, "Triangle surface: .obj .ply .off .stl")->required();
-    app.add_flag("--json", arguments.json, "Print one JSON object");
-    app.add_option("-o,--output", arguments.picture,
-                   "Write the mesh coloured by its defects: .ply");
-    app.add_flag("--weld,!--no-weld", arguments.read.weld,
-                 "Merge vertices of equal position (the default) or keep them apart");
-    add_placement_options(app, arguments.read, "Options");
-    LevelSetOptions& level_set = arguments.inspect.level_set;
-    CLI::Option* voxel = app.add_option("--voxel-size", level_set.voxel_size,
-                                        "Voxel that features are measured against, world units");
-    app.add_option("--resolution", level_set.resolution,
-                   "Voxels along the longest side of the bounding box")
-        ->capture_default_str()
-        ->excludes(voxel);
+
+OptionSections describe(InspectArguments& a)
+{
+    OptionSections sections{
+        {"",
+         {preset_option(a.preset), option("", a.json, "--json", "Print one JSON object"),
+          option("", a.picture, "--output", "Write the mesh coloured by its defects: .ply")
+              .with_names({"-o"})}},
+        {"read", describe(a.read)},
+        {"level_set", describe(a.inspect)}};
+    for (OptionSection& section : sections)
+        for (Option& o : section.options)
+            o.group = "Options";
+    return sections;
+}
+
+} // namespace
+
+BoundOptions add_inspect_command(CLI::App& app, InspectArguments& arguments)
+{
+    app.add_option("mesh", arguments.mesh, std::string("Triangle surface: ") + kSurfaceExtensions)
+        ->required();
+    return bind(app, describe(arguments));
 }
 
 int run_inspect(const InspectArguments& arguments)
@@ -41,9 +50,8 @@ int run_inspect(const InspectArguments& arguments)
                                 ": is the input; it is not overwritten");
         require_writable(arguments.picture);
     }
-    const ReadResult read = read_mesh(arguments.mesh, arguments.read);
-    InspectOptions options = arguments.inspect;
-    options.level_set = in_unit(options.level_set, read.report.placement.unit);
+    const ReadResult read = read_surface(arguments.mesh, arguments.read);
+    InspectOptions options = in_unit(arguments.inspect, read.report.placement.unit);
     options.largest_rounding = read.report.largest_rounding;
     const MeshInspection inspection = inspect_mesh(read.mesh, options);
     if (!arguments.picture.empty())

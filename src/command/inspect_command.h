@@ -4,17 +4,15 @@
 #include "vdb_shell/inspect/inspect_mesh.h"
 #include "vdb_shell/io/read_mesh.h"
 
-#include <filesystem>
+#include "command/bound_options.h"
 
-namespace CLI
-{
-class App;
-}
+#include <filesystem>
 
 namespace vdb_shell::command
 {
 
 struct InspectArguments {
+    std::filesystem::path preset; ///< file of options
     std::filesystem::path mesh;
     ReadOptions read;
     InspectOptions inspect;
@@ -22,7 +20,7 @@ struct InspectArguments {
     bool json = false;
 };
 
-void add_inspect_command(CLI::App& app, InspectArguments& arguments);
+BoundOptions add_inspect_command(CLI::App& app, InspectArguments& arguments);
 
 /// Prints what stands in the way of a shell; check_failed when something does.
 int run_inspect(const InspectArguments& arguments);

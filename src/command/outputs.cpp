@@ -7,23 +7,10 @@
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/write/tet_file.h"
 
-#include "command/bind.h"
 #include "vdb_shell/core/atomic_file.h"
 
 #include <algorithm>
 #include <cctype>
-
-namespace vdb_shell
-{
-
-/// Beside the tables of core/option_names.h, which knows no formats of other programs.
-static const NameTable<UpAxis>& names(UpAxis)
-{
-    static const NameTable<UpAxis> table{{"y", UpAxis::y}, {"z", UpAxis::z}};
-    return table;
-}
-
-} // namespace vdb_shell
 
 namespace vdb_shell::command
 {
@@ -74,39 +61,20 @@ TriangleMesh grown_surface(const ShellStack& stack)
 
 } // namespace
 
-void add_output_options(CLI::App& app, Outputs& outputs)
+OptionSections describe(Outputs& o)
 {
-    app.add_option(
-           "-o,--output", outputs.paths,
-           "File to write; give it once for each file wanted. By extension: .vdb (everything), "
-           ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .usda (surface, tets, and the "
-           "volumes of the .vdb written with it), .vtu .node .ele .mesh .msh (tets), .obj .ply "
-           ".off .stl (inner surface; the outer one of an outward shell), .png (picture of a "
-           "cross-section)")
-        ->allow_extra_args(false)
-        ->group("Output");
-    bind_enum(app, "--points", outputs.vdb.points,
-              "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb")
-        ->group("Output");
-    app.add_flag("--half", outputs.vdb.half,
-                 "Save a .vdb's volumes with half floats; its points stay exact")
-        ->group("Output");
-    bind_enum(app, "--up-axis", outputs.usd.up_axis, "What a .usda says is up")->group("Output");
-    app.add_option("--metres-per-unit,--meters-per-unit", outputs.usd.meters_per_unit,
-                   "What a .usda says a world unit is")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber)
-        ->group("Output");
-    bind_enum(app, "--section-axis", outputs.picture.axis, "Normal of the picture's cutting plane")
-        ->group("Output");
-    app.add_option("--section-position", outputs.picture.position,
-                   "Place of the cutting plane, as a share of the bounding box")
-        ->capture_default_str()
-        ->group("Output");
-    app.add_option("--picture-width", outputs.picture.width_pixels,
-                   "Pixels along the picture's longer side")
-        ->capture_default_str()
-        ->group("Output");
+    const Option output =
+        option("", o.paths, "--output",
+               "File to write; give it once for each file wanted. By extension: .vdb (everything), "
+               ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .usda (surface, tets, and "
+               "the volumes of the .vdb written with it), .vtu .node .ele .mesh .msh (tets), .obj "
+               ".ply .off .stl (inner surface; the outer one of an outward shell), .png (picture "
+               "of a cross-section)")
+            .with_names({"-o"});
+    return {{"", in_group("Output", {output})},
+            {"vdb", describe(o.vdb)},
+            {"usd", describe(o.usd)},
+            {"picture", describe(o.picture)}};
 }
 
 void require_possible(const Outputs& outputs, const std::vector<fs::path>& inputs)

@@ -2,17 +2,13 @@
 #pragma once
 
 #include "vdb_shell/houdini/usd_file.h"
+#include "vdb_shell/options/section.h"
 #include "vdb_shell/write/cross_section.h"
 #include "vdb_shell/write/vdb_file.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <vector>
-
-namespace CLI
-{
-class App;
-}
 
 namespace vdb_shell::command
 {
@@ -25,8 +21,8 @@ struct Outputs {
     UsdOptions usd;
 };
 
-/// Binds -o and the options of single formats.
-void add_output_options(CLI::App& app, Outputs& outputs);
+/// -o and the options of single formats.
+OptionSections describe(Outputs& outputs);
 
 /// Throws InvalidOption for an unknown extension or a path given twice, WriteError for a folder
 /// that cannot be written: asked before any work is done. `inputs` must not be overwritten.

@@ -4,8 +4,8 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
-#include "command/placement_options.h"
 #include "command/signals.h"
+#include "command/surface_input.h"
 #include "vdb_shell/core/atomic_file.h"
 
 #include <CLI/CLI.hpp>
@@ -15,31 +15,35 @@
 namespace vdb_shell::command
 {
 
-void add_repair_options(CLI::App& app, RepairOptions& options, const std::string& group)
+namespace
 {
-    app.add_option("--weld-tolerance", options.weld_tolerance,
-                   "Repair: merge points nearer than this, world units; 0 is equal ones only")
-        ->capture_default_str()
-        ->group(group);
-    app.add_option("--sliver-height", options.sliver_height,
-                   "Repair: remove triangles lower than this, world units; 0 is those of no area")
-        ->capture_default_str()
-        ->group(group);
-    app.add_flag("--cut-crossings", options.cut_crossings,
-                 "Repair: cut out triangles that cross others, and close the holes")
-        ->group(group);
+
+OptionSections describe(RepairArguments& a)
+{
+    Option output = option("", a.output, "--output", "Repaired surface: .obj .ply .off .stl")
+                        .with_names({"-o"});
+    output.required = true;
+    OptionSections sections{
+        {"",
+         {preset_option(a.preset), output, option("", a.json, "--json", "Print one JSON object")}},
+        {"read", describe(a.read)},
+        {"repair", describe(a.repair)}};
+    for (OptionSection& section : sections)
+        for (Option& o : section.options) {
+            o.group = "Options";
+            if (o.key == "weld")
+                o.flag.clear(); // a repair welds in any case
+        }
+    return sections;
 }
 
-void add_repair_command(CLI::App& app, RepairArguments& arguments)
+} // namespace
+
+BoundOptions add_repair_command(CLI::App& app, RepairArguments& arguments)
 {
-    app.add_option("mesh", arguments.mesh, "Triangle surface: .obj .ply .off .stl")->required();
-    app.add_option("-o,--output", arguments.output, "Repaired surface: .obj .ply .off .stl")
+    app.add_option("mesh", arguments.mesh, std::string("Triangle surface: ") + kSurfaceExtensions)
         ->required();
-    app.add_flag("--json", arguments.json, "Print one JSON object");
-    app.add_flag("--keep-crossing-fills", arguments.repair.keep_crossing_fills,
-                 "Close holes also where every fill tried crosses the surface");
-    add_placement_options(app, arguments.read, "Options");
-    add_repair_options(app, arguments.repair, "Options");
+    return bind(app, describe(arguments));
 }
 
 int run_repair(const RepairArguments& arguments)
@@ -49,7 +53,7 @@ int run_repair(const RepairArguments& arguments)
         throw InvalidOption(arguments.output.string() + ": is the input; it is not overwritten");
     require_writable(arguments.output);
     SignalInterrupter interrupter(false);
-    const ReadResult read = read_mesh(arguments.mesh, arguments.read);
+    const ReadResult read = read_surface(arguments.mesh, arguments.read);
     warn_of_lost_digits(arguments.mesh, read);
     const Placement& placement = read.report.placement;
     const RepairResult result =

@@ -4,28 +4,22 @@
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/repair/repair_mesh.h"
 
-#include <filesystem>
-#include <string>
+#include "command/bound_options.h"
 
-namespace CLI
-{
-class App;
-}
+#include <filesystem>
 
 namespace vdb_shell::command
 {
 
-/// Binds the fields that `build --repair` and `repair` have in common.
-void add_repair_options(CLI::App& app, RepairOptions& options, const std::string& group);
-
 struct RepairArguments {
+    std::filesystem::path preset; ///< file of options
     std::filesystem::path mesh, output;
     ReadOptions read;
     RepairOptions repair;
     bool json = false;
 };
 
-void add_repair_command(CLI::App& app, RepairArguments& arguments);
+BoundOptions add_repair_command(CLI::App& app, RepairArguments& arguments);
 
 /// Writes the repaired mesh and prints every change; check_failed when something still stands in
 /// the way of a shell.

@@ -8,6 +8,7 @@
 #include "resample/simplify.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/options/option.h"
 
 #include <openvdb/tools/VolumeToMesh.h>
 
@@ -132,13 +133,29 @@ void keep_outermost(TriangleMesh& mesh, const MeshCheck& check, ContourReport& r
 
 } // namespace
 
+const NameTable<ContourMethod>& names(ContourMethod)
+{
+    static const NameTable<ContourMethod> table{{"volume-to-mesh", ContourMethod::volume_to_mesh},
+                                                {"marching-tets", ContourMethod::marching_tets}};
+    return table;
+}
+
+OptionList describe(ContourOptions& o)
+{
+    return in_group("Wrap",
+                    {option("adaptivity", o.adaptivity, "--contour-adaptivity",
+                            "How far simplification may move the surface of a level set, voxels")
+                         .in(Unit::voxels)
+                         .within(at_least(0)),
+                     option("outer_only", o.outer_only, "",
+                            "Leave out the surfaces of voids, and what stands inside them")});
+}
+
 TriangleMesh contour_mapped(const openvdb::FloatGrid& field, const PointMap& to_world,
                             const ContourOptions& options, ContourReport& report,
                             Interrupter* interrupter)
 {
-    if (!(options.adaptivity >= 0.0 && std::isfinite(options.adaptivity)))
-        throw InvalidOption("contour: adaptivity is " + std::to_string(options.adaptivity) +
-                            ", must not be negative");
+    require_in_range(options, "contour");
     const double voxel = (to_world(Vec3d(1, 1, 1)) - to_world(Vec3d(0.0))).length() / std::sqrt(3);
     TriangleMesh mesh = by_volume_to_mesh(field, to_world);
     if (mesh.triangles.empty())

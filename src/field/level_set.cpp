@@ -7,6 +7,7 @@
 #include "field/level_set_checks.h"
 #include "mesh/triangle_area.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <openvdb/tools/Count.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -35,6 +36,7 @@ constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 constexpr double kStencilVoxels = 3.0;
 // Below it the stencil of a vertex on the surface would reach over the end of the band.
 constexpr double kSmallestExteriorVoxels = 3.0;
+constexpr double kLargestExteriorVoxels = 1e4;
 // With fewer voxels along its longest side an object has no field to speak of.
 constexpr double kFewestVoxels = 8.0;
 
@@ -71,21 +73,7 @@ void check_mesh_and_options(const TriangleMesh& mesh, const LevelSetOptions& opt
     if (mesh.points.empty() || mesh.triangles.empty())
         fail<GeometryError>("the mesh has ", mesh.points.size(), " points and ",
                             mesh.triangles.size(), " triangles");
-    if (!(options.exterior_voxels >= kSmallestExteriorVoxels && options.exterior_voxels <= 1e4))
-        fail<InvalidOption>("exterior_voxels is ", options.exterior_voxels,
-                            ", must be in [3, 10000]");
-    const auto positive = [](const std::optional<double>& x) {
-        return !x || (std::isfinite(*x) && *x > 0);
-    };
-    if (!positive(options.interior_depth))
-        fail<InvalidOption>("interior_depth is ", *options.interior_depth,
-                            ", must be positive and finite");
-    if (!positive(options.exterior_depth))
-        fail<InvalidOption>("exterior_depth is ", *options.exterior_depth,
-                            ", must be positive and finite");
-    if (!positive(options.max_memory_gib))
-        fail<InvalidOption>("max_memory_gib is ", *options.max_memory_gib,
-                            ", must be positive and finite");
+    require_in_range(options, "level set");
 }
 
 void check_voxel_size(const TriangleMesh& mesh, double voxel)
@@ -183,16 +171,42 @@ bool has_inside(const openvdb::FloatGrid& grid)
 
 } // namespace
 
+OptionList describe(LevelSetOptions& o)
+{
+    return in_group(
+        "Level set",
+        {option("voxel_size", o.voxel_size, "--voxel-size", "Edge length of a voxel, world units")
+             .in(Unit::world_length)
+             .within(above(0)),
+         option("resolution", o.resolution, "--resolution",
+                "Voxels along the longest side of the bounding box")
+             .in(Unit::voxels)
+             .within(at_least(1))
+             .excluding("--voxel-size"),
+         option("exterior_voxels", o.exterior_voxels, "--exterior-voxels",
+                "Width of the band outside the surface")
+             .in(Unit::voxels)
+             .within(at_least(kSmallestExteriorVoxels).at_most(kLargestExteriorVoxels)),
+         option("exterior_depth", o.exterior_depth, "--exterior-depth",
+                "Depth of the band outside, world units [outward: the thickness]")
+             .in(Unit::world_length)
+             .within(above(0)),
+         option("interior_depth", o.interior_depth, "--interior-depth",
+                "Depth of the band inside, world units [the thickness, else half the diagonal]")
+             .in(Unit::world_length)
+             .within(above(0)),
+         option("max_memory_gib", o.max_memory_gib, "--max-memory",
+                "Refuse a level set that would need more GiB than this [what is free]")
+             .in(Unit::gibibytes)
+             .within(above(0))
+             .not_stored()});
+}
+
 double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& options)
 {
-    if (options.voxel_size) {
-        if (!(std::isfinite(*options.voxel_size) && *options.voxel_size > 0))
-            fail<InvalidOption>("voxel_size is ", *options.voxel_size,
-                                ", must be positive and finite");
+    require_in_range(options, "level set");
+    if (options.voxel_size)
         return *options.voxel_size;
-    }
-    if (options.resolution <= 0)
-        fail<InvalidOption>("resolution is ", options.resolution, ", must be positive");
     if (mesh.points.empty())
         fail<GeometryError>("the mesh has no points");
     const double size = longest_side(bounds_of(mesh.points));

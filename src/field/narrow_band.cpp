@@ -323,6 +323,14 @@ void fill_leaves(openvdb::FloatTree& tree, const SignedDistance& surface, double
 
 } // namespace
 
+const NameTable<FieldRoute>& names(FieldRoute)
+{
+    static const NameTable<FieldRoute> table{{"auto", FieldRoute::automatic},
+                                             {"sparse", FieldRoute::sparse},
+                                             {"dense", FieldRoute::dense}};
+    return table;
+}
+
 openvdb::FloatGrid::Ptr mesh_to_narrow_band(const TriangleMesh& mesh,
                                             const LevelSetOptions& options,
                                             Interrupter* interrupter)

@@ -6,6 +6,7 @@
 #include "field/field_sampler.h"
 #include "field/latched_interrupter.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <openvdb/tools/LevelSetFilter.h>
 #include <openvdb/tools/LevelSetRebuild.h>
@@ -64,13 +65,20 @@ SmoothReport drift_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
 
 } // namespace
 
+OptionList describe(SmoothOptions& o)
+{
+    return in_group("Level set",
+                    {option("iterations", o.iterations, "--smooth", "Steps of mean-curvature flow")
+                         .in(Unit::count)
+                         .within(at_least(0))});
+}
+
 SmoothReport smooth_level_set(openvdb::FloatGrid& level_set, const TriangleMesh& mesh,
                               const SmoothOptions& options, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "smooth");
+    require_in_range(options, "smooth");
     const std::string iterations = std::to_string(options.iterations);
-    if (options.iterations < 0)
-        throw InvalidOption("smooth: iterations is " + iterations + ", must not be negative");
     if (!level_set.hasUniformVoxels() || level_set.getGridClass() != openvdb::GRID_LEVEL_SET)
         throw GeometryError("smooth: grid '" + level_set.getName() +
                             "' is not a level set with uniform voxels");

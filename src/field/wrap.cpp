@@ -5,6 +5,7 @@
 #include "field/contour_mapped.h"
 #include "field/wrap_field.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <openvdb/tools/Count.h>
 
@@ -22,6 +23,7 @@ using openvdb::Vec3d;
 
 // With less the voxels of one sheet would not hang together.
 constexpr double kThinnestSheet = 0.9;
+constexpr double kMostWrapVoxels = 1e3;
 // The field takes some ten voxels for each voxel of area: 4096^2 are beyond any memory's pleasure.
 constexpr double kMostVoxelsAlong = 4096.0;
 constexpr double kDistanceSpacingVoxels = 1.0;
@@ -31,21 +33,6 @@ template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&
     std::ostringstream message;
     (message << ... << parts);
     throw Error("wrap: " + message.str());
-}
-
-void check_options(const WrapOptions& options)
-{
-    const auto in_range = [](double x, double low, double high) { return x >= low && x <= high; };
-    if (options.voxel_size && !(std::isfinite(*options.voxel_size) && *options.voxel_size > 0))
-        fail<InvalidOption>("voxel_size is ", *options.voxel_size, ", must be positive and finite");
-    if (!in_range(options.resolution, 1, kMostVoxelsAlong))
-        fail<InvalidOption>("resolution is ", options.resolution, ", must be in [1, ",
-                            kMostVoxelsAlong, "]");
-    if (!in_range(options.adaptivity, 0, 1e3))
-        fail<InvalidOption>("adaptivity is ", options.adaptivity, ", must be in [0, 1000]");
-    if (!in_range(options.sheet_voxels, kThinnestSheet, 1e3))
-        fail<InvalidOption>("sheet_voxels is ", options.sheet_voxels, ", must be in [",
-                            kThinnestSheet, ", 1000]");
 }
 
 double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
@@ -103,10 +90,37 @@ openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
 
 } // namespace
 
+OptionList describe(WrapOptions& o)
+{
+    return in_group(
+        "Wrap",
+        {option("wanted", o.wanted, "--wrap",
+                "Build the shell of a new closed surface around the triangles, whatever they are"),
+         option("voxel_size", o.voxel_size, "--wrap-voxel-size",
+                "Edge length of a voxel of the wrap, world units")
+             .in(Unit::world_length)
+             .within(above(0)),
+         option("resolution", o.resolution, "--wrap-resolution",
+                "Voxels of the wrap along the longest side of the bounding box")
+             .in(Unit::voxels)
+             .within(at_least(1).at_most(kMostVoxelsAlong))
+             .excluding("--wrap-voxel-size"),
+         option("adaptivity", o.adaptivity, "--wrap-adaptivity",
+                "How far simplification may move the wrap, voxels")
+             .in(Unit::voxels)
+             .within(at_least(0).at_most(kMostWrapVoxels)),
+         option("sheet_voxels", o.sheet_voxels, "--wrap-sheet",
+                "Half the thickness given to sheets and loose triangles, voxels")
+             .in(Unit::voxels)
+             .within(at_least(kThinnestSheet).at_most(kMostWrapVoxels)),
+         option("keep_voids", o.keep_voids, "--wrap-keep-voids",
+                "Keep enclosed voids and what stands in them")});
+}
+
 WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "wrap");
-    check_options(options);
+    require_in_range(options, "wrap");
     if (mesh.points.empty() || mesh.triangles.empty())
         fail<GeometryError>("the mesh has ", mesh.points.size(), " points and ",
                             mesh.triangles.size(), " triangles");

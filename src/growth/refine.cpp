@@ -5,7 +5,6 @@
 #include "growth/void_volumes.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_area.h"
-#include "vdb_shell/core/error.h"
 
 #include <algorithm>
 #include <numeric>
@@ -110,23 +109,6 @@ double RefineReport::gain_per_tet(std::size_t round) const
         return 0;
     return (rounds[round].fill - rounds[round - 1].fill) /
            double(rounds[round].tets - rounds[round - 1].tets);
-}
-
-void require_sensible(const RefineOptions& options)
-{
-    const auto require = [](bool sensible, const std::string& what) {
-        if (!sensible)
-            throw InvalidOption("refine: " + what);
-    };
-    require(options.rounds >= 0,
-            "rounds is " + std::to_string(options.rounds) + ", must not be negative");
-    require(options.share > 0 && options.share <= 1,
-            "share is " + std::to_string(options.share) + ", must be over 0 and at most 1");
-    require(options.min_gain >= 0 && options.min_gain <= 1,
-            "min_gain is " + std::to_string(options.min_gain) + ", must be 0 to 1");
-    require(!options.target_fill || (*options.target_fill > 0 && *options.target_fill <= 1),
-            "target_fill is " + std::to_string(options.target_fill.value_or(0)) +
-                ", must be over 0 and at most 1");
 }
 
 } // namespace vdb_shell

@@ -6,6 +6,7 @@
 #include "inspect/marks.h"
 #include "mesh/boundary_loops.h"
 #include "mesh/orientation.h"
+#include "vdb_shell/options/option.h"
 #include "vdb_shell/step/directions.h"
 
 #include <algorithm>
@@ -120,6 +121,16 @@ DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size)
     marks.blind = find_blind_vertices(mesh);
     marks.thin = find_thin_triangles(mesh, voxel_size);
     return marks;
+}
+
+OptionList describe(InspectOptions& o)
+{
+    OptionList options;
+    for (Option& level_set : describe(o.level_set))
+        if (level_set.key == "voxel_size" || level_set.key == "resolution")
+            options.push_back(level_set);
+    options.front().help = "Voxel that features are measured against, world units";
+    return options;
 }
 
 MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options)

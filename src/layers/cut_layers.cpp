@@ -2,6 +2,7 @@
 #include "vdb_shell/layers/cut_layers.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include "core/stage_progress.h"
 #include "layers/columns.h"
@@ -54,15 +55,20 @@ void append_layers(const PrismShell& whole, const PrismSplit& split, bool above_
 
 } // namespace
 
+OptionList describe(LayerOptions& o)
+{
+    return in_group("Layers",
+                    {option("layers", o.layers, "--layers", "Layers that each pillar is cut into")
+                         .in(Unit::count)
+                         .within(at_least(1).at_most(double(ShellStack::kMostLayers))),
+                     option("grading", o.grading, "--layer-grading",
+                            "Thickness of each layer over that of the one nearer to the surface")
+                         .within(above(0))});
+}
+
 void require_sensible(const LayerOptions& options)
 {
-    const auto most = int(ShellStack::kMostLayers);
-    if (options.layers < 1 || options.layers > most)
-        throw InvalidOption("layers: " + std::to_string(options.layers) + ", must be 1 to " +
-                            std::to_string(most));
-    if (!(options.grading > 0.0) || !std::isfinite(options.grading))
-        throw InvalidOption("layer grading: " + std::to_string(options.grading) +
-                            ", must be positive and finite");
+    require_in_range(options, "layers");
 }
 
 LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, PrismTest test,

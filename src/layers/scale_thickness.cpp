@@ -2,6 +2,7 @@
 #include "vdb_shell/layers/scale_thickness.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include "core/stage_progress.h"
 #include "growth/start.h"
@@ -54,11 +55,17 @@ GrowState state_of(const growth::Connectivity& connectivity, const PrismShell& s
 
 } // namespace
 
+OptionList describe(ScaleOptions& o)
+{
+    return in_group("Layers", {option("factor", o.factor, "--thickness-scale",
+                                      "Share of each pillar's length to keep after growth")
+                                   .in(Unit::share)
+                                   .within(above(0).at_most(1))});
+}
+
 void require_sensible(const ScaleOptions& options)
 {
-    if (!(options.factor > 0.0 && options.factor <= 1.0))
-        throw InvalidOption("thickness scale: " + std::to_string(options.factor) +
-                            ", must be above 0 and at most 1");
+    require_in_range(options, "thickness scale");
 }
 
 ScaleReport scale_thickness(PrismShell& shell, const PrismSplit& split, const ScaleOptions& options,

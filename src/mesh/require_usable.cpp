@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/core/error.h"
+
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/options/option.h"
 
 #include <string>
 
@@ -46,6 +48,18 @@ Defect<std::uint32_t> inside_out(const MeshCheck& check)
 }
 
 } // namespace
+
+OptionList describe(CheckOptions& o)
+{
+    return in_group(
+        "Surface",
+        {option("allow_self_intersections", o.allow_self_intersections,
+                "--allow-self-intersections",
+                "Accept a surface that crosses itself, copy vertices of several fans, and certify "
+                "prism by prism"),
+         option("turn_inside_out", o.turn_inside_out, "--turn-outward",
+                "Turn closed components that are inside out instead of refusing them")});
+}
 
 void require_usable(const MeshCheck& check, const CheckOptions& options, const std::string& name)
 {

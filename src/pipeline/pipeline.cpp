@@ -4,13 +4,10 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/repair/split_fans.h"
 
-#include "core/option_names.h"
 #include "pipeline/figures.h"
 #include "pipeline/resample.h"
 #include "pipeline/sides.h"
 #include "report/stage_clock.h"
-
-#include <nlohmann/json.hpp>
 
 #include <utility>
 
@@ -18,23 +15,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-void require_sensible(const ShellOptions& options, const openvdb::FloatGrid* thickness_grid)
-{
-    require_sensible(options.scale);
-    require_sensible(options.layers);
-    require_sensible(options.refine);
-    require_sensible(options.decimate);
-    if (options.refine.rounds > 0 && options.side == Side::outward)
-        throw InvalidOption("refine: rounds is " + std::to_string(options.refine.rounds) +
-                            ", but an outward shell has no solid to fill");
-    if (options.wrap.wanted && options.repair)
-        throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
-    if (options.side != Side::outward && options.line_step.test == StopTest::none &&
-        options.limits.limit == Limit::none && !options.line_step.thickness && !thickness_grid)
-        throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "
-                            "would end the lines");
-}
 
 /// Copies of vertices make sense only where nothing else stands in the way: at an edge of three or
 /// more triangles the fans are no fans of one surface.
@@ -155,7 +135,7 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name, const openvdb::FloatGrid* thickness_grid,
                         Interrupter* interrupter)
 {
-    require_sensible(options, thickness_grid);
+    require_sensible(options, thickness_grid != nullptr);
     ShellResult r;
     r.report.source = name;
     if (!options.wrap.wanted) {
@@ -176,7 +156,7 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
                                        const openvdb::FloatGrid* thickness_grid,
                                        Interrupter* interrupter)
 {
-    require_sensible(options, thickness_grid);
+    require_sensible(options, thickness_grid != nullptr);
     if (options.wrap.wanted)
         throw InvalidOption(name + ": a wrap is for triangles; the surface of a level set is "
                                    "closed, manifold and embedded as it is");
@@ -190,76 +170,6 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
     });
     build_from_surface(r, surface, options, &field, thickness_grid, interrupter);
     return r;
-}
-
-std::string options_json(const ShellOptions& options)
-{
-    auto or_null = [](const auto& optional) {
-        return optional ? nlohmann::ordered_json(*optional) : nlohmann::ordered_json(nullptr);
-    };
-    nlohmann::ordered_json json;
-    json["side"] = name_in_table(options.side);
-    json["repair"] =
-        options.repair
-            ? nlohmann::ordered_json{{"weld_tolerance", options.repair->weld_tolerance},
-                                     {"sliver_height", options.repair->sliver_height},
-                                     {"cut_crossings", options.repair->cut_crossings},
-                                     {"keep_crossing_fills", options.repair->keep_crossing_fills}}
-            : nlohmann::ordered_json(nullptr);
-    json["wrap"] = {{"wanted", options.wrap.wanted},
-                    {"voxel_size", or_null(options.wrap.voxel_size)},
-                    {"resolution", options.wrap.resolution},
-                    {"adaptivity", options.wrap.adaptivity},
-                    {"sheet_voxels", options.wrap.sheet_voxels},
-                    {"keep_voids", options.wrap.keep_voids}};
-    json["contour"] = {{"adaptivity", options.contour.adaptivity},
-                       {"outer_only", options.contour.outer_only}};
-    json["check"] = {{"allow_self_intersections", options.check.allow_self_intersections},
-                     {"turn_inside_out", options.check.turn_inside_out}};
-    json["decimate"] = {{"triangles", or_null(options.decimate.triangles)},
-                        {"tolerance", or_null(options.decimate.tolerance)}};
-    json["subdivide"] = {{"levels", options.subdivide.levels}};
-    json["level_set"] = {{"voxel_size", or_null(options.level_set.voxel_size)},
-                         {"resolution", options.level_set.resolution},
-                         {"exterior_voxels", options.level_set.exterior_voxels},
-                         {"exterior_depth", or_null(options.level_set.exterior_depth)},
-                         {"interior_depth", or_null(options.level_set.interior_depth)}};
-    json["field"] = name_in_table(options.field);
-    json["smooth"] = {{"iterations", options.smooth.iterations}};
-    json["directions"] = {{"source", name_in_table(options.directions.source)},
-                          {"perturbation_radians", options.directions.perturbation_radians},
-                          {"seed", options.directions.seed}};
-    json["line_step"] = {{"test", name_in_table(options.line_step.test)},
-                         {"rho", options.line_step.rho},
-                         {"step_voxels", options.line_step.step_voxels},
-                         {"distance_threshold_voxels", options.line_step.distance_threshold_voxels},
-                         {"bisection_iterations", options.line_step.bisection_iterations},
-                         {"reference_voxels", options.line_step.reference_voxels},
-                         {"sheet_angle_radians", options.line_step.sheet_angle_radians},
-                         {"thickness", or_null(options.line_step.thickness)}};
-    json["limits"] = {{"limit", name_in_table(options.limits.limit)}};
-    json["grow"] = {{"method", name_in_table(options.grow.method)},
-                    {"mend_directions", options.grow.mend_directions},
-                    {"smooth_directions", options.grow.smooth_directions},
-                    {"top_down", options.grow.top_down},
-                    {"grow_lines", options.grow.grow_lines},
-                    {"free_moves", options.grow.free_moves},
-                    {"soft_contacts", options.grow.soft_contacts},
-                    {"flips", options.grow.flips},
-                    {"coarse_from", options.grow.coarse_from},
-                    {"free_rounds", or_null(options.grow.free_rounds)},
-                    {"min_quality", options.grow.min_quality}};
-    json["refine"] = {{"rounds", options.refine.rounds},
-                      {"by", name_in_table(options.refine.by)},
-                      {"share", options.refine.share},
-                      {"max_tets", or_null(options.refine.max_tets)},
-                      {"target_fill", or_null(options.refine.target_fill)},
-                      {"min_gain", options.refine.min_gain}};
-    json["scale"] = {{"factor", options.scale.factor}};
-    json["layers"] = {{"layers", options.layers.layers}, {"grading", options.layers.grading}};
-    json["split"] = {{"rule", name_in_table(options.split.rule)}, {"seed", options.split.seed}};
-    json["coverage"] = {{"samples", options.coverage.samples}, {"seed", options.coverage.seed}};
-    return json.dump(2);
 }
 
 } // namespace vdb_shell

@@ -6,6 +6,7 @@
 #include "mesh/surface_defects.h"
 #include "repair/working_surface.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <cmath>
 #include <numeric>
@@ -15,17 +16,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-void require_possible(const RepairOptions& options)
-{
-    const auto require = [](const char* name, double value) {
-        if (!(std::isfinite(value) && value >= 0))
-            throw InvalidOption(std::string("repair: ") + name + " is " + std::to_string(value) +
-                                ", must be finite and not negative");
-    };
-    require("weld_tolerance", options.weld_tolerance);
-    require("sliver_height", options.sliver_height);
-}
 
 /// Turns closed components that are oriented against their nesting.
 void turn_by_nesting(repair::WorkingSurface& surface, RepairReport& report)
@@ -98,10 +88,28 @@ const char* name_of(FillMethod method)
     return "none";
 }
 
+OptionList describe(RepairOptions& o)
+{
+    return in_group(
+        "Surface",
+        {option("weld_tolerance", o.weld_tolerance, "--weld-tolerance",
+                "Repair: merge points nearer than this, world units; 0 is equal ones only")
+             .in(Unit::world_length)
+             .within(at_least(0)),
+         option("sliver_height", o.sliver_height, "--sliver-height",
+                "Repair: remove triangles lower than this, world units; 0 is those of no area")
+             .in(Unit::world_length)
+             .within(at_least(0)),
+         option("cut_crossings", o.cut_crossings, "--cut-crossings",
+                "Repair: cut out triangles that cross others, and close the holes"),
+         option("keep_crossing_fills", o.keep_crossing_fills, "--keep-crossing-fills",
+                "Close holes also where every fill tried crosses the surface")});
+}
+
 RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
                          Interrupter* interrupter)
 {
-    require_possible(options);
+    require_in_range(options, "repair");
     require_well_formed(mesh, "repair_mesh");
     RepairReport report;
     repair::WorkingSurface surface{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), {}};

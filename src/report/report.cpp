@@ -2,7 +2,6 @@
 #include "vdb_shell/report/report.h"
 
 #include "certify/certificate_findings.h"
-#include "core/option_names.h"
 #include "mesh/components_json.h"
 #include "mesh/placement_json.h"
 

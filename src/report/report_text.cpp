@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/report/report.h"
 
-#include "core/option_names.h"
 #include "mesh/placement_json.h"
 
 #include <algorithm>

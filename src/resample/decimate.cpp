@@ -4,6 +4,7 @@
 #include "core/stage_progress.h"
 #include "resample/simplify.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <algorithm>
 #include <cassert>
@@ -20,7 +21,7 @@ namespace vdb_shell
 namespace
 {
 
-constexpr std::size_t kFewestTriangles = 4; // a tetrahedron
+constexpr double kFewestTriangles = 4; // a tetrahedron
 constexpr int kMostAttempts = 12;
 // By what the tolerance of the collapses is multiplied where the measured distance is too large.
 constexpr double kStricter = 0.7;
@@ -36,14 +37,23 @@ void measure(DecimateReport& report, const TriangleMesh& input, const TriangleMe
 
 } // namespace
 
+OptionList describe(DecimateOptions& o)
+{
+    return in_group("Resampling",
+                    {option("triangles", o.triangles, "--decimate-to",
+                            "Collapse edges down to this many triangles first")
+                         .in(Unit::count)
+                         .within(at_least(kFewestTriangles)),
+                     option("tolerance", o.tolerance, "--decimate-tolerance",
+                            "Farthest that decimation may part the surfaces, world units")
+                         .in(Unit::world_length)
+                         .within(above(0))
+                         .needing("--decimate-to")});
+}
+
 void require_sensible(const DecimateOptions& options)
 {
-    if (options.triangles && *options.triangles < kFewestTriangles)
-        throw InvalidOption("decimate: triangles is " + std::to_string(*options.triangles) +
-                            ", must be at least 4");
-    if (options.tolerance && !(std::isfinite(*options.tolerance) && *options.tolerance > 0))
-        throw InvalidOption("decimate: tolerance is " + std::to_string(*options.tolerance) +
-                            ", must be positive and finite");
+    require_in_range(options, "decimate");
 }
 
 DecimateResult decimate(const TriangleMesh& mesh, const DecimateOptions& options,

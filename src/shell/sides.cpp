@@ -37,6 +37,13 @@ PrismSplit turned(const PrismSplit& split)
 
 } // namespace
 
+const NameTable<Side>& names(Side)
+{
+    static const NameTable<Side> table{
+        {"inward", Side::inward}, {"outward", Side::outward}, {"both", Side::both}};
+    return table;
+}
+
 TriangleMesh reversed_surface(TriangleMesh mesh)
 {
     for (openvdb::Vec3I& t : mesh.triangles)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/shell/tessellate.h"
 
+#include "vdb_shell/options/option.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include "core/parallel.h"
@@ -163,6 +164,23 @@ TetMesh tets_of_layers(const PrismShell* layers, const PrismSplit* splits, std::
 }
 
 } // namespace
+
+const NameTable<SplitRule>& names(SplitRule)
+{
+    static const NameTable<SplitRule> table{{"index", SplitRule::vertex_index},
+                                            {"length-descending", SplitRule::length_descending},
+                                            {"length-ascending", SplitRule::length_ascending},
+                                            {"ripple", SplitRule::ripple}};
+    return table;
+}
+
+OptionList describe(SplitOptions& o)
+{
+    return in_group(
+        "Tets",
+        {option("rule", o.rule, "--split", "How the prisms' diagonals are chosen"),
+         option("seed", o.seed, "--ripple-seed", "Seed of the ripple method").in(Unit::seed)});
+}
 
 PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options)
 {

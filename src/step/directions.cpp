@@ -6,6 +6,7 @@
 #include "field/field_sampler.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/normals.h"
+#include "vdb_shell/options/option.h"
 
 #include <cassert>
 #include <cmath>
@@ -18,6 +19,9 @@ using openvdb::Vec3d;
 
 namespace
 {
+
+// A little less than a right angle, whose tangent is finite.
+constexpr double kMostRadians = 1.5;
 
 double signed_unit(std::uint64_t bits)
 {
@@ -55,22 +59,31 @@ Vec3d tilted(const Vec3d& direction, const Disk& offset, double tangent)
     return (direction + tangent * (offset.x * u + offset.y * v)).unit();
 }
 
-void check_options(const DirectionOptions& options)
+} // namespace
+
+const NameTable<DirectionSource>& names(DirectionSource)
 {
-    const double most = options.perturbation_radians;
-    if (most >= 0 && most < 1.5)
-        return;
-    std::ostringstream message;
-    message << "directions: perturbation_radians is " << most << ", must be in [0, 1.5)";
-    throw InvalidOption(message.str());
+    static const NameTable<DirectionSource> table{{"pseudo-normal", DirectionSource::pseudo_normal},
+                                                  {"gradient", DirectionSource::gradient}};
+    return table;
 }
 
-} // namespace
+OptionList describe(DirectionOptions& o)
+{
+    return in_group(
+        "Lines",
+        {option("source", o.source, "--directions", "Where the lines' directions come from"),
+         option("perturbation_radians", o.perturbation_radians, "--perturb",
+                "Largest random tilt of a direction, radians")
+             .in(Unit::radians)
+             .within(at_least(0).below(kMostRadians)),
+         option("seed", o.seed, "--perturb-seed", "Seed of the random tilt").in(Unit::seed)});
+}
 
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                               const DirectionOptions& options)
 {
-    check_options(options);
+    require_in_range(options, "directions");
     std::vector<Vec3d> outward;
     if (options.source == DirectionSource::pseudo_normal) {
         outward = pseudo_normals(mesh);

@@ -3,6 +3,7 @@
 
 #include "core/parallel.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <algorithm>
 #include <cassert>
@@ -72,6 +73,19 @@ double triangle_limit(const TriangleMesh& mesh, const Directions& directions,
 }
 
 } // namespace
+
+const NameTable<Limit>& names(Limit)
+{
+    static const NameTable<Limit> table{
+        {"none", Limit::none}, {"uniform", Limit::uniform}, {"adaptive", Limit::adaptive}};
+    return table;
+}
+
+OptionList describe(LimitOptions& o)
+{
+    return in_group("Lines",
+                    {option("limit", o.limit, "--limit", "Thin-shell limit on the lengths")});
+}
 
 std::vector<double> triangle_limits(const TriangleMesh& mesh, const Directions& directions)
 {

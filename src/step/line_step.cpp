@@ -9,6 +9,7 @@
 #include "step/skip_ahead.h"
 #include "step/thickness.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -28,39 +29,13 @@ constexpr double kIntervalVoxels = 1.0 / 1024;
 // A line that is not inside after this many voxels never will be.
 constexpr double kEntryVoxels = 1.5;
 constexpr double kSmallestStepVoxels = 1e-3;
+// A little less than a right angle, whose cosine is still well above 0.
+constexpr double kMostRadians = 1.5;
 // On a crease of the field the interpolated slope swings with the position in the cell (between
 // 0.65 and 0.87 on a box's diagonal). Along one cell diagonal every phase has been seen.
 constexpr double kPeriodVoxels = 1.7320508;
 // Vertices between two looks at the interrupter.
 constexpr std::size_t kBlock = 4096;
-
-void require(bool good, const char* name, double value, const char* range)
-{
-    if (good)
-        return;
-    std::ostringstream message;
-    message << "line step: " << name << " is " << value << ", must be " << range;
-    throw InvalidOption(message.str());
-}
-
-void check_options(const LineStepOptions& options)
-{
-    const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-    require(options.rho >= 0 && options.rho < 1, "rho", options.rho, "in [0, 1)");
-    require(std::isfinite(options.step_voxels) && options.step_voxels >= kSmallestStepVoxels,
-            "step_voxels", options.step_voxels, "finite and at least 0.001");
-    require(positive(options.distance_threshold_voxels), "distance_threshold_voxels",
-            options.distance_threshold_voxels, "positive and finite");
-    require(options.bisection_iterations > 0, "bisection_iterations", options.bisection_iterations,
-            "positive");
-    require(positive(options.reference_voxels), "reference_voxels", options.reference_voxels,
-            "positive and finite");
-    require(options.sheet_angle_radians > 0 && options.sheet_angle_radians < 1.5,
-            "sheet_angle_radians", options.sheet_angle_radians, "in (0, 1.5)");
-    if (options.thickness)
-        require(positive(*options.thickness), "thickness", *options.thickness,
-                "positive and finite");
-}
 
 MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                     const LineStepOptions& options)
@@ -97,7 +72,7 @@ template <typename MakeStepper>
 LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
 {
     const StageProgress progress(job.interrupter, "line step");
-    check_options(job.options);
+    require_in_range(job.options, "line step");
     const std::size_t count = job.mesh.points.size();
     assert(job.directions.inward.size() == count);
     if (!job.level_set.hasUniformVoxels())
@@ -140,6 +115,50 @@ LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
 }
 
 } // namespace
+
+const NameTable<StopTest>& names(StopTest)
+{
+    static const NameTable<StopTest> table{{"none", StopTest::none},
+                                           {"normal", StopTest::normal},
+                                           {"start-gradient", StopTest::start_gradient},
+                                           {"distance", StopTest::distance},
+                                           {"bisection", StopTest::bisection},
+                                           {"relative-normal", StopTest::relative_normal},
+                                           {"own-sheet", StopTest::own_sheet}};
+    return table;
+}
+
+OptionList describe(LineStepOptions& o)
+{
+    return in_group(
+        "Lines",
+        {option("test", o.test, "--stop-test", "When a line stops"),
+         option("rho", o.rho, "--rho", "Threshold of the normal tests, a cosine")
+             .within(at_least(0).below(1)),
+         option("step_voxels", o.step_voxels, "--step", "Increment along a line, voxels")
+             .in(Unit::voxels)
+             .within(at_least(kSmallestStepVoxels)),
+         option("distance_threshold_voxels", o.distance_threshold_voxels, "--distance-threshold",
+                "Threshold of the distance test and of bisection, voxels")
+             .in(Unit::voxels)
+             .within(above(0)),
+         option("bisection_iterations", o.bisection_iterations, "--bisection-iterations",
+                "Iteration limit of bisection")
+             .in(Unit::count)
+             .within(at_least(1)),
+         option("reference_voxels", o.reference_voxels, "--reference",
+                "Where relative-normal and own-sheet begin to compare, voxels from the start")
+             .in(Unit::voxels)
+             .within(above(0)),
+         option("sheet_angle_radians", o.sheet_angle_radians, "--sheet-angle",
+                "own-sheet: surfaces that meet at less than this are one, radians")
+             .in(Unit::radians)
+             .within(above(0).below(kMostRadians)),
+         option("thickness", o.thickness, "--thickness",
+                "Largest length of any line, world units [outward: a tenth of the diagonal]")
+             .in(Unit::world_length)
+             .within(above(0))});
+}
 
 const char* name_of(StopReason reason)
 {

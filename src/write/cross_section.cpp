@@ -2,6 +2,7 @@
 #include "vdb_shell/write/cross_section.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include "vdb_shell/core/atomic_file.h"
 #include "write/cut_picture.h"
@@ -23,17 +24,6 @@ using openvdb::Vec2d;
 
 constexpr int kSmallestWidth = 16, kLargestWidth = 16384;
 constexpr double kMargin = 0.03; ///< of the longer side, on each side
-
-void require_valid(const CrossSectionOptions& options)
-{
-    if (options.width_pixels < kSmallestWidth || options.width_pixels > kLargestWidth)
-        throw InvalidOption("cross-section: width " + std::to_string(options.width_pixels) +
-                            " pixels is not in [" + std::to_string(kSmallestWidth) + ", " +
-                            std::to_string(kLargestWidth) + "]");
-    if (!(options.position >= 0.0 && options.position <= 1.0))
-        throw InvalidOption("cross-section: position " + std::to_string(options.position) +
-                            " is not in [0, 1]");
-}
 
 /// The picture's frame: world units to pixels, y downwards.
 struct Frame {
@@ -99,10 +89,30 @@ std::string encode_png(const std::vector<std::uint8_t>& rgb, int width, int heig
 
 } // namespace
 
+const NameTable<Axis>& names(Axis)
+{
+    static const NameTable<Axis> table{{"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}};
+    return table;
+}
+
+OptionList describe(CrossSectionOptions& o)
+{
+    return in_group("Output", {option("axis", o.axis, "--section-axis",
+                                      "Normal of the picture's cutting plane"),
+                               option("position", o.position, "--section-position",
+                                      "Place of the cutting plane, as a share of the bounding box")
+                                   .in(Unit::share)
+                                   .within(at_least(0).at_most(1)),
+                               option("width_pixels", o.width_pixels, "--picture-width",
+                                      "Pixels along the picture's longer side")
+                                   .in(Unit::pixels)
+                                   .within(at_least(kSmallestWidth).at_most(kLargestWidth))});
+}
+
 void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,
                          const TetMesh& tets, const CrossSectionOptions& options)
 {
-    require_valid(options);
+    require_in_range(options, "cross-section");
     if (shell.outer.empty())
         throw InvalidOption("cross-section: the shell has no vertices");
     require_writable(path);

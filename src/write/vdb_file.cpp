@@ -2,6 +2,7 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
 
 #include "core/parallel.h"
 #include "io/vdb_archive.h"
@@ -149,6 +150,23 @@ PointGrids find_points(openvdb::io::File& main, const ShellInfo& info, const fs:
 }
 
 } // namespace
+
+const NameTable<PointPlacement>& names(PointPlacement)
+{
+    static const NameTable<PointPlacement> table{{"same-file", PointPlacement::same_file},
+                                                 {"beside", PointPlacement::beside}};
+    return table;
+}
+
+OptionList describe(VdbWriteOptions& o)
+{
+    return in_group(
+        "Output",
+        {option("points", o.points, "--points",
+                "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb"),
+         option("half", o.half, "--half",
+                "Save a .vdb's volumes with half floats; its points stay exact")});
+}
 
 void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWriteOptions& options)
 {

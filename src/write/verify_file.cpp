@@ -7,8 +7,6 @@
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
-#include "core/option_names.h"
-
 #include <nlohmann/json.hpp>
 #include <openvdb/tools/Interpolation.h>
 

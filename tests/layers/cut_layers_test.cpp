@@ -304,10 +304,12 @@ TEST(CutLayers, RefusesBadOptionsByName)
     };
     for (const int count : {0, -3, 251})
         EXPECT_EQ(refusal(whole, layers(count)),
-                  "layers: " + std::to_string(count) + ", must be 1 to 250");
-    for (const double grading : {0.0, -1.0, double(INFINITY), double(NAN)})
-        EXPECT_EQ(refusal(whole, layers(2, grading)),
-                  "layer grading: " + std::to_string(grading) + ", must be positive and finite");
+                  "layers: layers is " + std::to_string(count) + ", must be 1 to 250");
+    for (const auto& [grading, said] :
+         {std::pair(0.0, "0, must be above 0"), std::pair(-1.0, "-1, must be above 0"),
+          std::pair(double(INFINITY), "inf, must be finite and above 0"),
+          std::pair(double(NAN), "nan, must be finite and above 0")})
+        EXPECT_EQ(refusal(whole, layers(2, grading)), std::string("layers: grading is ") + said);
     const ShellStack two = cut_layers(whole, layers(2), PrismTest::twelve_tets).stack;
     EXPECT_EQ(refusal(two, layers(126)), "layers: 252 in all, must be at most 250");
     EXPECT_EQ(refusal(two, layers(125)), "accepted");

@@ -193,11 +193,14 @@ TEST(ScaleThickness, SameBitsForAnyNumberOfThreads)
 TEST(ScaleThickness, RefusesBadFactorsByName)
 {
     SplitShell made = test::scaled_shell(icosphere(1, 1), 0.5f);
-    for (const double factor : {0.0, -0.5, 1.0001, double(NAN), double(INFINITY)})
-        EXPECT_EQ(test::refusal_of([&] {
-                      scale_thickness(made.shell, made.split, by(factor), PrismTest::twelve_tets);
+    for (const auto& [factor, value] :
+         {std::pair(0.0, "0"), std::pair(-0.5, "-0.5"), std::pair(1.0001, "1.0001"),
+          std::pair(double(NAN), "nan"), std::pair(double(INFINITY), "inf")})
+        EXPECT_EQ(test::refusal_of([&, by_factor = by(factor)] {
+                      scale_thickness(made.shell, made.split, by_factor, PrismTest::twelve_tets);
                   }),
-                  "thickness scale: " + std::to_string(factor) + ", must be above 0 and at most 1");
+                  std::string("thickness scale: factor is ") + value +
+                      ", must be above 0 and at most 1");
 }
 
 TEST(ScaleThickness, CanBeCancelled)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <cstdint>
@@ -15,6 +16,7 @@ struct CoverageOptions {
     std::uint64_t samples = 20000;
     std::uint64_t seed = 1;
 };
+OptionList describe(CoverageOptions& options);
 
 /// A second opinion by Monte Carlo, independent of all signs: in how many tets does a point lie?
 ///

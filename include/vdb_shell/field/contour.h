@@ -4,6 +4,7 @@
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <cstddef>
 
@@ -16,10 +17,12 @@ struct ContourOptions {
     /// Leave out the surfaces of voids, and what stands inside them.
     bool outer_only = false;
 };
+OptionList describe(ContourOptions& options);
 
 /// What made the surface. `marching_tets` when OpenVDB's own surface was not manifold or not
 /// embedded.
 enum class ContourMethod { volume_to_mesh, marching_tets };
+const NameTable<ContourMethod>& names(ContourMethod);
 
 struct ContourReport {
     ContourMethod method = ContourMethod::volume_to_mesh;

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <optional>
 
@@ -33,6 +34,7 @@ struct LevelSetOptions {
     /// Refuse a grid that is estimated to need more than this. Unset: what the machine has free.
     std::optional<double> max_memory_gib;
 };
+OptionList describe(LevelSetOptions& options);
 
 /// Voxel size that the options mean for this mesh, in world units.
 /// From `resolution`, an object so small that its voxels would be under 1.5e-5 (the least that

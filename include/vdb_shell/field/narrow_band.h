@@ -5,6 +5,7 @@
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/name_table.h"
 
 namespace vdb_shell
 {
@@ -15,6 +16,7 @@ enum class FieldRoute {
     sparse,    ///< sparse where it is right
     dense,     ///< all voxels down to the depth of the lines: mesh_to_level_set
 };
+const NameTable<FieldRoute>& names(FieldRoute);
 
 /// The signed distance to a closed mesh within options.exterior_voxels of it on either side, as
 /// mesh_to_level_set names and places it, background likewise; depths in the options are not read.

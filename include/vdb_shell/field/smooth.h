@@ -4,6 +4,7 @@
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 namespace vdb_shell
 {
@@ -13,6 +14,7 @@ struct SmoothOptions {
     /// sphere of radius R has sqrt(R^2 - 2 n dx^2 / 3) after n steps with voxels of size dx.
     int iterations = 0;
 };
+OptionList describe(SmoothOptions& options);
 
 /// How far the zero crossing moved: |phi| of the smoothed field at the mesh's vertices, world
 /// units. No more than the width of the exterior band shows outside.

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/resample/surface_distance.h"
 
 #include <cstddef>
@@ -27,6 +28,7 @@ struct WrapOptions {
     /// Keep enclosed voids, and what stands in them, instead of filling them.
     bool keep_voids = false;
 };
+OptionList describe(WrapOptions& options);
 
 struct WrapReport {
     double voxel_size = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/resample/coarsen.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
@@ -22,6 +23,7 @@ enum class Method {
                ///< and every thinner shell is valid too (docs/theory.md)
     thickest,  ///< the same, then on with only the three chosen tets of each prism positive
 };
+const NameTable<Method>& names(Method);
 
 /// Each lever is an option of its own; docs/measurements/thickness.md has its gain and cost.
 struct GrowOptions {
@@ -51,6 +53,7 @@ struct GrowOptions {
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.
     double min_quality = 0;
 };
+OptionList describe(GrowOptions& options);
 
 struct GrowReport {
     std::size_t rounds = 0;             ///< rounds of free moves

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/resample/refine_triangles.h"
 #include "vdb_shell/shell/prism_shell.h"
 
@@ -21,6 +22,7 @@ enum class RefineBy {
     voids,    ///< the volume that its prism leaves empty: half the way to the next inner triangle
     area,     ///< its area; with a share of 1 all triangles are cut: uniform subdivision in rounds
 };
+const NameTable<RefineBy>& names(RefineBy);
 
 struct RefineOptions {
     /// Rounds of building, cutting triangles in four where it is worth it, and growing on from the
@@ -37,6 +39,7 @@ struct RefineOptions {
     /// The rounds end when one has gained less fill than this; 0: never for that reason.
     double min_gain = 0;
 };
+OptionList describe(RefineOptions& options);
 
 /// Throws InvalidOption when an option is out of its range.
 void require_sensible(const RefineOptions& options);

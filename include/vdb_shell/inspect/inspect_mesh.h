@@ -4,6 +4,7 @@
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -63,6 +64,7 @@ struct InspectOptions {
     LevelSetOptions level_set;   ///< for what is thinner than a voxel
     double largest_rounding = 0; ///< ReadReport::largest_rounding: tells who lost the digits
 };
+OptionList describe(InspectOptions& options);
 
 /// Looks at a surface however bad it is. Preconditions and exactness as check_mesh; blind vertices
 /// and thin triangles are measured in double. Throws InvalidOption; never for a bad surface.

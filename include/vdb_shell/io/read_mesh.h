@@ -3,6 +3,7 @@
 
 #include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -23,6 +24,7 @@ struct ReadOptions {
     /// Read the object in a unit near its size: for objects of microns, and beyond 1e18.
     bool rescale = false;
 };
+OptionList describe(ReadOptions& options);
 
 /// What a file said and what became of it. `file_*` counts what the file declares or lists, before
 /// anything is left out, so that the counts have to add up and nothing is lost without a word.

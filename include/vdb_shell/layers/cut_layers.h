@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/prism_test.h"
 #include "vdb_shell/shell/shell_stack.h"
 
@@ -16,6 +17,7 @@ struct LayerOptions {
     /// layers of 1/3 and 2/3.
     double grading = 1.0;
 };
+OptionList describe(LayerOptions& options);
 
 /// Throws InvalidOption for fewer than one layer, more than ShellStack::kMostLayers, or a grading
 /// that is not positive and finite.

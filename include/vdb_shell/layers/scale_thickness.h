@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/prism_test.h"
 #include "vdb_shell/shell/tessellate.h"
 
@@ -13,6 +14,7 @@ namespace vdb_shell
 struct ScaleOptions {
     double factor = 1.0; ///< share of each pillar's length that is kept, above 0 and at most 1
 };
+OptionList describe(ScaleOptions& options);
 
 /// Throws InvalidOption for a factor that is not above 0 and at most 1.
 void require_sensible(const ScaleOptions& options);

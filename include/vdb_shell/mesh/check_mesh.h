@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <array>
 #include <cstddef>
@@ -68,6 +69,7 @@ struct CheckOptions {
     /// Turn components that are oriented against their nesting depth, instead of refusing them.
     bool turn_inside_out = false;
 };
+OptionList describe(CheckOptions& options);
 
 /// Looks at everything that the stages after this one rely on. Exact predicates, no tolerance.
 /// Precondition, which read_mesh guarantees: points within kLargestCoordinate, corners that index

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,7 @@ struct RepairOptions {
     /// Close a hole even where every fill that was tried crosses the surface.
     bool keep_crossing_fills = false;
 };
+OptionList describe(RepairOptions& options);
 
 /// How a hole was closed, from the fairest to the plainest; each is tried only when those before it
 /// cross the surface.

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/resample/surface_distance.h"
 
 #include <cstddef>
@@ -17,6 +18,7 @@ struct DecimateOptions {
     /// The farthest that either surface may be from the other, world units. Unset: no bound.
     std::optional<double> tolerance;
 };
+OptionList describe(DecimateOptions& options);
 
 struct DecimateReport {
     std::size_t before = 0, wanted = 0, triangles = 0;

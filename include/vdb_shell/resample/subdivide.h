@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 namespace vdb_shell
 {
@@ -10,6 +11,7 @@ struct SubdivideOptions {
     /// How often every triangle is cut into four, 0 or more.
     int levels = 0;
 };
+OptionList describe(SubdivideOptions& options);
 
 /// Every triangle cut into four at the middles of its edges, `levels` times: 4^levels times as many
 /// triangles on the same shape. The middles are rounded to float32, so surface and middle are apart

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/name_table.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 namespace vdb_shell
@@ -13,6 +14,7 @@ enum class Side {
     outward, ///< around it, in cavities too
     both,    ///< the two of them, with the surface between
 };
+const NameTable<Side>& names(Side);
 
 /// Shells outside a surface are shells inside the reversed one: what was outside lies behind its
 /// triangles, a solid without a bound. Stages from compute_directions to grow_shell run on the

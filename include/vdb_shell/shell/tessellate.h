@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/prism_shell.h"
 
 #include <array>
@@ -21,11 +22,13 @@ enum class SplitRule {
     length_ascending,  ///< shortest pillar first, ties by index
     ripple,            ///< the randomised method of [9], for comparison
 };
+const NameTable<SplitRule>& names(SplitRule);
 
 struct SplitOptions {
     SplitRule rule = SplitRule::length_descending;
     std::uint64_t seed = 1; ///< ripple only
 };
+OptionList describe(SplitOptions& options);
 
 /// Per triangle, its three corners (0,1,2) from first to last in the order that fixes the
 /// diagonals. A prism with order x,y,z splits into (ax,ay,az,bz), (ax,ay,by,bz), (ax,bx,by,bz).

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 
 #include <cstdint>
 #include <vector>
@@ -14,6 +15,7 @@ enum class DirectionSource {
     pseudo_normal, ///< angle-weighted pseudo-normal of the mesh, [15] of the paper
     gradient,      ///< the field's own gradient at the vertex, eq. 5
 };
+const NameTable<DirectionSource>& names(DirectionSource);
 
 struct DirectionOptions {
     DirectionSource source = DirectionSource::pseudo_normal;
@@ -22,6 +24,7 @@ struct DirectionOptions {
     double perturbation_radians = 0.0;
     std::uint64_t seed = 1;
 };
+OptionList describe(DirectionOptions& options);
 
 /// Per vertex, index for index with the mesh's points.
 struct Directions {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/line_step.h"
 
@@ -16,10 +17,12 @@ enum class Limit {
     uniform,  ///< the thin shell of [9]: one length for all, the smallest of all triangles' limits
     adaptive, ///< the adaptive thin shell [10]: per vertex, the smallest of its triangles' limits
 };
+const NameTable<Limit>& names(Limit);
 
 struct LimitOptions {
     Limit limit = Limit::none;
 };
+OptionList describe(LimitOptions& options);
 
 /// Per triangle, the smallest length at which the prism's Jacobian vanishes at one of its three
 /// pillars when all three are extruded by the same length: the smallest positive root of n_i . A(e)

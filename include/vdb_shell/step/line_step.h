@@ -4,6 +4,7 @@
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/step/directions.h"
 
 #include <cstdint>
@@ -26,6 +27,7 @@ enum class StopTest {
     own_sheet,       ///< go on while g(q) . n is what the vertex's own triangles make it, up to
                ///< sheet_angle_radians: see own_sheet_slopes; up to reference_voxels while > 0
 };
+const NameTable<StopTest>& names(StopTest);
 
 /// Why a line ended where it did.
 enum class StopReason : std::uint8_t {
@@ -67,6 +69,7 @@ struct LineStepOptions {
     /// Largest length of any line, world units (epsilon_user of eq. 1). Unset: no such bound.
     std::optional<double> thickness;
 };
+OptionList describe(LineStepOptions& options);
 
 /// One entry per vertex.
 struct LineLengths {

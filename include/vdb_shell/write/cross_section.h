@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <filesystem>
@@ -9,12 +10,14 @@ namespace vdb_shell
 {
 
 enum class Axis { x, y, z };
+const NameTable<Axis>& names(Axis);
 
 struct CrossSectionOptions {
     Axis axis = Axis::z;     ///< normal of the cutting plane
     double position = 0.5;   ///< share of the bounding box along the axis
     int width_pixels = 1024; ///< of the longer side of the picture
 };
+OptionList describe(CrossSectionOptions& options);
 
 /// Draws the shell cut by a plane, as a PNG: prisms in alternating tints, tet edges, the outer and
 /// inner outlines, places that more than one tet covers in red. Throws WriteError; InvalidOption

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/placement.h"
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <cstdint>
@@ -37,6 +38,7 @@ enum class PointPlacement {
     beside, ///< point grids in NAME.points.vdb, so that a reader without point grids can read all
             ///< of NAME.vdb
 };
+const NameTable<PointPlacement>& names(PointPlacement);
 
 struct VdbWriteOptions {
     PointPlacement points = PointPlacement::same_file;
@@ -44,6 +46,7 @@ struct VdbWriteOptions {
     /// stays exact.
     bool half = false;
 };
+OptionList describe(VdbWriteOptions& options);
 
 /// What a shell's .vdb says about itself, without its grids.
 struct ShellInfo {

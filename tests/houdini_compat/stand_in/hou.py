@@ -83,6 +83,12 @@ class FloatParmTemplate(ParmTemplate):  # FloatParmTemplate.html
         super().__init__(name, label, default_value[0])
 
 
+class StringParmTemplate(ParmTemplate):  # StringParmTemplate.html
+    def __init__(self, name, label, num_components, default_value=(), help=None):
+        assert len(default_value) == num_components and all(type(v) is str for v in default_value)
+        super().__init__(name, label, default_value[0])
+
+
 class ToggleParmTemplate(ParmTemplate):  # ToggleParmTemplate.html
     def __init__(self, name, label, default_value=False, help=None):
         assert type(default_value) is bool
@@ -96,13 +102,29 @@ class MenuParmTemplate(ParmTemplate):  # MenuParmTemplate.html
         self._items = tuple(menu_items)
 
 
+class FolderParmTemplate(ParmTemplate):  # FolderParmTemplate.html
+    def __init__(self, name, label, parm_templates=()):
+        super().__init__(name, label, None)
+        self._templates = list(parm_templates)
+
+    def parmTemplates(self):
+        return tuple(self._templates)
+
+
 class ParmTemplateGroup:  # ParmTemplateGroup.html
     def __init__(self, parm_templates=()):
         self._templates = list(parm_templates)
 
+    def _all(self):
+        for template in self._templates:
+            yield template
+            if isinstance(template, FolderParmTemplate):
+                yield from template.parmTemplates()
+
     def append(self, parm_template):
-        assert parm_template.name() not in [t.name() for t in self._templates], "name given twice"
         self._templates.append(parm_template)
+        names = [template.name() for template in self._all()]
+        assert len(names) == len(set(names)), "name given twice"
 
 
 class Parm:  # Parm.html
@@ -138,7 +160,9 @@ class Node:  # Node.html, OpNode.html, SopNode.html
         return ParmTemplateGroup()
 
     def setParmTemplateGroup(self, parm_template_group, rename_conflicting_parms=False):
-        for template in parm_template_group._templates:
+        for template in parm_template_group._all():
+            if isinstance(template, FolderParmTemplate):
+                continue
             self._parms[template.name()] = Parm(template._default, getattr(template, "_items", None))
 
     def setName(self, name, unique_name=False):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/options/describe.h"
 #include "vdb_shell/write/vdb_file.h"
 
 #include <filesystem>
@@ -10,6 +11,7 @@ namespace vdb_shell
 {
 
 enum class UpAxis { y, z };
+const NameTable<UpAxis>& names(UpAxis);
 
 /// What the stage says of its coordinates; they themselves are written as they are.
 struct UsdOptions {
@@ -17,6 +19,7 @@ struct UsdOptions {
     double meters_per_unit = 1.0;
     double frames_per_second = 24.0; ///< of stages with several samples
 };
+OptionList describe(UsdOptions& options);
 
 /// The shell at one time.
 struct UsdSample {

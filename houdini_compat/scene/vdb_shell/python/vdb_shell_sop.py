@@ -11,7 +11,9 @@ CODE = "import vdb_shell_sop\nvdb_shell_sop.cook(hou.pwd())\n"
 
 
 def cook(node):
-    values = {parameter.name: value_of(node, parameter) for parameter in tool.PARAMETERS}
+    # A node of an older scene has fewer parameters than the program knows.
+    values = {parameter.name: value_of(node, parameter) for parameter in tool.parameters()
+              if node.parm(parameter.name)}
     try:
         with hou.InterruptableOperation("Building the shell", open_interrupt_dialog=True) as operation:
             tool.replace_by_shell(node.geometry(), values, hou.Geometry,
@@ -32,18 +34,28 @@ def template_of(parameter):
     name, label, default = parameter.name, parameter.label, parameter.default
     if parameter.kind == "menu":
         return hou.MenuParmTemplate(name, label, parameter.choices,
-                                    [choice.capitalize() for choice in parameter.choices],
+                                    [choice.replace("-", " ").capitalize() for choice in parameter.choices],
                                     default_value=parameter.choices.index(default), help=parameter.help)
     if parameter.kind == "flag":
         return hou.ToggleParmTemplate(name, label, default_value=default, help=parameter.help)
+    if parameter.kind == "text":
+        return hou.StringParmTemplate(name, label, 1, default_value=(default,), help=parameter.help)
     kind = hou.IntParmTemplate if parameter.kind == "int" else hou.FloatParmTemplate
-    return kind(name, label, 1, default_value=(default,), min=0, min_is_strict=True, help=parameter.help)
+    limits = {} if parameter.low is None else {"min": parameter.low, "min_is_strict": True}
+    return kind(name, label, 1, default_value=(default,), help=parameter.help, **limits)
 
 
 def add_parameters(node):
+    """The result in front, a folder for each group of options behind."""
     group = node.parmTemplateGroup()
-    for parameter in tool.PARAMETERS:
-        group.append(template_of(parameter))
+    folders = {}
+    for parameter in tool.parameters():
+        if parameter is tool.RESULT:
+            group.append(template_of(parameter))
+        else:
+            folders.setdefault(parameter.group, []).append(template_of(parameter))
+    for label, templates in folders.items():
+        group.append(hou.FolderParmTemplate("folder_" + label.lower().replace(" ", "_"), label, templates))
     node.setParmTemplateGroup(group)
 
 

@@ -9,6 +9,7 @@ The program is `vdb_shell` on the PATH, or what VDB_SHELL_COMMAND names.
 
 import argparse
 import collections
+import functools
 import json
 import os
 import subprocess
@@ -16,25 +17,13 @@ import sys
 import tempfile
 import time
 
-# kind: int, float (0: not given), flag, menu; flag: the option of the command.
-Parameter = collections.namedtuple("Parameter", "name label kind default choices flag help")
+# kind: int, float, flag, menu, text. `unset` is the value that stands for none at all, which the
+# command then gets no option for. `group` is the folder it stands in.
+Parameter = collections.namedtuple("Parameter", "name label kind default choices flag help group low unset")
 
-PARAMETERS = (
-    Parameter("result", "Result", "menu", "shell", ("shell", "volumes", "both"), None,
-              "Tetrahedra and surfaces, the level set and depth volumes, or both"),
-    Parameter("method", "Method", "menu", "certified", ("certified", "thickest", "raw"), "--method",
-              "How the inner points get their places"),
-    Parameter("resolution", "Resolution", "int", 256, None, "--resolution",
-              "Voxels along the longest side of the bounding box"),
-    Parameter("thickness", "Largest Thickness", "float", 0.0, None, "--thickness",
-              "In world units; 0 is as thick as it can be"),
-    Parameter("smooth", "Smoothing Steps", "int", 0, None, "--smooth",
-              "Steps of mean-curvature flow on the level set"),
-    Parameter("half", "Half Floats", "flag", False, None, "--half",
-              "Save the volumes with half floats"),
-    Parameter("turn_outward", "Turn Outward", "flag", False, None, "--turn-outward",
-              "Turn closed components that are inside out instead of refusing them"),
-)
+RESULT = Parameter("result", "Result", "menu", "shell", ("shell", "volumes", "both"), None,
+                   "Tetrahedra and surfaces, the level set and depth volumes, or both", "Result", None, None)
+KINDS = {"flag": "flag", "integer": "int", "unsigned": "int", "number": "float", "choice": "menu", "text": "text"}
 
 # Houdini's own format keeps its orientation and every bit; text formats would round.
 MESH_EXTENSION = ".bgeo.sc"
@@ -49,29 +38,74 @@ class ShellError(Exception):
         self.status = status
 
 
-def defaults():
-    return {parameter.name: parameter.default for parameter in PARAMETERS}
-
-
 def program():
     return os.environ.get("VDB_SHELL_COMMAND", "vdb_shell")
 
 
+@functools.lru_cache(maxsize=None)
+def schema():
+    """What the program says of its options, once a session."""
+    try:
+        return json.loads(subprocess.run([program(), "options", "--json"], capture_output=True, check=True).stdout)
+    except (OSError, subprocess.CalledProcessError, ValueError) as error:
+        raise ShellError(f"{program()} does not tell its options: {error}") from error
+
+
+def is_possible(option, value):
+    limits = option["range"]
+    return (limits.get("at_least", value) <= value <= limits.get("at_most", value)
+            and not value <= limits.get("above", value - 1) and not value >= limits.get("below", value + 1))
+
+
+def parameter_of(option):
+    name = option["flag"].lstrip("-").replace("-", "_")
+    kind, default, low, unset = KINDS[option["type"]], option["default"], None, None
+    if kind in ("int", "float"):
+        number = {"int": int, "float": float}[kind]
+        limits = option["range"]
+        low = limits.get("at_least", limits.get("above", 0 if option["type"] == "unsigned" else None))
+        if option["may_be_unset"]:
+            # Houdini's numbers cannot be empty: the first that is impossible means none.
+            low = unset = number(-1 if is_possible(option, 0) else 0)
+        default = unset if default is None else number(default)
+        low = None if low is None else number(low)
+    if kind == "text":
+        default = default or ""
+    return Parameter(name, name.replace("_", " ").title(), kind, default,
+                     tuple(option["choices"]) or None, option["flag"], option["help"], option["group"], low, unset)
+
+
+@functools.lru_cache(maxsize=None)
+def parameters():
+    """All that a shell can be asked for: what `build` knows but for its files, which the node has itself."""
+    options = schema()["commands"]["build"]["options"]
+    return (RESULT, *(parameter_of(option) for option in options
+                      if option["flag"] and (option["group"] != "Output" or option["flag"] == "--half")
+                      and option["group"] != "Options"))
+
+
+def defaults():
+    return {parameter.name: parameter.default for parameter in parameters()}
+
+
 def option_words(values):
     """The options that are not at their defaults, as words of the command line."""
-    unknown = set(values) - {parameter.name for parameter in PARAMETERS}
+    if not values:
+        return []
+    unknown = set(values) - {parameter.name for parameter in parameters()}
     if unknown:
         raise ValueError(f"no such parameters: {', '.join(sorted(unknown))}")
     words = []
-    for parameter in PARAMETERS:
+    for parameter in parameters():
         value = values.get(parameter.name, parameter.default)
         if parameter.kind == "menu" and value not in parameter.choices:
             raise ValueError(f"{parameter.name} is {value!r}, expected one of {parameter.choices}")
-        if parameter.flag is None or value == parameter.default:
+        if parameter.flag is None or value == parameter.default or value == parameter.unset:
             continue
-        words.append(parameter.flag)
-        if parameter.kind != "flag":
-            words.append(repr(value) if parameter.kind == "float" else str(value))
+        if parameter.kind == "flag":
+            words.append(parameter.flag if value else "--no-" + parameter.flag[2:])
+        else:
+            words += [parameter.flag, repr(value) if parameter.kind == "float" else str(value)]
     return words
 
 

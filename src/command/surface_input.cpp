@@ -1,62 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "command/placement_options.h"
+#include "command/surface_input.h"
 
-#include <CLI/CLI.hpp>
+#include "vdb_shell/houdini/polygon_mesh.h"
+
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <iostream>
-#include <optional>
 
 namespace vdb_shell::command
 {
-namespace
+ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& options)
 {
-
-void divide(std::optional<double>& length, double unit)
-{
-    if (length)
-        *length /= unit;
-}
-
-} // namespace
-
-void add_placement_options(CLI::App& app, ReadOptions& read, const std::string& group)
-{
-    app.add_flag("--recentre,--recenter", read.recentre,
-                 "Read the object about a point near its middle, which the files keep: far from "
-                 "the origin float32 has few digits left")
-        ->group(group);
-    app.add_flag("--rescale", read.rescale,
-                 "Read the object in a power of two near its size, which the files keep: for "
-                 "microns in metres, and sizes over 1e18")
-        ->group(group);
-}
-
-LevelSetOptions in_unit(LevelSetOptions options, double unit)
-{
-    divide(options.voxel_size, unit);
-    divide(options.exterior_depth, unit);
-    divide(options.interior_depth, unit);
-    return options;
-}
-
-RepairOptions in_unit(RepairOptions options, double unit)
-{
-    options.weld_tolerance /= unit;
-    options.sliver_height /= unit;
-    return options;
-}
-
-ShellOptions in_unit(ShellOptions options, double unit)
-{
-    options.level_set = in_unit(options.level_set, unit);
-    divide(options.wrap.voxel_size, unit);
-    divide(options.line_step.thickness, unit);
-    if (options.repair)
-        options.repair = in_unit(*options.repair, unit);
-    return options;
+    return houdini::has_geometry_extension(path) ? houdini::read_polygon_mesh(path, options)
+                                                 : read_mesh(path, options);
 }
 
 openvdb::FloatGrid::Ptr in_place(const openvdb::FloatGrid::Ptr& grid, const Placement& placement)

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/houdini/usd_file.h"
+#include "vdb_shell/options/option.h"
+
+namespace vdb_shell
+{
+
+const NameTable<UpAxis>& names(UpAxis)
+{
+    static const NameTable<UpAxis> table{{"y", UpAxis::y}, {"z", UpAxis::z}};
+    return table;
+}
+
+OptionList describe(UsdOptions& o)
+{
+    return in_group("Output", {option("up_axis", o.up_axis, "--up-axis", "What a .usda says is up"),
+                               option("meters_per_unit", o.meters_per_unit, "--metres-per-unit",
+                                      "What a .usda says a world unit is")
+                                   .with_names({"--meters-per-unit"})
+                                   .within(above(0)),
+                               option("frames_per_second", o.frames_per_second, "",
+                                      "What a .usda of several frames says of their rate")
+                                   .within(above(0))});
+}
+
+} // namespace vdb_shell

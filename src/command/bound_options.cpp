@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command/bound_options.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "command/build_command.h"
+#include "options/option_json.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+constexpr const char* kPresetFlag = "--options";
+
+/// In the order of the help; a group that is not here follows.
+std::vector<std::string> groups_of(const std::vector<BoundOption>& options)
+{
+    std::vector<std::string> groups{"Options",   "Output", "Surface", "Wrap",   "Resampling",
+                                    "Level set", "Lines",  "Growth",  "Layers", "Tets"};
+    for (const BoundOption& bound : options)
+        if (std::find(groups.begin(), groups.end(), bound.option.group) == groups.end())
+            groups.push_back(bound.option.group);
+    return groups;
+}
+
+std::string names_for_parser(const Option& option)
+{
+    std::string names;
+    for (const std::string& name : option.names)
+        if (name.rfind("--", 0) != 0)
+            names += name + ",";
+    names += option.flag;
+    for (const std::string& name : option.names)
+        if (name.rfind("--", 0) == 0)
+            names += "," + name;
+    return option.kind == OptionKind::flag ? names + ",!" + negation_of(option) : names;
+}
+
+const char* type_in_help(OptionKind kind)
+{
+    switch (kind) {
+    case OptionKind::flag:
+        return "";
+    case OptionKind::integer:
+        return "INT";
+    case OptionKind::count:
+        return "UINT";
+    case OptionKind::number:
+        return "FLOAT";
+    case OptionKind::choice:
+        return "NAME";
+    case OptionKind::text:
+        return "TEXT";
+    }
+    return "";
+}
+
+/// What stands behind the flag: "FLOAT=0.9 Needs: --repair".
+std::string usage_of(const BoundOption& bound)
+{
+    const Option& option = bound.option;
+    std::string usage = type_in_help(option.kind);
+    if (option.kind != OptionKind::flag && option.kind != OptionKind::text &&
+        !std::holds_alternative<std::monostate>(bound.default_value))
+        usage += "=" + text_of(bound.default_value);
+    const auto add = [&](const std::string& more) { usage += (usage.empty() ? "" : " ") + more; };
+    if (option.repeated)
+        add("...");
+    if (option.required)
+        add("REQUIRED");
+    if (!option.needs.empty())
+        add("Needs: " + option.needs);
+    if (!option.excludes.empty())
+        add("Excludes: " + option.excludes);
+    return usage;
+}
+
+std::string help_of(const BoundOption& bound)
+{
+    std::string help = bound.option.help;
+    if (bound.option.kind == OptionKind::flag && std::get<bool>(bound.default_value))
+        help += " [on]";
+    std::string choices;
+    for (const std::string& choice : bound.option.choices)
+        choices += (choices.empty() ? " (" : ", ") + choice;
+    return choices.empty() ? help : help + choices + ")";
+}
+
+void add_to_parser(CLI::App& app, BoundOption& bound)
+{
+    const Option& option = bound.option;
+    const std::string names = names_for_parser(option), help = help_of(bound);
+    // Results are looked at by apply(), when the file of options has been read.
+    bound.given =
+        option.kind == OptionKind::flag
+            ? app.add_flag(names, help)
+            : app.add_option(names, CLI::callback_t([](const CLI::results_t&) { return true; }),
+                             help);
+    if (option.kind == OptionKind::flag)
+        bound.given->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    if (option.repeated)
+        bound.given->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    const std::string usage = usage_of(bound);
+    if (!usage.empty())
+        bound.given->option_text(usage);
+    bound.given->required(option.required)->group(option.group);
+    if (option.shorthand.empty())
+        return;
+    const std::string shorthand_help = "Same as " + option.flag + " " + option.shorthand_for;
+    bound.shorthand_given = app.add_flag(option.shorthand, shorthand_help)
+                                ->group(option.group)
+                                ->option_text("Excludes: " + option.flag);
+}
+
+BoundOption* find(BoundOptions& bound, const std::string& flag)
+{
+    const auto found = std::find_if(bound.options.begin(), bound.options.end(),
+                                    [&](const BoundOption& b) { return b.option.flag == flag; });
+    return found == bound.options.end() ? nullptr : &*found;
+}
+
+bool was_given(const BoundOption& bound)
+{
+    return (bound.given && bound.given->count() > 0) ||
+           (bound.shorthand_given && bound.shorthand_given->count() > 0);
+}
+
+void read_preset(BoundOptions& bound, const std::filesystem::path& preset)
+{
+    const std::string name = preset.string();
+    std::ifstream in(preset, std::ios::binary);
+    std::ostringstream text;
+    if (!in || !(text << in.rdbuf()))
+        throw ReadError(name + ": cannot be read as a file of options");
+    nlohmann::ordered_json json = parse_options(text.str(), name);
+    // `info --json` prints them beside the report.
+    if (json.contains("parameters"))
+        json = nlohmann::ordered_json(json.at("parameters"));
+    // One file serves all commands: what it says has to be an option of `build`, and what this
+    // command has no use for is left aside.
+    BuildArguments all;
+    OptionSections sections = describe(all);
+    set_from_json(json, sections, name);
+    set_known_from_json(json, bound.sections, name);
+}
+
+void set_given(BoundOption& bound)
+{
+    Option& option = bound.option;
+    const bool by_shorthand = bound.shorthand_given && bound.shorthand_given->count() > 0;
+    if (by_shorthand && bound.given->count() > 0)
+        throw InvalidOption(option.shorthand + " excludes " + option.flag);
+    if (by_shorthand)
+        assign_text(option, option.shorthand_for, option.shorthand);
+    else if (option.kind == OptionKind::flag)
+        option.set(bound.given->as<bool>());
+    else
+        for (const std::string& text : bound.given->results())
+            assign_text(option, text, option.flag);
+}
+
+/// Of two flags that say the same thing in different ways the one that was given holds, whatever
+/// the file of options says.
+void settle_exclusions(BoundOptions& bound)
+{
+    for (BoundOption& one : bound.options) {
+        BoundOption* other =
+            one.option.excludes.empty() ? nullptr : find(bound, one.option.excludes);
+        if (!other)
+            continue;
+        if (was_given(one) && was_given(*other))
+            throw InvalidOption(one.option.flag + " excludes " + other->option.flag);
+        if (was_given(one))
+            other->option.set(other->default_value);
+        if (was_given(*other))
+            one.option.set(one.default_value);
+    }
+}
+
+void require_needs(BoundOptions& bound)
+{
+    for (const BoundOption& one : bound.options) {
+        if (one.option.needs.empty() || !was_given(one))
+            continue;
+        const BoundOption* other = find(bound, one.option.needs);
+        if (other && !was_given(*other) && other->option.get() == other->default_value)
+            throw InvalidOption(one.option.flag + " needs " + one.option.needs);
+    }
+}
+
+} // namespace
+
+BoundOptions bind(CLI::App& app, OptionSections sections)
+{
+    BoundOptions bound;
+    for (const OptionSection& section : sections) {
+        if (section.asked)
+            bound.options.push_back({*section.asked, section.asked->get()});
+        for (const Option& option : section.options)
+            bound.options.push_back({option, option.get()});
+    }
+    bound.sections = std::move(sections);
+    for (const std::string& group : groups_of(bound.options))
+        for (BoundOption& option : bound.options)
+            if (option.option.group == group && !option.option.flag.empty())
+                add_to_parser(app, option);
+    return bound;
+}
+
+void apply(BoundOptions& bound)
+{
+    const BoundOption* preset = find(bound, kPresetFlag);
+    if (preset && was_given(*preset))
+        read_preset(bound, preset->given->results().back());
+    for (BoundOption& option : bound.options)
+        if (was_given(option))
+            set_given(option);
+    settle_exclusions(bound);
+    require_needs(bound);
+}
+
+Option preset_option(std::filesystem::path& preset)
+{
+    Option o = option("", preset, kPresetFlag,
+                      "File of options as JSON, or what `info --json` prints; flags win over it");
+    o.group = "Options";
+    return o;
+}
+
+std::string negation_of(const Option& option)
+{
+    return "--no-" + option.flag.substr(2);
+}
+
+} // namespace vdb_shell::command

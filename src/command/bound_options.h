@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/options/section.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace CLI
+{
+class App;
+class Option;
+} // namespace CLI
+
+namespace vdb_shell::command
+{
+
+/// A described option of a command, and what was given for it.
+struct BoundOption {
+    Option option;
+    OptionValue default_value;
+    CLI::Option* given = nullptr;           ///< its flag; null where it has none
+    CLI::Option* shorthand_given = nullptr; ///< Option::shorthand
+};
+
+/// The command's options; their structs have to outlive it.
+struct BoundOptions {
+    OptionSections sections;
+    std::vector<BoundOption> options;
+};
+
+/// Adds a flag for every option that has one, group by group, with help made of the descriptions.
+/// The fields must still have their defaults; parsing does not change them, apply() does.
+BoundOptions bind(CLI::App& app, OptionSections sections);
+
+/// Sets the fields: first what the file of options says, if one is given, then what flags say,
+/// which win. Throws InvalidOption, with the name that the user gave, for impossible values and
+/// for flags that exclude or need each other; ReadError for a file that is none.
+void apply(BoundOptions& bound);
+
+/// The option that gives apply() its file.
+Option preset_option(std::filesystem::path& preset);
+
+/// The flag that turns the option's flag off: "--no-half" for "--half".
+std::string negation_of(const Option& option);
+
+} // namespace vdb_shell::command

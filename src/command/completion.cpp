@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command/completion.h"
+
+#include <sstream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+std::vector<std::string> flags_of(const Option& option)
+{
+    std::vector<std::string> flags = option.names;
+    flags.insert(flags.begin(), option.flag);
+    if (option.kind == OptionKind::flag)
+        flags.push_back(negation_of(option));
+    if (!option.shorthand.empty())
+        flags.push_back(option.shorthand);
+    return flags;
+}
+
+/// What to offer after each flag that takes a value: its choices, files, or nothing for numbers.
+void write_values(std::ostream& out, const CommandEntry& command)
+{
+    for (const BoundOption& bound : command.bound->options) {
+        const Option& option = bound.option;
+        if (option.flag.empty() || option.kind == OptionKind::flag)
+            continue;
+        std::string pattern;
+        for (const std::string& flag : flags_of(option))
+            if (flag != option.shorthand)
+                pattern += (pattern.empty() ? "" : "|") + command.name + ":" + flag;
+        out << "    " << pattern << ")\n        ";
+        if (option.kind == OptionKind::choice) {
+            out << "COMPREPLY=($(compgen -W '";
+            for (const std::string& choice : option.choices)
+                out << choice << ' ';
+            out << "' -- \"$word\"))";
+        } else if (option.kind == OptionKind::text) {
+            out << "_vdb_shell_files \"$word\"";
+        } else {
+            out << "COMPREPLY=()";
+        }
+        out << "\n        return ;;\n";
+    }
+}
+
+void write_flags(std::ostream& out, const CommandEntry& command)
+{
+    out << "    " << (command.name.empty() ? "''" : command.name) << ") flags='--help";
+    for (const BoundOption& bound : command.bound->options)
+        if (!bound.option.flag.empty())
+            for (const std::string& flag : flags_of(bound.option))
+                out << ' ' << flag;
+    out << (command.name.empty() ? " --version" : "") << "' ;;\n";
+}
+
+std::string names_of(const std::vector<CommandEntry>& commands, const char* between)
+{
+    std::string names;
+    for (const CommandEntry& command : commands)
+        if (!command.name.empty())
+            names += (names.empty() ? "" : between) + command.name;
+    return names;
+}
+
+} // namespace
+
+std::string bash_completion(const std::vector<CommandEntry>& commands)
+{
+    std::ostringstream out;
+    out << "# Completion of vdb_shell for bash, made by `vdb_shell options --complete bash`.\n"
+           "_vdb_shell_files()\n"
+           "{\n"
+           "    local IFS=$'\\n'\n"
+           "    COMPREPLY=($(compgen -f -- \"$1\"))\n"
+           "}\n"
+           "_vdb_shell()\n"
+           "{\n"
+           "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+           "    local command= flags= i\n"
+           "    for ((i = 1; i < COMP_CWORD; ++i)); do\n"
+           "        case ${COMP_WORDS[i]} in\n"
+           "        "
+        << names_of(commands, "|")
+        << ")\n            command=${COMP_WORDS[i]}\n            break ;;\n"
+           "        esac\n"
+           "    done\n"
+           "    case $command:$before in\n";
+    for (const CommandEntry& command : commands)
+        write_values(out, command);
+    out << "    esac\n    case $command in\n";
+    for (const CommandEntry& command : commands)
+        write_flags(out, command);
+    out << "    esac\n"
+           "    if [[ $word == -* ]]; then\n"
+           "        COMPREPLY=($(compgen -W \"$flags\" -- \"$word\"))\n"
+           "    elif [[ -z $command ]]; then\n"
+           "        COMPREPLY=($(compgen -W '"
+        << names_of(commands, " ")
+        << "' -- \"$word\"))\n"
+           "    else\n"
+           "        _vdb_shell_files \"$word\"\n"
+           "    fi\n"
+           "}\n"
+           "complete -o filenames -F _vdb_shell vdb_shell\n";
+    return out.str();
+}
+
+} // namespace vdb_shell::command

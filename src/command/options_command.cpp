@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command/options_command.h"
+
+#include "command/completion.h"
+#include "command/exit_code.h"
+#include "options/option_json.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+nlohmann::ordered_json schema_of(const std::vector<CommandEntry>& commands)
+{
+    nlohmann::ordered_json json;
+    json["schema"] = 1;
+    json["version"] = VDB_SHELL_VERSION;
+    for (const CommandEntry& command : commands) {
+        const nlohmann::ordered_json options = schema_json(command.bound->sections);
+        if (command.name.empty())
+            json["options"] = options;
+        else
+            json["commands"][command.name] = {{"help", command.help}, {"options", options}};
+    }
+    return json;
+}
+
+/// What may stand behind the flag.
+std::string values_of(const Option& option)
+{
+    if (option.kind == OptionKind::flag)
+        return "on, off";
+    if (option.kind == OptionKind::text)
+        return "text";
+    std::string text = expectation(option);
+    const std::string one_of = "one of ";
+    return text.rfind(one_of, 0) == 0 ? text.substr(one_of.size()) : text;
+}
+
+std::string default_of(const Option& option)
+{
+    const OptionValue value = option.get();
+    if (option.kind == OptionKind::flag)
+        return std::get<bool>(value) ? "on" : "off";
+    return text_of(value);
+}
+
+void print_row(const OptionSection& section, const Option& option)
+{
+    const auto code = [](const std::string& text) {
+        return text.empty() ? text : "`" + text + "`";
+    };
+    std::cout << "| " << code(option.flag) << " | " << code(path_of(section, option)) << " | "
+              << values_of(option) << " | "
+              << (option.unit == Unit::none ? "" : name_in_table(option.unit)) << " | "
+              << default_of(option) << " |\n";
+}
+
+void print_table(const OptionSections& sections)
+{
+    std::cout << "| flag | key in a file | values | unit | default |\n|---|---|---|---|---|\n";
+    for (const OptionSection& section : sections) {
+        if (section.asked)
+            print_row(section, *section.asked);
+        for (const Option& option : section.options)
+            if (!option.key.empty())
+                print_row(section, option);
+    }
+}
+
+} // namespace
+
+const NameTable<Shell>& names(Shell)
+{
+    static const NameTable<Shell> table{{"bash", Shell::bash}};
+    return table;
+}
+
+BoundOptions add_options_command(CLI::App& app, OptionsArguments& arguments)
+{
+    Option complete = option("", arguments.complete, "--complete",
+                             "Print a script that makes a shell complete commands and flags");
+    return bind(app, {{"", in_group("Options", {option("", arguments.json, "--json",
+                                                       "Print all that is known of the options of "
+                                                       "every command, for programs"),
+                                                complete})}});
+}
+
+int run_options(const OptionsArguments& arguments, const std::vector<CommandEntry>& commands)
+{
+    if (arguments.json)
+        std::cout << schema_of(commands).dump(2) << '\n';
+    else if (arguments.complete)
+        std::cout << bash_completion(commands);
+    else
+        for (const CommandEntry& command : commands)
+            if (command.name == "build")
+                print_table(command.bound->sections);
+    return success;
+}
+
+} // namespace vdb_shell::command

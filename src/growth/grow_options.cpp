@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/growth/grow.h"
+#include "vdb_shell/growth/refine.h"
+#include "vdb_shell/options/option.h"
+
+namespace vdb_shell
+{
+
+const NameTable<Method>& names(Method)
+{
+    static const NameTable<Method> table{
+        {"raw", Method::raw}, {"certified", Method::certified}, {"thickest", Method::thickest}};
+    return table;
+}
+
+const NameTable<RefineBy>& names(RefineBy)
+{
+    static const NameTable<RefineBy> table{
+        {"contacts", RefineBy::contacts}, {"voids", RefineBy::voids}, {"area", RefineBy::area}};
+    return table;
+}
+
+OptionList describe(GrowOptions& o)
+{
+    return in_group(
+        "Growth",
+        {option("method", o.method, "--method", "How the inner vertices get their places")
+             .with_shorthand("--thickest", "thickest"),
+         option("mend_directions", o.mend_directions, "--mend-directions",
+                "Replace directions that see a triangle from behind"),
+         option("smooth_directions", o.smooth_directions, "--smooth-directions",
+                "Smooth the directions across faces, not across creases"),
+         option("top_down", o.top_down, "--top-down",
+                "Start from long lines and shrink them, instead of a thin shell"),
+         option("grow_lines", o.grow_lines, "--grow-lines",
+                "Lengthen along the lines where the start is nearly full"),
+         option("free_moves", o.free_moves, "--free-moves", "Let inner vertices leave their lines"),
+         option("soft_contacts", o.soft_contacts, "--soft-contacts",
+                "Keep clear of near triangles before they touch"),
+         option("flips", o.flips, "--flips", "Turn diagonals for room and for quality"),
+         option("coarse_from", o.coarse_from, "--coarse-from",
+                "Triangles from which on growth begins on a coarser surface; 0: never")
+             .in(Unit::count),
+         option("free_rounds", o.free_rounds, "--free-rounds",
+                "Upper bound on rounds of free moves [40; after a coarser surface as many as pay]")
+             .in(Unit::count)
+             .within(at_least(0)),
+         option("min_quality", o.min_quality, "--min-quality",
+                "Mean ratio that tets should reach, at a cost in thickness; 0 asks for none")
+             .within(at_least(0).below(1))});
+}
+
+OptionList describe(RefineOptions& o)
+{
+    const std::string rounds = "--refine-rounds";
+    return in_group(
+        "Resampling",
+        {option("rounds", o.rounds, rounds,
+                "Rounds of cutting triangles where the shell is held back, and growing on")
+             .in(Unit::count)
+             .within(at_least(0)),
+         option("by", o.by, "--refine-by", "What makes a triangle worth cutting").needing(rounds),
+         option("share", o.share, "--refine-share",
+                "Share of that in the triangles cut in one round, those most worth it first")
+             .in(Unit::share)
+             .within(above(0).at_most(1))
+             .needing(rounds),
+         option("max_tets", o.max_tets, "--max-tets", "Refine to no more tets than this")
+             .in(Unit::count)
+             .needing(rounds),
+         option("target_fill", o.target_fill, "--target-fill",
+                "End refinement at this fill, 0 to 1")
+             .in(Unit::share)
+             .within(above(0).at_most(1))
+             .needing(rounds),
+         option("min_gain", o.min_gain, "--refine-min-gain",
+                "End refinement when a round gains less fill than this")
+             .in(Unit::share)
+             .within(at_least(0).at_most(1))
+             .needing(rounds)});
+}
+
+void require_sensible(const RefineOptions& options)
+{
+    require_in_range(options, "refine");
+}
+
+} // namespace vdb_shell

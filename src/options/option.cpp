@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/options/option.h"
+
+#include "vdb_shell/core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <locale>
+#include <sstream>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+std::string text_of_number(double value)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out << value;
+    return out.str();
+}
+
+std::string joined(const std::vector<std::string>& words)
+{
+    std::string all;
+    for (const std::string& word : words)
+        all += (all.empty() ? "" : ", ") + word;
+    return all;
+}
+
+[[noreturn]] void refuse(const Option& option, const std::string& name, const std::string& value,
+                         const std::string& expected)
+{
+    const bool of_kind = expected.empty();
+    throw InvalidOption(name + " is " + value + ", must be " +
+                        (of_kind ? expectation(option) : expected));
+}
+
+/// What a value of the right kind is expected to be.
+std::string expected_range(const Option& option, const OptionValue& value)
+{
+    const auto* number = std::get_if<double>(&value);
+    const bool bounded = option.range.low && option.range.high;
+    if (number && !std::isfinite(*number) && !bounded && !option.range.text().empty())
+        return "finite and " + option.range.text();
+    return option.range.text();
+}
+
+/// The value as the kind that the option has, where that loses nothing; else unset.
+OptionValue converted(OptionKind kind, const OptionValue& value)
+{
+    if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+        if (kind == OptionKind::number)
+            return static_cast<double>(*integer);
+        if (kind == OptionKind::count && *integer >= 0)
+            return static_cast<std::uint64_t>(*integer);
+        return kind == OptionKind::integer ? value : OptionValue();
+    }
+    if (const auto* count = std::get_if<std::uint64_t>(&value)) {
+        if (kind == OptionKind::number)
+            return static_cast<double>(*count);
+        if (kind == OptionKind::integer && *count <= std::uint64_t(INT64_MAX))
+            return static_cast<std::int64_t>(*count);
+        return kind == OptionKind::count ? value : OptionValue();
+    }
+    if (std::holds_alternative<bool>(value))
+        return kind == OptionKind::flag ? value : OptionValue();
+    if (std::holds_alternative<double>(value))
+        return kind == OptionKind::number ? value : OptionValue();
+    return kind == OptionKind::choice || kind == OptionKind::text ? value : OptionValue();
+}
+
+/// Of a value of the right kind.
+bool allowed(const Option& option, const OptionValue& value)
+{
+    if (option.kind == OptionKind::choice)
+        return std::count(option.choices.begin(), option.choices.end(),
+                          std::get<std::string>(value)) > 0;
+    if (const auto* number = std::get_if<double>(&value))
+        return option.range.holds(*number);
+    if (const auto* integer = std::get_if<std::int64_t>(&value))
+        return std::abs(static_cast<double>(*integer)) <= option.largest &&
+               option.range.holds(static_cast<double>(*integer));
+    if (const auto* count = std::get_if<std::uint64_t>(&value))
+        return static_cast<double>(*count) <= option.largest &&
+               option.range.holds(static_cast<double>(*count));
+    return true;
+}
+
+/// Unset where the text is no number of that type, or one that the type cannot hold.
+template <typename Number> OptionValue parsed(const std::string& text)
+{
+    std::istringstream in(text);
+    in.imbue(std::locale::classic());
+    Number number{};
+    in >> std::noskipws >> number;
+    return in && in.peek() == std::istringstream::traits_type::eof() ? OptionValue(number)
+                                                                     : OptionValue();
+}
+
+OptionValue parsed_as(OptionKind kind, const std::string& text)
+{
+    if (kind == OptionKind::flag)
+        return text == "true" || text == "false" ? OptionValue(text == "true") : OptionValue();
+    if (kind == OptionKind::integer)
+        return parsed<std::int64_t>(text);
+    if (kind == OptionKind::number)
+        return parsed<double>(text);
+    // Streams take -1 for the largest of the unsigned numbers.
+    if (kind == OptionKind::count)
+        return text.rfind('-', 0) == 0 ? OptionValue() : parsed<std::uint64_t>(text);
+    return text;
+}
+
+} // namespace
+
+const NameTable<Unit>& names(Unit)
+{
+    static const NameTable<Unit> table{
+        {"none", Unit::none},     {"world length", Unit::world_length},
+        {"voxels", Unit::voxels}, {"radians", Unit::radians},
+        {"share", Unit::share},   {"count", Unit::count},
+        {"pixels", Unit::pixels}, {"GiB", Unit::gibibytes},
+        {"seed", Unit::seed}};
+    return table;
+}
+
+std::string text_of(const OptionValue& value)
+{
+    if (std::holds_alternative<std::monostate>(value))
+        return "unset";
+    if (const auto* flag = std::get_if<bool>(&value))
+        return *flag ? "true" : "false";
+    if (const auto* integer = std::get_if<std::int64_t>(&value))
+        return std::to_string(*integer);
+    if (const auto* count = std::get_if<std::uint64_t>(&value))
+        return std::to_string(*count);
+    if (const auto* number = std::get_if<double>(&value))
+        return text_of_number(*number);
+    return std::get<std::string>(value);
+}
+
+bool Range::holds(double value) const
+{
+    // Written so that no bound holds for what is not a number.
+    const bool over = !low || (low_excluded ? value > *low : value >= *low);
+    const bool under = !high || (high_excluded ? value < *high : value <= *high);
+    return std::isfinite(value) && over && under;
+}
+
+std::string Range::text() const
+{
+    if (low && high && !low_excluded && !high_excluded)
+        return text_of_number(*low) + " to " + text_of_number(*high);
+    std::string text;
+    if (low)
+        text = low_excluded ? "above " + text_of_number(*low) : text_of_number(*low) + " or more";
+    if (high)
+        text += (text.empty() ? "" : " and ") +
+                std::string(high_excluded ? "less than " : "at most ") + text_of_number(*high);
+    return text;
+}
+
+Range Range::at_most(double bound) const
+{
+    Range range = *this;
+    range.high = bound;
+    range.high_excluded = false;
+    return range;
+}
+
+Range Range::below(double bound) const
+{
+    Range range = at_most(bound);
+    range.high_excluded = true;
+    return range;
+}
+
+Range at_least(double bound)
+{
+    Range range;
+    range.low = bound;
+    return range;
+}
+
+Range above(double bound)
+{
+    Range range = at_least(bound);
+    range.low_excluded = true;
+    return range;
+}
+
+Option& Option::with_names(std::vector<std::string> more)
+{
+    names = std::move(more);
+    return *this;
+}
+
+Option& Option::in(Unit which)
+{
+    unit = which;
+    return *this;
+}
+
+Option& Option::within(const Range& which)
+{
+    range = which;
+    return *this;
+}
+
+Option& Option::needing(const std::string& other)
+{
+    needs = other;
+    return *this;
+}
+
+Option& Option::excluding(const std::string& other)
+{
+    excludes = other;
+    return *this;
+}
+
+Option& Option::with_shorthand(const std::string& own_flag, const std::string& choice)
+{
+    shorthand = own_flag;
+    shorthand_for = choice;
+    return *this;
+}
+
+Option& Option::not_stored()
+{
+    stored = false;
+    return *this;
+}
+
+OptionList in_group(const std::string& group, OptionList options)
+{
+    for (Option& o : options)
+        if (o.group.empty())
+            o.group = group;
+    return options;
+}
+
+std::string expectation(const Option& option)
+{
+    const std::string range = option.range.text();
+    switch (option.kind) {
+    case OptionKind::flag:
+        return "true or false";
+    case OptionKind::choice:
+        return "one of " + joined(option.choices);
+    case OptionKind::text:
+        return "a text";
+    case OptionKind::number:
+        return range.empty() ? "a finite number" : range;
+    case OptionKind::integer:
+        return "a whole number" + (range.empty() ? "" : ", " + range);
+    case OptionKind::count:
+        return "a whole number, " + (range.empty() ? "0 or more" : range);
+    }
+    return range;
+}
+
+void assign(Option& option, const OptionValue& value, const std::string& name)
+{
+    if (std::holds_alternative<std::monostate>(value)) {
+        if (!option.may_be_unset)
+            refuse(option, name, "null", "");
+        option.set(value);
+        return;
+    }
+    const OptionValue fitting = converted(option.kind, value);
+    if (std::holds_alternative<std::monostate>(fitting))
+        refuse(option, name, text_of(value), "");
+    if (!allowed(option, fitting))
+        refuse(option, name, text_of(value), expected_range(option, fitting));
+    option.set(fitting);
+}
+
+void assign_text(Option& option, const std::string& text, const std::string& name)
+{
+    const OptionValue value = parsed_as(option.kind, text);
+    if (std::holds_alternative<std::monostate>(value))
+        refuse(option, name, text, "");
+    if (!allowed(option, value))
+        refuse(option, name, text, expected_range(option, value));
+    option.set(value);
+}
+
+Option* find_by_flag(OptionList& options, const std::string& flag)
+{
+    const auto found = std::find_if(options.begin(), options.end(),
+                                    [&](const Option& o) { return o.flag == flag; });
+    return found == options.end() ? nullptr : &*found;
+}
+
+void require_in_range(const OptionList& options, const std::string& owner)
+{
+    for (const Option& o : options) {
+        const OptionValue value = o.get();
+        if (!std::holds_alternative<std::monostate>(value) && !allowed(o, value))
+            refuse(o, owner + ": " + o.key, text_of(value), expected_range(o, value));
+    }
+}
+
+void divide_lengths(OptionList& options, double unit)
+{
+    for (Option& o : options) {
+        const OptionValue value = o.get();
+        if (o.unit == Unit::world_length && std::holds_alternative<double>(value))
+            o.set(std::get<double>(value) / unit);
+    }
+}
+
+} // namespace vdb_shell

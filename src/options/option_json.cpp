@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options/option_json.h"
+
+#include "vdb_shell/core/error.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using nlohmann::ordered_json;
+
+OptionValue value_of(const ordered_json& json, const std::string& name)
+{
+    if (json.is_null())
+        return {};
+    if (json.is_boolean())
+        return json.get<bool>();
+    if (json.is_number_unsigned())
+        return json.get<std::uint64_t>();
+    if (json.is_number_integer())
+        return json.get<std::int64_t>();
+    if (json.is_number())
+        return json.get<double>();
+    if (json.is_string())
+        return json.get<std::string>();
+    throw InvalidOption(name + " is " + json.dump() + ", must be a single value");
+}
+
+Option* find_by_key(OptionList& options, const std::string& key)
+{
+    const auto found = std::find_if(options.begin(), options.end(), [&](const Option& o) {
+        return !o.key.empty() && o.key == key;
+    });
+    return found == options.end() ? nullptr : &*found;
+}
+
+void set_section(const ordered_json& json, OptionSection& section, const std::string& name)
+{
+    if (section.asked && !json.is_object() && !json.is_null())
+        throw InvalidOption(name + ": " + section.key + " is " + json.dump() +
+                            ", must be an object or null");
+    if (section.asked)
+        section.asked->set(!json.is_null());
+    if (section.asked && json.is_null())
+        return;
+    if (!json.is_object())
+        throw InvalidOption(name + ": " + section.key + " is " + json.dump() +
+                            ", must be an object");
+    for (const auto& entry : json.items()) {
+        const std::string full = name + ": " + section.key + "." + entry.key();
+        Option* option = find_by_key(section.options, entry.key());
+        if (!option)
+            throw InvalidOption(full + " is no option");
+        assign(*option, value_of(entry.value(), full), full);
+    }
+}
+
+/// Sets what `key` names; false where nothing has that name.
+bool set_entry(const std::string& key, const ordered_json& json, OptionSections& sections,
+               const std::string& name)
+{
+    for (OptionSection& section : sections) {
+        if (section.key == key && !key.empty()) {
+            set_section(json, section, name);
+            return true;
+        }
+        if (!section.key.empty())
+            continue;
+        if (Option* option = find_by_key(section.options, key)) {
+            assign(*option, value_of(json, name + ": " + key), name + ": " + key);
+            return true;
+        }
+    }
+    return false;
+}
+
+ordered_json range_json(const Range& range)
+{
+    ordered_json json = ordered_json::object();
+    if (range.low)
+        json[range.low_excluded ? "above" : "at_least"] = *range.low;
+    if (range.high)
+        json[range.high_excluded ? "below" : "at_most"] = *range.high;
+    return json;
+}
+
+const char* type_name(OptionKind kind)
+{
+    switch (kind) {
+    case OptionKind::flag:
+        return "flag";
+    case OptionKind::integer:
+        return "integer";
+    case OptionKind::count:
+        return "unsigned";
+    case OptionKind::number:
+        return "number";
+    case OptionKind::choice:
+        return "choice";
+    case OptionKind::text:
+        return "text";
+    }
+    return "";
+}
+
+ordered_json option_schema(const OptionSection& section, const Option& option)
+{
+    const auto or_null = [](const std::string& text) {
+        return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+    };
+    ordered_json json{{"flag", or_null(option.flag)}};
+    json["names"] = option.names;
+    json["key"] = or_null(path_of(section, option));
+    json["type"] = type_name(option.kind);
+    json["unit"] = name_in_table(option.unit);
+    json["range"] = range_json(option.range);
+    json["default"] = value_json(option.get());
+    json["may_be_unset"] = option.may_be_unset;
+    json["repeated"] = option.repeated;
+    json["required"] = option.required;
+    json["choices"] = option.choices;
+    json["needs"] = or_null(option.needs);
+    json["excludes"] = or_null(option.excludes);
+    json["shorthand"] = or_null(option.shorthand);
+    json["shorthand_for"] = or_null(option.shorthand_for);
+    json["group"] = option.group;
+    json["help"] = option.help;
+    return json;
+}
+
+} // namespace
+
+ordered_json value_json(const OptionValue& value)
+{
+    return std::visit(
+        [](const auto& held) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>)
+                return ordered_json(nullptr);
+            else
+                return ordered_json(held);
+        },
+        value);
+}
+
+ordered_json to_json(const OptionSections& sections)
+{
+    ordered_json json = ordered_json::object();
+    for (const OptionSection& section : sections) {
+        if (section.asked && !std::get<bool>(section.asked->get())) {
+            json[section.key] = nullptr;
+            continue;
+        }
+        for (const Option& option : section.options)
+            if (option.stored && !option.key.empty())
+                (section.key.empty() ? json[option.key] : json[section.key][option.key]) =
+                    value_json(option.get());
+    }
+    return json;
+}
+
+void set_from_json(const ordered_json& json, OptionSections& sections, const std::string& name)
+{
+    for (const auto& entry : json.items())
+        if (!set_entry(entry.key(), entry.value(), sections, name))
+            throw InvalidOption(name + ": " + entry.key() + " is no option");
+}
+
+void set_known_from_json(const ordered_json& json, OptionSections& sections,
+                         const std::string& name)
+{
+    for (OptionSection& section : sections) {
+        if (!section.key.empty() && !json.contains(section.key))
+            continue;
+        const ordered_json& object = section.key.empty() ? json : json.at(section.key);
+        if (section.asked)
+            section.asked->set(object.is_object());
+        for (Option& option : section.options) {
+            if (option.key.empty() || !object.is_object() || !object.contains(option.key))
+                continue;
+            const std::string full = name + ": " + path_of(section, option);
+            assign(option, value_of(object.at(option.key), full), full);
+        }
+    }
+}
+
+ordered_json parse_options(const std::string& text, const std::string& name)
+{
+    ordered_json json;
+    try {
+        json = ordered_json::parse(text);
+    } catch (const ordered_json::parse_error& error) {
+        throw ReadError(name + ": is no JSON: " + error.what());
+    }
+    if (!json.is_object())
+        throw ReadError(name + ": is no JSON object of options");
+    return json;
+}
+
+ordered_json schema_json(const OptionSections& sections)
+{
+    ordered_json json = ordered_json::array();
+    for (const OptionSection& section : sections) {
+        if (section.asked)
+            json.push_back(option_schema(section, *section.asked));
+        for (const Option& option : section.options)
+            json.push_back(option_schema(section, option));
+    }
+    return json;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/options/section.h"
+#include "vdb_shell/pipeline.h"
+
+#include "options/option_json.h"
+
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+OptionSection repair_section(ShellOptions& options)
+{
+    OptionSection section = optional_section(
+        "repair", options.repair, "--repair",
+        "Weld, orient, part and close the surface first; what is sound stays bit for bit");
+    section.asked->group = "Surface";
+    for (Option& o : section.options)
+        if (o.key == "keep_crossing_fills")
+            o.flag.clear(); // follows --allow-self-intersections
+    return section;
+}
+
+} // namespace
+
+OptionSections describe(ShellOptions& o)
+{
+    return {{"", in_group("Lines", {option("side", o.side, "--side",
+                                           "Side of the surface that the shell lies on")})},
+            repair_section(o),
+            {"wrap", describe(o.wrap)},
+            {"contour", describe(o.contour)},
+            {"check", describe(o.check)},
+            {"decimate", describe(o.decimate)},
+            {"subdivide", describe(o.subdivide)},
+            {"level_set", describe(o.level_set)},
+            {"", in_group("Level set", {option("field", o.field, "--field",
+                                               "Deep voxels only where lines end, or all of them; "
+                                               "auto takes what is less work")})},
+            {"smooth", describe(o.smooth)},
+            {"directions", describe(o.directions)},
+            {"line_step", describe(o.line_step)},
+            {"limits", describe(o.limits)},
+            {"grow", describe(o.grow)},
+            {"refine", describe(o.refine)},
+            {"scale", describe(o.scale)},
+            {"layers", describe(o.layers)},
+            {"split", describe(o.split)},
+            {"coverage", describe(o.coverage)}};
+}
+
+void require_sensible(const ShellOptions& options, bool thickness_grid)
+{
+    ShellOptions copy = options;
+    for (const OptionSection& section : describe(copy))
+        require_in_range(section.options, section.key);
+    if (options.refine.rounds > 0 && options.side == Side::outward)
+        throw InvalidOption("refine: rounds is " + std::to_string(options.refine.rounds) +
+                            " (--refine-rounds), but an outward shell has no solid to fill");
+    if (options.wrap.wanted && options.repair)
+        throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
+    if (options.side != Side::outward && options.line_step.test == StopTest::none &&
+        options.limits.limit == Limit::none && !options.line_step.thickness && !thickness_grid)
+        throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "
+                            "would end the lines");
+}
+
+std::string options_json(const ShellOptions& options)
+{
+    ShellOptions copy = options;
+    return to_json(describe(copy)).dump(2);
+}
+
+ShellOptions options_from_json(const std::string& json, ShellOptions base, const std::string& name)
+{
+    OptionSections sections = describe(base);
+    set_from_json(parse_options(json, name), sections, name);
+    return base;
+}
+
+} // namespace vdb_shell

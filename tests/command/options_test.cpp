@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_fixture.h"
+#include "support/shapes.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+using command::ExitCode;
+using nlohmann::json;
+
+class Options : public Command
+{
+protected:
+    std::string preset(const std::string& text)
+    {
+        write_bytes(folder / "preset.json", text);
+        return " --options " + file("preset.json") + " ";
+    }
+
+    json report_of(const std::string& arguments)
+    {
+        const Outcome result = run("build -q --report " + file("r.json") + " " + arguments);
+        EXPECT_EQ(result.status, ExitCode::success) << result.err;
+        return json::parse(read_bytes(folder / "r.json"));
+    }
+
+    /// The parameters that the build stores.
+    json parameters_of(const std::string& arguments)
+    {
+        const Outcome result = run("build -q -o " + file("p.vdb") + " " + arguments);
+        EXPECT_EQ(result.status, ExitCode::success) << result.err;
+        return json::parse(run("info --json " + file("p.vdb")).out).at("parameters");
+    }
+};
+
+TEST_F(Options, ImpossibleOnesAreRefusedByTheirFlagsBeforeAnyFileIsRead)
+{
+    const std::string build = "build " + file("none.obj") + " -o " + file("x.vdb") + " ";
+    const auto refused = [&](const std::string& given, const std::string& said) {
+        expect_refusal(build + given, ExitCode::usage_error, {said});
+    };
+    refused("--thickness -1", "--thickness is -1, must be above 0");
+    refused("--min-quality 2", "--min-quality is 2, must be 0 or more and less than 1");
+    refused("--decimate-to -5", "--decimate-to is -5, must be a whole number");
+    refused("--samples -1", "--samples is -1, must be a whole number");
+    refused("--rho nan", "--rho is nan, must be");
+    refused("--layers 1.5", "--layers is 1.5, must be a whole number");
+    refused("--resolution many", "--resolution is many, must be a whole number");
+    refused("--method fast", "--method is fast, must be one of raw, certified, thickest");
+    refused("--refine-rounds 1 --side outward", "--refine-rounds");
+    refused("--stop-test none", "stop test is none");
+    refused("--voxel-size 1 --resolution 9", "--resolution excludes --voxel-size");
+    refused("--thickest --method raw", "--thickest excludes --method");
+    refused("--decimate-tolerance 1", "--decimate-tolerance needs --decimate-to");
+    expect_refusal("inspect " + file("none.obj") + " --voxel-size 0", ExitCode::usage_error,
+                   {"--voxel-size is 0, must be above 0"});
+    expect_refusal("repair " + file("none.obj") + " -o x.obj --sliver-height -2",
+                   ExitCode::usage_error, {"--sliver-height is -2, must be 0 or more"});
+}
+
+TEST_F(Options, FlagsWinOverAFileOfOptions)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const std::string some = preset(R"({"line_step": {"thickness": 0.25}, "grow": {"flips": false},
+        "level_set": {"resolution": 24}, "repair": {"sliver_height": 0.001},
+        "coverage": {"samples": 0}, "vdb": {"half": true}})");
+    const json given = parameters_of(sphere + some);
+    EXPECT_EQ(given.at("line_step").at("thickness"), 0.25);
+    EXPECT_EQ(given.at("level_set").at("resolution"), 24);
+    EXPECT_EQ(given.at("grow").at("flips"), false);
+    EXPECT_EQ(given.at("repair").at("sliver_height"), 0.001);
+    const json over =
+        parameters_of(sphere + some + "--thickness 0.125 --flips --no-repair --voxel-size 0.125");
+    EXPECT_EQ(over.at("line_step").at("thickness"), 0.125);
+    EXPECT_EQ(over.at("level_set").at("voxel_size"), 0.125);
+    EXPECT_EQ(over.at("grow").at("flips"), true);
+    EXPECT_TRUE(over.at("repair").is_null());
+    EXPECT_EQ(over.at("coverage").at("samples"), 0);
+    // Of two that exclude each other the flag holds.
+    const std::string voxels = preset(R"({"level_set": {"voxel_size": 0.5}})");
+    EXPECT_TRUE(parameters_of(sphere + voxels + "--resolution 20")
+                    .at("level_set")
+                    .at("voxel_size")
+                    .is_null());
+}
+
+TEST_F(Options, WhatInfoPrintsRepeatsABuild)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const json first = parameters_of(sphere + " --resolution 20 --thickness 0.25 --layers 2");
+    const std::string all = run("info --json " + file("p.vdb")).out;
+    EXPECT_EQ(parameters_of(sphere + preset(all)), first);
+}
+
+TEST_F(Options, AFileOfOptionsServesAllCommands)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const std::string some =
+        preset(R"({"level_set": {"resolution": 12}, "repair": {"cut_crossings": true}})");
+    const json inspection = json::parse(run("inspect --json " + sphere + some).out);
+    const json plain = json::parse(run("inspect --json " + sphere + " --resolution 12").out);
+    EXPECT_EQ(inspection, plain);
+    EXPECT_EQ(run("repair " + sphere + some + "-o " + file("r.obj")).status, ExitCode::success);
+}
+
+TEST_F(Options, AFileOfOptionsIsHeldToWhatThereIs)
+{
+    const std::string build = "build none.obj -o " + file("x.vdb");
+    expect_refusal(build + preset(R"({"line_step": {"thicknes": 1}})"), ExitCode::usage_error,
+                   {"preset.json: line_step.thicknes is no option"});
+    expect_refusal(build + preset(R"({"line_step": {"thickness": -1}})"), ExitCode::usage_error,
+                   {"preset.json: line_step.thickness is -1, must be above 0"});
+    expect_refusal("repair none.obj -o x.obj" + preset(R"({"colour": 1})"), ExitCode::usage_error,
+                   {"preset.json: colour is no option"});
+    expect_refusal(build + preset("{"), ExitCode::read_error, {"preset.json"});
+    expect_refusal(build + " --options " + file("none.json"), ExitCode::read_error, {"none.json"});
+}
+
+TEST_F(Options, TheToleranceOfDecimationIsRescaledToo)
+{
+    constexpr double kSmall = 1e-3;
+    TriangleMesh mesh = icosphere(1.0, 3);
+    const std::string large = mesh_file("large.obj", mesh);
+    for (openvdb::Vec3s& p : mesh.points)
+        p *= float(kSmall);
+    const std::string small = mesh_file("small.obj", mesh);
+    const std::string decimate = kCoarse + std::string(" --decimate-to 100 --decimate-tolerance ");
+    const json whole = report_of(large + decimate + "0.02").at("decimate").at("triangles");
+    EXPECT_EQ(report_of(large + decimate + "0.02 --rescale").at("decimate").at("triangles"), whole);
+    EXPECT_EQ(report_of(small + decimate + "0.00002 --rescale").at("decimate").at("triangles"),
+              report_of(small + decimate + "0.00002").at("decimate").at("triangles"));
+    EXPECT_GT(whole.get<int>(), 100); // the tolerance is what held it back
+}
+
+TEST_F(Options, InspectAndRepairTakeHoudinisFiles)
+{
+    // A box without its lid, clockwise seen from outside.
+    write_bytes(
+        folder / "box.geo",
+        R"(["pointcount",8,"vertexcount",20,"primitivecount",5,"topology",["pointref",["indices",
+                [0,1,2,3,7,6,5,4,0,4,5,1,1,5,6,2,2,6,7,3]]],"attributes",["pointattributes",[[
+                ["type","numeric","name","P"],["size",3,"storage","fpreal32","values",["size",3,"tuples",
+                [[0,0,0],[1,0,0],[1,1,0],[0,1,0],[0,0,1],[1,0,1],[1,1,1],[0,1,1]]]]]]],
+                "primitives",[[["type","Polygon_run"],["startvertex",0,"nprimitives",5,"nvertices_rle",[4,5]]]]])");
+    const Outcome inspected = run("inspect --json " + file("box.geo"));
+    EXPECT_EQ(inspected.status, ExitCode::check_failed) << inspected.err;
+    EXPECT_EQ(json::parse(inspected.out).at("boundary_loops").size(), 1u);
+    const Outcome repaired = run("repair " + file("box.geo") + " -o " + file("box.obj"));
+    EXPECT_EQ(repaired.status, ExitCode::success) << repaired.err;
+    EXPECT_EQ(run("inspect " + file("box.obj")).status, ExitCode::success);
+}
+
+std::set<std::string> flags_in(const std::string& help)
+{
+    std::set<std::string> flags;
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+        if (line.rfind("  -", 0) != 0)
+            continue;
+        std::istringstream names(line.substr(2, line.find(' ', 2) - 2));
+        for (std::string name; std::getline(names, name, ',');)
+            flags.insert(name.substr(0, name.find('{')));
+    }
+    return flags;
+}
+
+TEST_F(Options, TheSchemaHasEveryFlagOfTheHelp)
+{
+    const json schema = json::parse(run("options --json").out);
+    for (const auto& [name, command] : schema.at("commands").items()) {
+        std::set<std::string> known{"-h", "--help"};
+        for (const json& option : command.at("options")) {
+            if (!option.at("shorthand").is_null())
+                known.insert(option.at("shorthand").get<std::string>());
+            for (const json& other : option.at("names"))
+                known.insert(other.get<std::string>());
+            if (option.at("flag").is_null())
+                continue;
+            const auto flag = option.at("flag").get<std::string>();
+            known.insert(flag);
+            if (option.at("type") == "flag")
+                known.insert("--no-" + flag.substr(2));
+        }
+        EXPECT_EQ(flags_in(run(name + " --help").out), known) << name;
+    }
+    EXPECT_GE(schema.at("commands").size(), 7u);
+    EXPECT_EQ(schema.at("options").at(0).at("flag"), "--threads");
+}
+
+TEST_F(Options, TheSchemaSaysWhatThereIsToKnow)
+{
+    const json schema = json::parse(run("options --json").out);
+    for (const json& option : schema.at("commands").at("build").at("options"))
+        if (option.at("flag") == "--min-quality") {
+            EXPECT_EQ(option.at("key"), "grow.min_quality");
+            EXPECT_EQ(option.at("type"), "number");
+            EXPECT_EQ(option.at("range"), (json{{"at_least", 0.0}, {"below", 1.0}}));
+            EXPECT_EQ(option.at("default"), 0.0);
+            EXPECT_EQ(option.at("group"), "Growth");
+            return;
+        }
+    FAIL() << "there is no --min-quality";
+}
+
+TEST_F(Options, BashCompletesCommandsFlagsAndChoices)
+{
+    const Outcome script = run("options --complete bash");
+    ASSERT_EQ(script.status, ExitCode::success) << script.err;
+    write_bytes(folder / "complete.sh", script.out);
+    const auto completed = [&](const std::string& words, int at) {
+        write_bytes(folder / "ask.sh", "set -eu\n. " + file("complete.sh") + "\nCOMP_WORDS=(" +
+                                           words + ")\nCOMP_CWORD=" + std::to_string(at) +
+                                           "\n_vdb_shell || true\necho \"${COMPREPLY[@]-}\"\n");
+        const std::string line = "bash " + file("ask.sh") + " >" + file("said") + " 2>&1";
+        EXPECT_EQ(std::system(line.c_str()), 0) << read_bytes(folder / "said");
+        return read_bytes(folder / "said");
+    };
+    EXPECT_EQ(completed("vdb_shell bu", 1), "build\n");
+    EXPECT_EQ(completed("vdb_shell build --thickness-", 2), "--thickness-grid --thickness-scale\n");
+    EXPECT_EQ(completed("vdb_shell build --no-fl", 2), "--no-flips\n");
+    EXPECT_EQ(completed("vdb_shell build --method ''", 3), "raw certified thickest\n");
+    EXPECT_EQ(completed("vdb_shell build --method t", 3), "thickest\n");
+    EXPECT_EQ(completed("vdb_shell build " + file("complete"), 2), file("complete.sh") + "\n");
+    EXPECT_EQ(completed("vdb_shell check --thick", 2), "\n");
+    expect_refusal("options --complete fish", ExitCode::usage_error, {"fish", "bash"});
+}
+
+} // namespace
+} // namespace vdb_shell::test
