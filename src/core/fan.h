@@ -41,7 +41,7 @@ public:
     }
 
     /// The triangles meet each other in their common corners and edges only: seen along some
-    /// direction they lie side by side around the apex, once (docs/theory.md, section 7).
+    /// direction they lie side by side around the apex, once (docs/theory.md, "Fans").
     bool surely_embedded() const;
     /// A bit for each triangle that has only the apex in common with triangle i.
     std::uint32_t surely_apart_from(std::size_t i) const;

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the half-spaces that a vertex is to stay in, and the direction in which volume is won.
+// Gives: about where its convex problem has its minimum. In float32 and a few steps, because
+// nothing rests on it: every move is tested exactly afterwards (docs/theory.md, "Barrier").
+
 #include "growth/barrier.h"
 
 #include "core/four_floats.h"
@@ -13,8 +18,11 @@ namespace vdb_shell::growth
 namespace
 {
 
+// More steps change neither fill nor time much: the neighbours move before the vertex's next turn.
 constexpr int kNewtonSteps = 3;
-// Newton decrements: above the first the damped step is needed, below the second it has converged.
+// Newton decrements. Below the first full steps converge quadratically, as they do for every
+// self-concordant function (Boyd and Vandenberghe 2004, "Convex Optimization", 9.6); below the
+// second it has converged.
 constexpr double kDamped = 0.25;
 constexpr double kConverged = 0.05;
 
@@ -70,7 +78,7 @@ void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
 
 } // namespace
 
-void Bounds::clear(const Vec3d& here, double scale)
+void LinearBounds::clear(const Vec3d& here, double scale)
 {
     block_.clear();
     size_ = 0;
@@ -78,7 +86,7 @@ void Bounds::clear(const Vec3d& here, double scale)
     scale_ = 1 / scale;
 }
 
-void Bounds::add(const Vec3d& n, const Vec3d& p)
+void LinearBounds::add(const Vec3d& n, const Vec3d& p)
 {
     const double length = n.length();
     if (!(length > 0))
@@ -87,7 +95,7 @@ void Bounds::add(const Vec3d& n, const Vec3d& p)
     add_unit(Vec3s(n * inverse), n.dot(here_ - p) * inverse);
 }
 
-void Bounds::add_unit(const Vec3s& n, double value)
+void LinearBounds::add_unit(const Vec3s& n, double value)
 {
     const float scaled = static_cast<float>(value * scale_);
     if (!(scaled > 0))
@@ -104,9 +112,9 @@ void Bounds::add_unit(const Vec3s& n, double value)
     b.weight[lane] = 1.0f;
 }
 
-VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
+VDB_SHELL_TWO_TARGETS void LinearBounds::add_prism(const std::array<Vec3d, 5>& corner)
 {
-    // By axis; the last three lanes are not asked for.
+    // By axis; the last three lanes are not read.
     std::array<Lanes, 3> at;
     for (int k = 0; k < 3; ++k) {
         const DoubleLanes four =
@@ -141,7 +149,7 @@ VDB_SHELL_TWO_TARGETS void Bounds::add_prism(const std::array<Vec3d, 5>& corner)
     b.weight = value > 0 ? Lanes{} + 1.0F : Lanes{};
 }
 
-void Bounds::weigh(std::size_t first, float weight)
+void LinearBounds::weigh(std::size_t first, float weight)
 {
     for (std::size_t i = first; i < size_; ++i)
         block_[i / kLanes].weight[i % kLanes] = weight;
@@ -151,11 +159,11 @@ void Bounds::weigh(std::size_t first, float weight)
 class Newton
 {
 public:
-    Newton(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness)
+    Newton(LinearBounds& bounds, const Ball& ball, const Vec3d& gradient, double weight)
         : bounds_(bounds),
-          gradient_(gradient / (softness * bounds.scale_)), ball_{(ball.centre - bounds.here_) *
-                                                                      bounds.scale_,
-                                                                  ball.radius * bounds.scale_}
+          gradient_(gradient / (weight * bounds.scale_)), ball_{(ball.centre - bounds.here_) *
+                                                                    bounds.scale_,
+                                                                ball.radius * bounds.scale_}
     {
     }
 
@@ -168,7 +176,7 @@ public:
             const double trace = h.xx + h.yy + h.zz;
             if (!(trace > 0))
                 break;
-            // Bounds may leave a direction free.
+            // The bounds may leave a direction free.
             h.xx += 1e-9 * trace, h.yy += 1e-9 * trace, h.zz += 1e-9 * trace;
             if (!solve_positive(h, g, dx))
                 break;
@@ -197,7 +205,7 @@ private:
     void slope(Vec3d& gradient, Curvature& h) const
     {
         Lanes gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
-        for (const Bounds::Block& b : bounds_.block_) {
+        for (const LinearBounds::Block& b : bounds_.block_) {
             const Lanes inverse = 1.0f / b.value;
             const Lanes x = b.x * inverse, y = b.y * inverse, z = b.z * inverse;
             const Lanes wx = b.weight * x, wy = b.weight * y, wz = b.weight * z;
@@ -215,7 +223,7 @@ private:
     {
         const Vec3s d(dx);
         Lanes least = Lanes{} + std::numeric_limits<float>::max();
-        for (const Bounds::Block& b : bounds_.block_) {
+        for (const LinearBounds::Block& b : bounds_.block_) {
             // Of the values over the slopes only the positive ones are ahead.
             Lanes down = -(b.x * d[0] + b.y * d[1] + b.z * d[2]);
             raise_to(down, Lanes{} + 1e-30f);
@@ -230,7 +238,7 @@ private:
     void move_by(const Vec3d& dx)
     {
         const Vec3s d(dx);
-        for (Bounds::Block& b : bounds_.block_) {
+        for (LinearBounds::Block& b : bounds_.block_) {
             const Lanes value = b.value + (b.x * d[0] + b.y * d[1] + b.z * d[2]);
             // A bound overstepped by a damped step no longer counts.
             b.weight = value > 0 ? b.weight : Lanes{};
@@ -238,15 +246,15 @@ private:
         }
     }
 
-    Bounds& bounds_;
+    LinearBounds& bounds_;
     Vec3d gradient_, x_{0.0};
     Ball ball_;
 };
 
-VDB_SHELL_TWO_TARGETS Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient,
-                                            double softness)
+VDB_SHELL_TWO_TARGETS Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball,
+                                            const Vec3d& gradient, double weight)
 {
-    return Newton(bounds, ball, gradient, softness).minimum();
+    return Newton(bounds, ball, gradient, weight).minimum();
 }
 
 } // namespace vdb_shell::growth

@@ -11,7 +11,7 @@ namespace vdb_shell::growth
 
 /// Linear bounds on one vertex, value(x) = n.(x - here) + value > 0, scaled to unit n: only where
 /// they vanish matters. In float32, lane by lane: the barrier proposes, the exact tests decide.
-class Bounds
+class LinearBounds
 {
 public:
     /// Starts anew around the position of the vertex; `scale` is the length that is to be 1.
@@ -46,10 +46,10 @@ struct Ball {
     double radius;
 };
 
-/// Minimum over x of gradient . x - softness * (sum of weight * log(bound(x)) + log(r^2 - |x -
-/// c|^2)), the last term only for a ball of finite radius: convex, three unknowns. Damped Newton
-/// from where the bounds were cleared. A few steps only: the vertex is asked again in the next
-/// sweep.
-Vec3d barrier_minimum(Bounds& bounds, const Ball& ball, const Vec3d& gradient, double softness);
+/// Minimum over x of gradient . x - weight * (sum of c_i log(bound_i(x)) + log(r^2 - |x - c|^2)),
+/// where c_i is what weigh() gave the bound and the last term is there only for a ball of finite
+/// radius: convex, three unknowns (docs/theory.md, "Barrier"). Damped Newton from where the bounds
+/// were cleared. A few steps only: the vertex comes up again in the next sweep.
+Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball, const Vec3d& gradient, double weight);
 
 } // namespace vdb_shell::growth

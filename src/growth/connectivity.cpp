@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the triangles. Gives: who is beside whom, and a colouring by which vertices can be moved
+// at the same time with the same result as one after the other (docs/theory.md, "Same result for
+// any number of threads").
+
 #include "growth/connectivity.h"
 
 #include "core/parallel.h"
@@ -30,7 +35,8 @@ void build_incidence(Connectivity& c)
 
 void build_neighbours(Connectivity& c)
 {
-    // Two by each triangle at most: listed with room for that, then moved together.
+    // Each triangle gives a vertex at most two neighbours, so all vertices can list theirs at the
+    // same time, each with room for that; the lists are then moved together.
     const auto vertices = static_cast<std::size_t>(c.vertices);
     std::vector<int> wide(2 * c.incident.size()), count(vertices);
     for_each_index(vertices, [&](std::size_t i) {
@@ -62,6 +68,7 @@ void label_components(Connectivity& c)
             continue;
         stack.assign(1, seed);
         c.component[seed] = c.components;
+        // By edges only: two fans that touch in a vertex have been split into copies before.
         while (!stack.empty()) {
             const int v = stack.back();
             stack.pop_back();
@@ -87,6 +94,7 @@ void colour_vertices(Connectivity& c)
             taken_for[colour[u]] = v;
     };
     for (int v = 0; v < c.vertices; ++v) {
+        // All vertices within two edges: what they take, v cannot have.
         for (const int u : neighbours(c, v)) {
             take(u, v);
             for (const int w : neighbours(c, u))

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a valid shell. Leaves: a valid shell with other diagonals: the tets of a turned prism are
+// tested exactly first, and both prisms at an edge turn together, so that the mesh stays conforming
+// (docs/theory.md, "Splits").
+
 #include "growth/diagonals.h"
 
 #include "core/parallel.h"
@@ -13,8 +18,9 @@ namespace vdb_shell::growth
 namespace
 {
 
-constexpr int kQualityPasses = 20;
-constexpr double kMargin = 1e-12; ///< relative: less is rounding
+// Relative. A diagonal that is better by less than the rounding of its score could be turned back
+// and forth for ever.
+constexpr double kMargin = 1e-12;
 
 int rank_of(const PrismOrder& order, int local)
 {
@@ -52,6 +58,7 @@ double log_room(const GrowState& s, int f, int order)
     for (const OrientedTet& tet : tables().three[order]) {
         if (dropped(s, f, tet.pillar))
             continue;
+        // The same sum as the barrier's, so that a turned diagonal gives vertices room to move.
         const double v = volume6_of(tet_corners(s, f, tet));
         if (v <= 0)
             return -std::numeric_limits<double>::max() / 4; // two of them have a sum
@@ -147,6 +154,7 @@ std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Sco
                                  const Join& join)
 {
     const int f = seam.from.face, g = seam.across.face;
+    // One and the same edge runs one way in one prism and the other way in the other.
     const int f_order = exchanged(s.order[f], seam.from.local, (seam.from.local + 1) % 3);
     const int g_order = exchanged(s.order[g], seam.across.local, (seam.across.local + 2) % 3);
     if (f_order < 0 || g_order < 0)
@@ -173,6 +181,7 @@ std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join
         for (std::size_t i = 0; i < look.size(); ++i) {
             if (!look[i])
                 continue;
+            // Scores have not changed since it was looked at, unless one of its prisms has turned.
             look[i] = 0;
             const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
             const auto [f_order, g_order] = better_orders(s, seams.seam[i], score, join);
@@ -196,6 +205,8 @@ std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join
 
 void order_by_length(GrowState& s)
 {
+    // The long pillar's outer end goes with the short one's inner end: of the two diagonals that is
+    // the shorter one where pillars are about parallel.
     std::vector<double> length(s.b.size());
     for (std::size_t v = 0; v < length.size(); ++v)
         length[v] = (s.b[v] - s.a[v]).length();
@@ -218,9 +229,10 @@ std::size_t flip_for_room(GrowState& s)
 
 std::size_t flip_for_quality(GrowState& s)
 {
+    // Positions stay, so the ratios of all twelve tets are computed once for all passes.
     const std::vector<std::array<double, 6>> worst = worst_mean_ratios(s);
     return flip_passes(
-        s, kQualityPasses,
+        s, s.schedule.quality.diagonal_passes,
         [&](int f, int order) { return worst[std::size_t(f)][std::size_t(order)]; },
         [](double f, double g) { return std::min(f, g); });
 }

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the surface and the caps. Leaves: the state with every vertex pinned, which is valid where
+// the surface is embedded, and all that growth asks of the surface as a whole.
+
 #include "growth/grow_state.h"
 
 #include "core/parallel.h"
@@ -26,6 +30,7 @@ std::vector<int> first_of_each_component(const Connectivity& c)
     std::vector<int> witness;
     std::vector<std::uint8_t> seen(static_cast<std::size_t>(c.components), 0);
     for (int v = 0; v < c.vertices; ++v) {
+        // A vertex of no triangle belongs to no surface.
         if (seen[c.component[v]] || star(c, v).size() == 0)
             continue;
         seen[c.component[v]] = 1;
@@ -45,21 +50,23 @@ double longest_finite(const std::vector<double>& lengths)
 } // namespace
 
 GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
-                     const std::vector<double>& cap)
+                     const std::vector<double>& cap, const GrowthSchedule& schedule)
 {
     GrowState s;
     s.mesh = &mesh;
+    s.schedule = schedule;
     s.a.assign(outer.begin(), outer.end());
-    s.b = s.home = s.a;
+    s.b = s.trust_centre = s.a;
     s.cap = cap;
     s.pinned.assign(outer.size(), 0);
-    s.reach.assign(outer.size(), 0.0);
+    s.trust_radius.assign(outer.size(), 0.0);
     s.order.assign(mesh.faces.size(), 0);
     std::vector<FloatBox> boxes(mesh.faces.size());
     for_each_index(
         boxes.size(),
         [&](std::size_t f) { boxes[f] = float_box_of(outer_corners(s, static_cast<int>(f))); },
         256);
+    // Outer triangles never move: their tree is built once, that of the inner ones in each round.
     s.outer_tree.build(std::move(boxes));
     const Box all = bounds_of(s.a);
     s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
@@ -67,6 +74,7 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     for (const Vec3d& p : s.a)
         for (int k = 0; k < 3; ++k)
             largest = std::max(largest, std::abs(p[k]));
+    // A reversed surface has a negative volume, and what lies behind its triangles has no bound.
     s.bounded = volume6(s.a, mesh.faces) > 0;
     // Inner points of a bounded side lie within the surface's own box, others beyond it.
     if (!s.bounded)
@@ -76,10 +84,20 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     return s;
 }
 
+PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s)
+{
+    PrismShell shell{mesh.points, mesh.points, mesh.triangles, {}};
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        if (!s.pinned[v])
+            shell.inner[v] = openvdb::Vec3s(s.b[v]);
+    return shell;
+}
+
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
 {
     if (p.empty())
         return 0;
+    // Relative to a point of the surface, so that a solid far from the origin loses no digits.
     const Vec3d origin = p[0];
     double sum = 0;
     for (const Vec3I& f : faces)
@@ -90,6 +108,7 @@ double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
 Vec3d inner_volume6_gradient(const GrowState& s, int v)
 {
     const Connectivity& m = *s.mesh;
+    // The volume is affine in one vertex: twice the area vector of its star, pointing outward.
     Vec3d sum(0.0);
     for (const FaceCorner& at : star(m, v)) {
         const Vec3d u = s.b[m.corner(at.face, (at.local + 1) % 3)] - s.b[v];
@@ -101,6 +120,7 @@ Vec3d inner_volume6_gradient(const GrowState& s, int v)
 
 double fill_of(const GrowState& s)
 {
+    // Outward, the grown surface encloses more than the given one, not less.
     const double ratio = volume6(s.b, s.mesh->faces) / volume6(s.a, s.mesh->faces);
     return s.bounded ? 1 - ratio : ratio - 1;
 }

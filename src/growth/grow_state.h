@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The shell while it grows: positions, splits, pins, and the exact tests one move needs.
+// The shell while it grows: positions, splits, pins, and what a round of moves needs.
 
 #include "growth/box.h"
 #include "growth/connectivity.h"
 #include "growth/predicates.h"
 #include "growth/prism.h"
+#include "vdb_shell/growth/schedule.h"
+#include "vdb_shell/shell/prism_shell.h"
 
 #include <cstdint>
 #include <vector>
@@ -14,31 +16,45 @@
 namespace vdb_shell::growth
 {
 
+/// Rounding a proposed place to float32 must not take a vertex out of its trust region. A place is
+/// proposed this share of the radius inside it, and boxes are drawn as much wider than a step; so a
+/// radius has to be so many roundings of a coordinate that this share of it is two of them.
+inline constexpr double kRadiusMargin = 0.01;
+inline constexpr double kLeastRadiusInRoundings = 2 / kRadiusMargin;
+
+/// Invariant between any two moves: all prisms pass the exact tests, and no two triangles touch
+/// (docs/theory.md, "Growth").
 struct GrowState {
     const Connectivity* mesh = nullptr;
+    GrowthSchedule schedule;
     std::vector<Vec3d> a, b;          ///< outer and inner points: float32 values held as doubles
     std::vector<std::uint8_t> pinned; ///< b_v = a_v; the tets that own the pillar do not exist
     std::vector<std::uint8_t> order;  ///< by face: index into PrismTables::order
-    bool twelve = true;               ///< ask all 12 tets of a prism, not the chosen 3
+    bool twelve = true;               ///< test all 12 tets of a prism, not the chosen 3
     std::vector<double> cap;          ///< upper bound of |b-a|, may be infinite
     double diagonal = 0;              ///< of the surface's box: the scale of all step lengths
     bool bounded = true; ///< the side to fill has a volume; the outside of a surface has none
 
     double rounding = 0; ///< how far rounding to float32 can move a point
 
-    // Broad phase: the boxes of the inner tree hold the triangles while every vertex stays within
-    // `reach` of `home`.
-    std::vector<Vec3d> home;
-    std::vector<double> reach;
+    /// In a round a vertex stays within `trust_radius` of `trust_centre`; so long the boxes of the
+    /// inner tree hold the inner triangles.
+    std::vector<Vec3d> trust_centre;
+    std::vector<double> trust_radius;
     BoxTree inner_tree, outer_tree;
 
-    /// One vertex per component, to see a move that would swallow a whole other component.
+    /// One vertex per component, to see a move that would enclose a whole other component.
     std::vector<int> witness;
 };
 
 GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
-                     const std::vector<double>& cap);
+                     const std::vector<double>& cap, const GrowthSchedule& schedule = {});
 
+/// Pillars no longer than this are lost in the rounding.
+inline double shortest_pillar(const GrowState& s)
+{
+    return 2 * s.rounding;
+}
 /// Position of prism corner c (0..2 outer, 3..5 inner) of face f.
 inline const Vec3d& corner_of(const GrowState& s, int f, int c)
 {
@@ -85,6 +101,9 @@ inline CornerIds inner_ids(const GrowState& s, int f)
         v += s.pinned[v] ? 0 : s.mesh->vertices;
     return id;
 }
+
+/// The shell as it is between two rounds, without reasons for its stops.
+PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s);
 
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a direction for each vertex. Leaves: directions along which pillars can be longer: each
+// triangle of a star bounds the pillar by a half-space, and visibility, the smallest cosine to
+// their normals, says how much of it is left.
+
 #include "growth/line_directions.h"
 
 #include "core/parallel.h"
@@ -15,14 +20,9 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// Directions with less than this are replaced: their lines would be stuck at once.
-constexpr double kPoorVisibility = 0.02;
-// The optimum over a star touches at most three normals, so all triples are tried; beyond this
-// many normals an iteration is cheaper.
+// The optimum over a star touches at most three normals, so all triples are tried; with more
+// normals than this an iteration is cheaper.
 constexpr std::size_t kSmallStar = 16;
-constexpr int kSmoothIterations = 8;
-// Neighbours whose own direction is off by more than 60 degrees have no say.
-constexpr double kSmoothCosine = 0.5;
 
 Vec3d unit_or_zero(const Vec3d& v)
 {
@@ -68,6 +68,7 @@ Vec3d most_visible_of_few(const std::vector<Vec3d>& n)
 /// "An iterative procedure for computing the minimum of a quadratic form on a convex set").
 Vec3d most_visible_of_many(const std::vector<Vec3d>& n)
 {
+    // Far more than any star of the meshes tried needed: a bound for termination.
     constexpr int kIterations = 4000;
     Vec3d p = n[0];
     for (int i = 0; i < kIterations; ++i) {
@@ -100,23 +101,44 @@ std::vector<std::vector<Vec3d>> star_normals(const TriangleMesh& mesh)
     return normals;
 }
 
+/// Sum of the directions of the vertices beside v, those that point elsewhere or lie far away less
+/// than others, unit length. On a closed surface each neighbour comes up twice, which cancels.
+Vec3d mean_of_neighbours(const TriangleMesh& mesh, const VertexTriangles& around, std::size_t v,
+                         const std::vector<Vec3d>& start, const std::vector<Vec3d>& now,
+                         double least_cosine)
+{
+    Vec3d sum(0.0);
+    for (const std::uint32_t t : around.around(v))
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t u = mesh.triangles[t][k];
+            const double weight = std::max(0.0, start[v].dot(start[u]) - least_cosine);
+            const double length = (Vec3d(mesh.points[u]) - Vec3d(mesh.points[v])).length();
+            if (u != v && length > 0)
+                sum += now[u] * (weight * weight / length);
+        }
+    return unit_or_zero(sum);
+}
+
 } // namespace
 
 Vec3d most_visible(const std::vector<Vec3d>& normals)
 {
     if (normals.empty())
         return Vec3d(0.0);
+    // Both ways give the optimum; they differ in rounding alone.
     return normals.size() <= kSmallStar ? most_visible_of_few(normals)
                                         : most_visible_of_many(normals);
 }
 
-void mend_directions(const TriangleMesh& mesh, Directions& directions)
+void mend_directions(const TriangleMesh& mesh, Directions& directions,
+                     const InitialSchedule& schedule)
 {
     const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
     for_each_index(mesh.points.size(), [&](std::size_t v) {
-        if (normals[v].empty() || directions.visibility[v] > kPoorVisibility)
+        if (normals[v].empty() || directions.visibility[v] > schedule.poor_visibility)
             return;
         const Vec3d d = most_visible(normals[v]);
+        // Where no direction sees the whole star, as at some saddles, the given one may be as good.
         const double visibility = smallest_dot(normals[v], d);
         if (visibility <= directions.visibility[v])
             return;
@@ -125,30 +147,25 @@ void mend_directions(const TriangleMesh& mesh, Directions& directions)
     });
 }
 
-void smooth_directions(const TriangleMesh& mesh, Directions& directions)
+void smooth_directions(const TriangleMesh& mesh, Directions& directions,
+                       const InitialSchedule& schedule)
 {
     const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
     const VertexTriangles around = triangles_around_vertices(mesh.points.size(), mesh.triangles);
+    // Weights come from the directions as they were given: from smoothed ones a crease would wear
+    // away, pass by pass.
     const std::vector<Vec3d> start = directions.inward;
-    const std::vector<double> floor = directions.visibility;
-    for (int iteration = 0; iteration < kSmoothIterations; ++iteration) {
+    const std::vector<double> given = directions.visibility;
+    for (int pass = 0; pass < schedule.smoothing_passes; ++pass) {
         const std::vector<Vec3d> old = directions.inward;
         for_each_index(mesh.points.size(), [&](std::size_t v) {
-            if (floor[v] <= 0)
+            if (given[v] <= 0)
                 return;
-            Vec3d sum(0.0);
-            // On a closed surface each neighbour comes up twice, which cancels in the direction.
-            for (const std::uint32_t t : around.around(v))
-                for (int k = 0; k < 3; ++k) {
-                    const std::uint32_t u = mesh.triangles[t][k];
-                    const double weight = std::max(0.0, start[v].dot(start[u]) - kSmoothCosine);
-                    const double length = (Vec3d(mesh.points[u]) - Vec3d(mesh.points[v])).length();
-                    if (u != v && length > 0)
-                        sum += old[u] * (weight * weight / length);
-                }
-            const Vec3d d = unit_or_zero(old[v] + unit_or_zero(sum));
+            const Vec3d d = unit_or_zero(old[v] + mean_of_neighbours(mesh, around, v, start, old,
+                                                                     schedule.smoothing_cosine));
             const double visibility = smallest_dot(normals[v], d);
-            if (visibility < std::min(0.3, 0.5 * floor[v]))
+            if (visibility <
+                std::min(schedule.kept_visibility, schedule.kept_visibility_share * given[v]))
                 return;
             directions.inward[v] = d;
             directions.visibility[v] = visibility;

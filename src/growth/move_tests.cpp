@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The exact tests that every accepted move passes: tets positive, cap kept, no contact, no
+// component enclosed. Doubles decide nearly all of them for certain, several at a time; what they
+// leave open goes to the exact predicates. Which conditions these are: docs/theory.md, "The whole
+// shell".
+
 #include "growth/move_tests.h"
 
 #include "core/orient3d_filter.h"
@@ -64,7 +70,7 @@ bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
 
 /// Inner triangle `moved` against those around its corner u that hold neither v nor `done`, whose
 /// triangles have been looked at; where u is pinned also against the outer ones.
-bool kin_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int u, int done)
+bool adjacent_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int u, int done)
 {
     const Connectivity& m = *s.mesh;
     for (const FaceCorner& at : star(m, u)) {
@@ -134,8 +140,8 @@ bool clear_around(const GrowState& s, int u, int v, const Vec3d& x)
     return true;
 }
 
-/// kin_clear_at beside a pin, where kin are outer triangles too.
-bool kin_clear_beside_a_pin(const GrowState& s, int v, const Vec3d& x)
+/// adjacent_clear_at beside a pin, where outer triangles share corners with inner ones too.
+bool adjacent_clear_beside_a_pin(const GrowState& s, int v, const Vec3d& x)
 {
     const Connectivity& m = *s.mesh;
     const Slice<FaceCorner> fan = star(m, v);
@@ -146,7 +152,7 @@ bool kin_clear_beside_a_pin(const GrowState& s, int v, const Vec3d& x)
                 return false;
         const int next = m.corner(at.face, (at.local + 1) % 3);
         for (const int u : {next, m.corner(at.face, (at.local + 2) % 3)})
-            if (!kin_clear_around(s, v, moved, u, u == next ? -1 : next))
+            if (!adjacent_clear_around(s, v, moved, u, u == next ? -1 : next))
                 return false;
     }
     return true;
@@ -313,7 +319,7 @@ bool InnerTriangle::meets_outer(int g) const
     return improper_contact(corners_, inner_ids(s_, face_), outer_corners(s_, g), outer_ids(s_, g));
 }
 
-void tet_bounds(const GrowState& s, int v, Bounds& out)
+void tet_bounds(const GrowState& s, int v, LinearBounds& out)
 {
     const Connectivity& m = *s.mesh;
     for (const FaceCorner& at : star(m, v)) {
@@ -346,10 +352,10 @@ bool inner_fan_surely_embedded(const GrowState& s, int u)
     return set_inner_fan(s, u, u, s.b[u], fan) && fan.surely_embedded();
 }
 
-bool kin_clear_at(const GrowState& s, int v, const Vec3d& x)
+bool adjacent_clear_at(const GrowState& s, int v, const Vec3d& x)
 {
     if (beside_a_pin(s, v))
-        return kin_clear_beside_a_pin(s, v, x);
+        return adjacent_clear_beside_a_pin(s, v, x);
     // Triangles with a common corner are both in the fan of that corner.
     const auto clear = [&](int u) { return clear_around(s, u, v, x); };
     const Slice<int> around = neighbours(*s.mesh, v);

@@ -68,7 +68,7 @@ private:
 };
 
 /// Appends the linear bounds that the tets around v put on b_v.
-void tet_bounds(const GrowState& s, int v, Bounds& out);
+void tet_bounds(const GrowState& s, int v, LinearBounds& out);
 
 bool beside_a_pin(const GrowState& s, int v);
 
@@ -82,6 +82,6 @@ bool inner_fan_surely_embedded(const GrowState& s, int u);
 
 /// Would no inner triangle around v meet one that shares a corner with it, with b_v = x? Exact.
 /// Reads nothing of vertices further than two edges from v.
-bool kin_clear_at(const GrowState& s, int v, const Vec3d& x);
+bool adjacent_clear_at(const GrowState& s, int v, const Vec3d& x);
 
 } // namespace vdb_shell::growth

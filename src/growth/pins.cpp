@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a valid shell with pinned vertices. Leaves: a valid shell in which those have a pillar
+// that the exact tests allow one. A release is a change like any other: all prisms and inner
+// triangles around the vertex pass the tests before and after it (docs/theory.md, "Growth").
+
 #include "growth/pins.h"
 
 #include "core/parallel.h"
@@ -11,8 +16,6 @@ namespace vdb_shell::growth
 {
 namespace
 {
-
-constexpr int kLengths = 16; ///< of a ladder that halves
 
 /// The direction that serves the tets on v's pillar best, with the neighbours where they are: each
 /// of these tets asks for one side of a plane through a_v, whatever the pillar's length.
@@ -32,13 +35,14 @@ Vec3d best_direction(const GrowState& s, int v)
     return most_visible(normals);
 }
 
-/// The mean pillar beside v: what it would have had without the pin.
+/// The mean pillar beside v, about what it would have had without the pin.
 double longest_try(const GrowState& s, int v)
 {
     double sum = 0;
     for (const int u : neighbours(*s.mesh, v))
         sum += (s.b[u] - s.a[u]).length();
-    return std::min(sum / std::max(1, neighbours(*s.mesh, v).size()), 0.05 * s.diagonal);
+    return std::min(sum / std::max(1, neighbours(*s.mesh, v).size()),
+                    s.schedule.pins.longest * s.diagonal);
 }
 
 bool star_valid(const GrowState& s, int v)
@@ -55,11 +59,14 @@ bool release(GrowState& s, int v, double length)
     const Vec3d d = best_direction(s, v);
     if (d.lengthSqr() == 0)
         return false;
+    // The tests have to see the vertex as released, so it is pinned again where they fail.
     s.pinned[v] = 0;
-    for (int i = 0; i < kLengths && length > 2 * s.rounding; ++i, length *= 0.5) {
+    for (int i = 0; i < s.schedule.pins.lengths && length > shortest_pillar(s);
+         ++i, length *= 0.5) {
         const Vec3d x = end_within_cap(s, v, d, length);
         if (x == s.a[v])
             break;
+        // Contact tests see only where a triangle ends up, not what it has passed over.
         if (swallows_component(s, v, x))
             continue;
         s.b[v] = x;
@@ -77,10 +84,11 @@ void box_in(GrowState& s, const std::vector<double>& longest)
     std::vector<FloatBox> boxes(s.mesh->faces.size());
     for_each_index(boxes.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
-        double reach = 0;
+        double most = 0;
         for (int k = 0; k < 3; ++k)
-            reach = std::max(reach, longest[s.mesh->corner(f, k)]);
-        boxes[i] = float_box_of(inner_corners(s, f), reach > 0 ? 1.01 * reach + s.rounding : 0);
+            most = std::max(most, longest[s.mesh->corner(f, k)]);
+        const double wider = most > 0 ? (1 + kRadiusMargin) * most + s.rounding : 0;
+        boxes[i] = float_box_of(inner_corners(s, f), wider);
     });
     s.inner_tree.refit(boxes);
 }
@@ -89,6 +97,7 @@ void box_in(GrowState& s, const std::vector<double>& longest)
 
 int release_pins(GrowState& s, const std::vector<double>& visibility)
 {
+    // One after another in index order, never in parallel: each release changes what the next sees.
     std::vector<int> candidates;
     std::vector<double> longest(s.b.size(), 0.0);
     for (int v = 0; v < s.mesh->vertices; ++v)

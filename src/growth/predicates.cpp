@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Contacts of triangles by signs of determinants. Doubles decide nearly all signs for certain; what
+// they leave open goes to core/exact.h, so every answer is that of the float32 coordinates as they
+// are stored. What counts as a contact: docs/theory.md, "The whole shell".
+
 #include "growth/predicates.h"
 
 namespace vdb_shell::growth
@@ -96,8 +101,9 @@ bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
     if (shared == 1)
         return segment_touches_triangle(s[(si + 1) % 3], s[(si + 2) % 3], t) ||
                segment_touches_triangle(t[(ti + 1) % 3], t[(ti + 2) % 3], s);
+    // One and the same triangle: all three corners are pinned.
     if (shared == 3)
-        return false; // one and the same triangle: all three Corners are pinned
+        return false;
     int so = 0, to = 0;
     for (int i = 0; i < 3; ++i) {
         if (!s_shared[i])
@@ -105,6 +111,7 @@ bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
         if (!t_shared[i])
             to = i;
     }
+    // Two triangles at an edge meet elsewhere only if they are folded flat onto each other.
     if (orient(s[0], s[1], s[2], t[to]) != 0)
         return false;
     return exact::on_one_side(Vec3s(s[(so + 1) % 3]), Vec3s(s[(so + 2) % 3]), Vec3s(s[so]),

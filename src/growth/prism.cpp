@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The tets of a prism under each of the six orders of its corners, worked out by the compiler from
+// the one rule of docs/theory.md, "Splits", so that no table is written by hand.
+
 #include "growth/prism.h"
 
 namespace vdb_shell::growth
@@ -18,7 +22,7 @@ constexpr OrientedTet make(int pillar, int p, int q, int r, int s, bool swap)
                 : OrientedTet{{u(p), u(q), u(r), u(s)}, pillar};
 }
 
-// Owner z: (ax ay az bz), owner y: (ax ay by bz), owner x: (ax bx by bz).
+// As in the theory: owner z: (ax ay az bz), owner y: (ax ay by bz), owner x: (ax bx by bz).
 constexpr std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
 {
     const int x = o[0], y = o[1], z = o[2];
@@ -27,7 +31,7 @@ constexpr std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
             make(z, x, y, z, z + 3, !odd)};
 }
 
-// The twelve tets are the union over the six splits; each shows up in some split.
+// A tet is known by the set of its corners, a bit mask.
 constexpr std::array<OrientedTet, 12> union_of_splits(const PrismTables& t)
 {
     std::array<OrientedTet, 12> out{};
@@ -58,6 +62,7 @@ constexpr void add_from_b(PrismTables& t, int set, const OrientedTet& o)
         for (int i = 0, n = 0; i < 4; ++i)
             if (i != k)
                 rest[n++] = o.corner[i];
+        // An odd number of exchanges has brought the apex to the end: one more keeps the sign.
         if ((3 - k) % 2 == 1)
             rest = {rest[1], rest[0], rest[2]};
         const int l = o.corner[k] - 3;

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a finished shell. Gives: the triangles whose halving is predicted to win most, by the
+// measure that the user chose. The cutting itself is resample/refine_triangles.h.
+
 #include "vdb_shell/growth/refine.h"
 
 #include "core/parallel.h"
@@ -45,15 +49,15 @@ std::vector<double> shortfalls(const PrismShell& shell)
     return missing;
 }
 
-std::vector<double> contact_worth(const PrismShell& shell)
+std::vector<double> contact_gain(const PrismShell& shell)
 {
     const std::vector<double> missing = shortfalls(shell);
-    std::vector<double> worth = areas_of(shell);
-    for (std::size_t t = 0; t < worth.size(); ++t) {
+    std::vector<double> gain = areas_of(shell);
+    for (std::size_t t = 0; t < gain.size(); ++t) {
         const Vec3I& c = shell.triangles[t];
-        worth[t] *= (missing[c[0]] + missing[c[1]] + missing[c[2]]) / 3;
+        gain[t] *= (missing[c[0]] + missing[c[1]] + missing[c[2]]) / 3;
     }
-    return worth;
+    return gain;
 }
 
 } // namespace
@@ -75,7 +79,7 @@ const char* name_of(RefineEnd end)
     return "rounds";
 }
 
-std::vector<double> refinement_worth(const PrismShell& shell, RefineBy by)
+std::vector<double> refinement_gain(const PrismShell& shell, RefineBy by)
 {
     switch (by) {
     case RefineBy::voids:
@@ -85,26 +89,29 @@ std::vector<double> refinement_worth(const PrismShell& shell, RefineBy by)
     case RefineBy::contacts:
         break;
     }
-    return contact_worth(shell);
+    return contact_gain(shell);
 }
 
-std::vector<std::uint32_t> triangles_to_cut(const std::vector<double>& worth, double share)
+std::vector<std::uint32_t> triangles_to_cut(const std::vector<double>& gain, double share)
 {
-    std::vector<std::uint32_t> order(worth.size());
+    std::vector<std::uint32_t> order(gain.size());
     std::iota(order.begin(), order.end(), 0U);
+    // Ties by index, so that the result does not depend on the sort.
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return worth[a] > worth[b]; });
-    const double wanted = share * std::accumulate(worth.begin(), worth.end(), 0.0);
+                     [&](std::uint32_t a, std::uint32_t b) { return gain[a] > gain[b]; });
+    const double wanted = share * std::accumulate(gain.begin(), gain.end(), 0.0);
+    // The fewest triangles that have the wanted share: those of the largest gain first.
     double sum = 0;
     std::size_t count = 0;
-    while (count < order.size() && worth[order[count]] > 0 && sum < wanted)
-        sum += worth[order[count++]];
+    while (count < order.size() && gain[order[count]] > 0 && sum < wanted)
+        sum += gain[order[count++]];
     order.resize(count);
     return order;
 }
 
 double RefineReport::gain_per_tet(std::size_t round) const
 {
+    // A round may make fewer tets than the one before, where triangles were left out for rounding.
     if (round == 0 || rounds[round].tets <= rounds[round - 1].tets)
         return 0;
     return (rounds[round].fill - rounds[round - 1].fill) /

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Closest points of pairs of triangles, eight pairs at a time. Floats find out which edges come
+// closest and which pairs are far enough apart to need no plane; doubles compute the slab. Which
+// slab is found decides only how thick the shell gets (docs/theory.md, "Which planes").
+
 #include "growth/separation.h"
 
 #include "core/four_floats.h"
@@ -29,8 +34,8 @@ struct PairLanes {
     alignas(kLanesAlignment) std::array<float, kLanes> enough;
 };
 
-/// What floats see of each pair. Rooms are in units of its size, the largest coordinate.
-struct Sight {
+/// What floats tell of each pair. Rooms are in units of its size, the largest coordinate.
+struct FloatRooms {
     unsigned wide = 0;  ///< a bit a lane: certainly wider than enough
     unsigned close = 0; ///< edges so close that floats cannot choose
     std::array<float, kLanes>
@@ -158,7 +163,7 @@ VDB_SHELL_LANES_PART void closest_edges(const PairCorners& c, Lanes& least, Lane
         }
 }
 
-VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
+VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, FloatRooms& rooms)
 {
     // Not copied from here on: of copies GCC makes halves, which the processor waits for.
     PairCorners c;
@@ -198,16 +203,16 @@ VDB_SHELL_TWO_TARGETS void look_at(const PairLanes& pairs, Sight& sight)
     Lanes widest = across_middles;
     raise_to(widest, across_first);
     raise_to(widest, across_second);
-    sight.wide = bits_of(widest > enough);
+    rooms.wide = bits_of(widest > enough);
 
     Lanes squared, edges;
     closest_edges(c, squared, edges);
-    sight.close = bits_of(squared < kClose * kClose);
-    store_lanes(edges, sight.edges.data());
+    rooms.close = bits_of(squared < kClose * kClose);
+    store_lanes(edges, rooms.edges.data());
     across_middles *= size, across_first *= size, across_second *= size;
-    store_lanes(across_middles, sight.across_middles.data());
-    store_lanes(across_first, sight.across_first.data());
-    store_lanes(across_second, sight.across_second.data());
+    store_lanes(across_middles, rooms.across_middles.data());
+    store_lanes(across_first, rooms.across_first.data());
+    store_lanes(across_second, rooms.across_second.data());
 }
 
 VDB_SHELL_LANES_PART void load(const PointRow& row, std::size_t first, DoublePoint& out)
@@ -292,7 +297,7 @@ VDB_SHELL_TWO_TARGETS void slabs_across(const PairLanes& pairs, const PointRow& 
             length[i] = std::sqrt(squared[i]);
         std::array<FourFloats, 3> n;
         for (std::size_t k = 0; k < 3; ++k) {
-            // The wall is made of this rounded normal, so its slab has to be measured with it.
+            // The plane is made of this rounded normal, so its slab has to be measured with it.
             n[k] = __builtin_convertvector(way[k] / length, FourFloats);
             m[k] = __builtin_convertvector(n[k], DoubleLanes);
         }
@@ -331,13 +336,14 @@ Slab slab_in(const SlabLanes& slabs, std::size_t lane)
 }
 
 /// Other directions that keep the triangles of a pair apart: a corner of one may be next to the
-/// inside of the other, across whose own plane they are then. Of these the widest that floats have
-/// seen; false where it is no wider than `gap`.
-bool other_way(const PairLanes& lanes, const Sight& sight, std::size_t lane, double gap, Vec3d& way)
+/// inside of the other, across whose own plane they are then. Of these the widest that floats
+/// have found; false where it is no wider than `gap`.
+bool other_way(const PairLanes& lanes, const FloatRooms& rooms, std::size_t lane, double gap,
+               Vec3d& way)
 {
-    const auto first = static_cast<double>(sight.across_first[lane]),
-               second = static_cast<double>(sight.across_second[lane]),
-               middles = static_cast<double>(sight.across_middles[lane]);
+    const auto first = static_cast<double>(rooms.across_first[lane]),
+               second = static_cast<double>(rooms.across_second[lane]),
+               middles = static_cast<double>(rooms.across_middles[lane]);
     const double widest = std::max({first, second, middles});
     if (gap >= widest)
         return false;
@@ -383,11 +389,11 @@ void between_all_edges(const PairLanes& lanes, unsigned which, PointRow& between
 }
 
 /// From the closest point of the first triangle's edges to that of the second's.
-void between_closest_edges(const PairLanes& lanes, const Sight& sight, PointRow& between)
+void between_closest_edges(const PairLanes& lanes, const FloatRooms& rooms, PointRow& between)
 {
     PointRow p, p_end, q, q_end;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const auto which = static_cast<std::size_t>(sight.edges[lane]);
+        const auto which = static_cast<std::size_t>(rooms.edges[lane]);
         const std::size_t i = which / 3, j = which % 3;
         p.set(lane, lanes.corner[i].get(lane));
         p_end.set(lane, lanes.corner[(i + 1) % 3].get(lane));
@@ -395,7 +401,7 @@ void between_closest_edges(const PairLanes& lanes, const Sight& sight, PointRow&
         q_end.set(lane, lanes.corner[3 + (j + 1) % 3].get(lane));
     }
     between_edges({p, p_end, q, q_end}, between);
-    if (const unsigned close = sight.close & ~sight.wide)
+    if (const unsigned close = rooms.close & ~rooms.wide)
         between_all_edges(lanes, close, between);
 }
 
@@ -408,10 +414,10 @@ void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab)
         return;
     PairLanes lanes;
     lay_out(query, count, lanes);
-    Sight sight;
-    look_at(lanes, sight);
+    FloatRooms rooms;
+    look_at(lanes, rooms);
     PointRow ways;
-    between_closest_edges(lanes, sight, ways);
+    between_closest_edges(lanes, rooms, ways);
     SlabLanes across, other;
     slabs_across(lanes, ways, across);
     unsigned doubtful = 0;
@@ -420,9 +426,9 @@ void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab)
         constexpr double kAll = 1 - 1e-6;
         const double gap = across.gap[i];
         Vec3d way;
-        if ((sight.wide >> i & 1U) != 0U ||
+        if ((rooms.wide >> i & 1U) != 0U ||
             (gap > 0 && gap * gap > kAll * kAll * across.squared[i]) ||
-            !other_way(lanes, sight, i, gap, way))
+            !other_way(lanes, rooms, i, gap, way))
             continue;
         ways.set(i, way);
         doubtful |= 1U << i;
@@ -432,7 +438,7 @@ void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab)
     for (std::size_t i = 0; i < count; ++i) {
         const bool rather = (doubtful >> i & 1U) != 0U && other.gap[i] > across.gap[i];
         slab[i] = slab_in(rather ? other : across, i);
-        if ((sight.wide >> i & 1U) != 0U)
+        if ((rooms.wide >> i & 1U) != 0U)
             slab[i].gap = std::numeric_limits<double>::infinity();
     }
 }

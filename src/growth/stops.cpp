@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the finished shell. Gives: for each vertex what would fail first if its pillar were a
+// little longer, by the same exact tests that held it, so that the report can say why a shell is no
+// thicker. Changes nothing but the boxes of the inner tree.
+
 #include "growth/stops.h"
 
 #include "core/parallel.h"
@@ -12,10 +17,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-constexpr double kProbe = 1e-3; ///< share of the diagonal
-constexpr double kAtCap =
-    1e-6; ///< relative; the rounding of the coordinates stops short of the cap
-
+/// What a query of the trees finds, kept from one vertex to the next for its memory.
 struct Near {
     BoxTree::Near inner, outer;
 };
@@ -38,13 +40,14 @@ StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
     return met;
 }
 
-/// What the triangles around v meet first, with b_v = x.
+/// What the triangles around v meet first, with b_v = x. Cheap tests come first: whether it is an
+/// inner contact or an outer one when both happen is a matter of order, the same for all vertices.
 StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);
-    // At a pin kin are outer triangles too.
-    const bool kin_apart = !beside_a_pin(s, v);
-    if (kin_apart && !kin_clear_at(s, v, x))
+    // Around a pin the inner triangles share corners with outer ones too, and the fans do not tell.
+    const bool fans_clear = !beside_a_pin(s, v);
+    if (fans_clear && !adjacent_clear_at(s, v, x))
         return StopReason::inner_contact;
     Box all;
     for (const FaceCorner& at : fan)
@@ -55,13 +58,13 @@ StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
         const InnerTriangle moved(s, at, x);
         const FloatBox box = float_box_of(moved.corners());
         for (const FaceCorner& other : fan)
-            if (!kin_apart && other.face > at.face &&
+            if (!fans_clear && other.face > at.face &&
                 moved.meets_inner(other.face, moved_corners(s, other, x)))
                 return StopReason::inner_contact;
-        const auto asked = [&](int g) {
-            return s.mesh->incident_to(g, v) || (kin_apart && s.mesh->share_a_corner(at.face, g));
+        const auto tested = [&](int g) {
+            return s.mesh->incident_to(g, v) || (fans_clear && s.mesh->share_a_corner(at.face, g));
         };
-        if (near.inner.any_overlap(box, [&](int g) { return !asked(g) && moved.meets_inner(g); }))
+        if (near.inner.any_overlap(box, [&](int g) { return !tested(g) && moved.meets_inner(g); }))
             return StopReason::inner_contact;
         if (near.outer.any_overlap(box, [&](int g) { return moved.meets_outer(g); }))
             return StopReason::outer_contact;
@@ -73,9 +76,10 @@ StopReason reason_at(const GrowState& s, int v, double step, Near& near)
 {
     if (s.pinned[v])
         return StopReason::pinned;
+    // The cap first: a vertex at its cap has no room for a step that could meet anything.
     const Vec3d arm = s.b[v] - s.a[v];
     const double length = arm.length(), room = s.cap[v] - length;
-    if (std::isfinite(room) && room <= kAtCap * s.cap[v] + s.rounding)
+    if (std::isfinite(room) && room <= s.schedule.stops.at_cap * s.cap[v] + s.rounding)
         return StopReason::thickness;
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
@@ -88,7 +92,7 @@ StopReason reason_at(const GrowState& s, int v, double step, Near& near)
 
 std::vector<StopReason> probe_stops(GrowState& s)
 {
-    const double step = kProbe * s.diagonal;
+    const double step = s.schedule.stops.step * s.diagonal;
     std::vector<FloatBox> boxes(s.mesh->faces.size());
     for_each_index(boxes.size(), [&](std::size_t f) {
         boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));

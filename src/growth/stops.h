@@ -7,7 +7,7 @@
 namespace vdb_shell::growth
 {
 
-/// What holds each vertex back, asked with one short step along its pillar: thickness, prism,
+/// What holds each vertex back, tested with one short step along its pillar: thickness, prism,
 /// inner_contact, outer_contact, pinned; none where the step would be allowed. Rebuilds the broad
 /// phase.
 std::vector<StopReason> probe_stops(GrowState& s);

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: inner points near which tets are inverted. Leaves: fewer of those. Each vertex is moved by
+// as little as puts the bounds of its tets right in least squares, with a weight on staying where
+// it is: bounds that are at odds with each other, as they are where a whole patch is sheared, must
+// not throw it about. Nothing is promised; what is left is found by the exact tests.
+
 #include "growth/untangle.h"
 
 #include "core/lanes.h"
@@ -19,18 +25,8 @@ namespace vdb_shell::growth
 namespace
 {
 
-// Over the shortest inner edge around a vertex.
-constexpr double kRoom = 0.1;     ///< what each bound is to keep
-constexpr double kMostMove = 1.0; ///< of one vertex, in one sweep
-// The same in the rounding of a coordinate: below it float32 cannot tell.
-constexpr double kRoomInRoundings = 4, kMostMoveInRoundings = 20;
-// Share of that rounding, far above the error of a determinant in doubles.
+// Share of the rounding of a coordinate, far above the error of a determinant in doubles.
 constexpr double kPositive = 1e-3;
-/// Weight of staying, where a bound has 1: bounds that are at odds with each other, as they are
-/// where a whole patch is sheared, should not throw a vertex about. More of it across the inner
-/// surface: most of what is wrong can be put right along it, where nothing is lost.
-constexpr double kStay = 1.0, kStayAcross = 10.0;
-constexpr int kSteps = 6; ///< while the bounds that are not kept change
 
 /// The bounds of half the tets of one prism, lane by lane: n.(x - here) + value, unit n. A tet that
 /// does not count has n = 0 and a value that is always enough.
@@ -121,39 +117,42 @@ VDB_SHELL_LANES_PART double sum(const DoubleLanes& lanes)
 }
 
 /// Gradient and curvature, by columns of the lower triangle, of half the squares of what the bounds
-/// lack of `room` at x.
-struct Lack {
+/// are short of `room` at x.
+struct Shortfall {
     DoubleLanes gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
 };
 
-VDB_SHELL_LANES_PART void add_lack(const Bounds4& b, const Vec3d& x, double room, Lack& lack)
+VDB_SHELL_LANES_PART void add_shortfall(const Bounds4& b, const Vec3d& x, double room,
+                                        Shortfall& shortfall)
 {
     const DoubleLanes open = room - b.value - (b.x * x[0] + b.y * x[1] + b.z * x[2]);
     const DoubleLanes by = open > 0 ? open : DoubleLanes{};
     const DoubleLanes nx = open > 0 ? b.x : DoubleLanes{}, ny = open > 0 ? b.y : DoubleLanes{},
                       nz = open > 0 ? b.z : DoubleLanes{};
-    lack.gx += by * nx, lack.gy += by * ny, lack.gz += by * nz;
-    lack.xx += nx * nx, lack.xy += nx * ny, lack.xz += nx * nz;
-    lack.yy += ny * ny, lack.yz += ny * nz, lack.zz += nz * nz;
+    shortfall.gx += by * nx, shortfall.gy += by * ny, shortfall.gz += by * nz;
+    shortfall.xx += nx * nx, shortfall.xy += nx * ny, shortfall.xz += nx * nz;
+    shortfall.yy += ny * ny, shortfall.yz += ny * nz, shortfall.zz += nz * nz;
 }
 
-/// Damped Gauss-Newton steps on the squares of what the bounds lack of `room`.
-VDB_SHELL_TWO_TARGETS Vec3d least_move(const Scratch& bounds, double room, const Vec3d& across)
+/// Damped Gauss-Newton steps on the squares of what the bounds are short of `room`.
+VDB_SHELL_TWO_TARGETS Vec3d least_move(const Scratch& bounds, double room, const Vec3d& across,
+                                       const MendSchedule& schedule)
 {
-    openvdb::Mat3d stay = openvdb::Mat3d::identity() * kStay;
+    openvdb::Mat3d stay = openvdb::Mat3d::identity() * schedule.weight_of_staying;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
-            stay(i, k) += kStayAcross * across[i] * across[k];
+            stay(i, k) += schedule.weight_of_staying_across * across[i] * across[k];
     Vec3d x(0.0);
-    for (int step = 0; step < kSteps; ++step) {
-        Lack lack;
+    for (int step = 0; step < schedule.newton_steps; ++step) {
+        Shortfall shortfall;
         for (const Bounds4& b : bounds)
-            add_lack(b, x, room, lack);
-        const Vec3d g(sum(lack.gx), sum(lack.gy), sum(lack.gz));
+            add_shortfall(b, x, room, shortfall);
+        const Vec3d g(sum(shortfall.gx), sum(shortfall.gy), sum(shortfall.gz));
         if (g == Vec3d(0.0))
             break;
-        const double xy = sum(lack.xy), xz = sum(lack.xz), yz = sum(lack.yz);
-        const openvdb::Mat3d h(sum(lack.xx), xy, xz, xy, sum(lack.yy), yz, xz, yz, sum(lack.zz));
+        const double xy = sum(shortfall.xy), xz = sum(shortfall.xz), yz = sum(shortfall.yz);
+        const openvdb::Mat3d h(sum(shortfall.xx), xy, xz, xy, sum(shortfall.yy), yz, xz, yz,
+                               sum(shortfall.zz));
         x += (h + stay).inverse(0.0) * g;
     }
     return x;
@@ -165,10 +164,12 @@ Vec3d better_place(const GrowState& s, int v, Scratch& bounds)
     const Vec3d& here = s.b[v];
     if (list_bounds(s, v, bounds) > kPositive * s.rounding)
         return here;
+    const MendSchedule& schedule = s.schedule.mend;
     const double edge = shortest_inner_edge(s, v);
-    Vec3d move = least_move(bounds, std::max(kRoom * edge, kRoomInRoundings * s.rounding),
-                            inner_normal(s, v));
-    const double most = kMostMove * edge + kMostMoveInRoundings * s.rounding;
+    const double room = std::max(schedule.room * edge, schedule.room_in_roundings * s.rounding);
+    Vec3d move = least_move(bounds, room, inner_normal(s, v), schedule);
+    const double most =
+        schedule.longest_move * edge + schedule.longest_move_in_roundings * s.rounding;
     const double length = move.length();
     if (length > most)
         move *= most / length;

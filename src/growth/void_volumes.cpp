@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a finished shell. Gives: where its void is, triangle by triangle, so that refinement can
+// cut those under which most is left to fill.
+
 #include "growth/void_volumes.h"
 
 #include "core/box_pairs.h"
@@ -16,6 +20,7 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
+// Rays a triangle: the square of this. Sixteen tell triangles apart well enough to rank them.
 constexpr int kPiecesAlong = 4;
 
 /// Calls visit(place) for the centres of kPiecesAlong^2 equal pieces of a triangle.

@@ -5,7 +5,7 @@
 #include "vdb_shell/options/option.h"
 
 #include "core/stage_progress.h"
-#include "growth/start.h"
+#include "growth/initialise.h"
 #include "shell/pillar.h"
 
 #include <cassert>
@@ -80,7 +80,7 @@ ScaleReport scale_thickness(PrismShell& shell, const PrismSplit& split, const Sc
     const Pillars pillars = scaled_pillars(shell, options.factor);
     const growth::Connectivity connectivity = growth::connect(shell.outer.size(), shell.triangles);
     GrowState s = state_of(connectivity, shell, split, pillars, test);
-    growth::settle_start(s, pillars.directions, pillars.length, progress);
+    growth::shrink_until_valid(s, pillars.directions, pillars.length, progress);
     for (std::size_t v = 0; v < shell.outer.size(); ++v) {
         if (shell.pinned(v))
             continue;

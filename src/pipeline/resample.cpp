@@ -60,7 +60,7 @@ std::optional<RefineEnd> end_of(const RefineReport& report, const RefineOptions&
 /// The old pillars, and between them those in the middles of the halved edges.
 GrowStart start_on(const RefinedMesh& refined, const PrismShell& shell)
 {
-    GrowStart start{shell.inner, {}};
+    GrowStart start{GrowFrom::shell, shell.inner, {}};
     for (const auto& [a, b] : refined.halved)
         start.inner.emplace_back(0.5 * (Vec3d(shell.inner[a]) + Vec3d(shell.inner[b])));
     return start;
@@ -70,9 +70,9 @@ GrowStart start_on(const RefinedMesh& refined, const PrismShell& shell)
 bool cut_triangles(ShellResult& result, const ShellOptions& options, RefineReport& report,
                    GrowStart& start, Interrupter* interrupter)
 {
-    const std::vector<double> worth = refinement_worth(inward_layer(result), options.refine.by);
+    const std::vector<double> gain = refinement_gain(inward_layer(result), options.refine.by);
     RefinedMesh refined =
-        refine_triangles(result.surface, triangles_to_cut(worth, options.refine.share),
+        refine_triangles(result.surface, triangles_to_cut(gain, options.refine.share),
                          most_triangles(options), interrupter);
     report.rounds.back().cut = refined.cut;
     report.rounds.back().barred_edges = refined.barred_edges;

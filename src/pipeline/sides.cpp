@@ -85,9 +85,9 @@ void grow_and_scale(const SideJob& job, SideResult& side)
 {
     const ShellOptions& options = job.options;
     GrowResult grown =
-        grow_shell(job.surface, side.lines.directions, side.lines.lengths,
-                   largest_lengths(job.surface, options.line_step, job.thickness_grid),
-                   options.grow, options.split, job.interrupter, &job.start);
+        grow_shell_from(job.start, job.surface, side.lines.directions, side.lines.lengths,
+                        largest_lengths(job.surface, options.line_step, job.thickness_grid),
+                        options.grow, options.split, job.interrupter);
     side.grow = grown.report;
     if (options.scale.factor < 1.0)
         side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
@@ -100,8 +100,8 @@ std::vector<std::uint32_t> vertices_to_step(const SideJob& job)
 {
     if (job.options.grow.method == Method::raw)
         return vertices_of_coarsest(job.surface, {});
-    return job.start.inner.empty() ? vertices_of_coarsest(job.surface, job.start.levels)
-                                   : std::vector<std::uint32_t>();
+    return job.start.from == GrowFrom::shell ? std::vector<std::uint32_t>()
+                                             : vertices_of_coarsest(job.surface, job.start.levels);
 }
 
 SideResult build_side(const SideJob& job)
@@ -153,7 +153,7 @@ GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surfa
 {
     if (options.grow.method == Method::raw || options.side == Side::outward)
         return {};
-    return {{}, coarse_levels(surface, options.grow)};
+    return {GrowFrom::levels, {}, coarse_levels(surface, options.grow)};
 }
 
 std::string why_not_sparse(const ShellOptions& options, const ShellResult& result,

@@ -28,7 +28,7 @@ std::array<Vec3d, 6> prism(std::uint64_t id)
 }
 
 /// All twelve tets' bounds on inner corner l, added one by one.
-void add_one_by_one(const std::array<Vec3d, 6>& corner, int l, Bounds& bounds)
+void add_one_by_one(const std::array<Vec3d, 6>& corner, int l, LinearBounds& bounds)
 {
     for (int i = 0; i < tables().from_b_count[kTwelve][l]; ++i) {
         const std::array<std::uint8_t, 3>& base = tables().from_b[kTwelve][l][i].base;
@@ -45,7 +45,7 @@ TEST(Barrier, APrismAtOnceBoundsAsItsTetsDoOneByOne)
             const std::array<Vec3d, 6> corner = prism(id);
             const Vec3d here = corner[3 + l];
             const int next = (l + 1) % 3, last = (l + 2) % 3;
-            Bounds one_by_one, at_once;
+            LinearBounds one_by_one, at_once;
             one_by_one.clear(here, 0.1);
             at_once.clear(here, 0.1);
             add_one_by_one(corner, l, one_by_one);
@@ -68,7 +68,7 @@ TEST(Barrier, APrismAtOnceBoundsAsItsTetsDoOneByOne)
 
 TEST(Barrier, TheMinimumBetweenTwoPlanesIsWhereTheirPushesCancel)
 {
-    Bounds bounds;
+    LinearBounds bounds;
     bounds.clear(Vec3d(0, 0, 0.5), 1.0);
     bounds.add(Vec3d(0, 0, 2), Vec3d(0, 0, 0));
     bounds.add(Vec3d(0, 0, -3), Vec3d(0, 0, 1));

@@ -3,10 +3,10 @@
 #include "vdb_shell/mesh/normals.h"
 
 #include "core/stage_progress.h"
+#include "growth/initialise.h"
 #include "growth/move_tests.h"
 #include "growth/pins.h"
 #include "growth/predicates.h"
-#include "growth/start.h"
 #include "support/files.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
@@ -451,8 +451,8 @@ TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
     const Case c = case_of(test::icosphere(1, 1));
     const growth::Connectivity mesh = growth::connect(c.mesh.points.size(), c.mesh.triangles);
     growth::GrowState s = growth::make_state(mesh, c.mesh.points, c.cap);
-    growth::settle_start(s, c.directions, std::vector<double>(s.b.size(), 0.5),
-                         StageProgress(nullptr, "test"));
+    growth::shrink_until_valid(s, c.directions, std::vector<double>(s.b.size(), 0.5),
+                               StageProgress(nullptr, "test"));
     // Neighbours too: each is released beside pins that are not yet.
     for (const int v : {0, 1, 11}) {
         s.pinned[v] = 1;

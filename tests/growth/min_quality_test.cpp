@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "growth/improve_quality.h"
+#include "growth/raise_quality.h"
 
 #include "core/exact.h"
 #include "support/stacks.h"

@@ -56,7 +56,7 @@ void expect_as_all_pairs(const GrowState& s, std::uint64_t seed)
                 step[static_cast<int>(k)] =
                     random.unit(18 * static_cast<std::uint64_t>(v) + 3 * i + k) - 0.5;
             const Vec3d x = rounded(s.b[v] + step * (0.1 * double(1 << i)));
-            const bool found = kin_clear_at(s, v, x);
+            const bool found = adjacent_clear_at(s, v, x);
             EXPECT_EQ(found, clear_by_all_pairs(s, v, x)) << "vertex " << v;
             ++(found ? clear : meets);
         }
@@ -64,7 +64,7 @@ void expect_as_all_pairs(const GrowState& s, std::uint64_t seed)
     EXPECT_GT(meets, 30);
 }
 
-TEST(KinClear, IsWhatAllPairsWithACommonCornerSay)
+TEST(AdjacentClear, IsWhatAllPairsWithACommonCornerSay)
 {
     const TriangleMesh mesh = test::torus(2.0, 0.7, 12, 8);
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
@@ -77,7 +77,7 @@ TEST(KinClear, IsWhatAllPairsWithACommonCornerSay)
     expect_as_all_pairs(s, 2);
 }
 
-TEST(KinClear, HoldsWhereMoreTrianglesMeetThanAFanTakes)
+TEST(AdjacentClear, HoldsWhereMoreTrianglesMeetThanAFanTakes)
 {
     // A cone of 40 triangles above one of 40 below.
     TriangleMesh mesh;

@@ -81,10 +81,10 @@ TEST(Refine, VoidBetweenSheetsIsSharedByThem)
 
 TEST(Refine, TakesTheFewestTrianglesThatMakeUpTheShare)
 {
-    const std::vector<double> worth{1, 4, 0, 3, 2};
-    EXPECT_EQ(triangles_to_cut(worth, 0.4), (std::vector<std::uint32_t>{1}));
-    EXPECT_EQ(triangles_to_cut(worth, 0.5), (std::vector<std::uint32_t>{1, 3}));
-    EXPECT_EQ(triangles_to_cut(worth, 1.0), (std::vector<std::uint32_t>{1, 3, 4, 0}));
+    const std::vector<double> gain{1, 4, 0, 3, 2};
+    EXPECT_EQ(triangles_to_cut(gain, 0.4), (std::vector<std::uint32_t>{1}));
+    EXPECT_EQ(triangles_to_cut(gain, 0.5), (std::vector<std::uint32_t>{1, 3}));
+    EXPECT_EQ(triangles_to_cut(gain, 1.0), (std::vector<std::uint32_t>{1, 3, 4, 0}));
     EXPECT_TRUE(triangles_to_cut({0, 0}, 1.0).empty());
 }
 
@@ -93,7 +93,7 @@ TEST(Refine, ContactsMarkTheShortPillarThatIsHeldBack)
     const TriangleMesh sphere = icosphere(1.0, 2);
     PrismShell shell = radial_shell(sphere, [](std::size_t v) { return v == 20 ? 0.2 : 0.5; });
     const auto marked = [&] {
-        return triangles_to_cut(refinement_worth(shell, RefineBy::contacts), 1.0);
+        return triangles_to_cut(refinement_gain(shell, RefineBy::contacts), 1.0);
     };
     EXPECT_TRUE(marked().empty()); // held by the thickness: the user's wish
     shell.stop[20] = StopReason::inner_contact;

@@ -2,8 +2,8 @@
 #include "growth/untangle.h"
 
 #include "core/counter_random.h"
+#include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
-#include "growth/start.h"
 #include "support/shapes.h"
 
 #include <tbb/global_control.h>
@@ -160,13 +160,13 @@ int all_contacts(const GrowState& s)
     return count;
 }
 
-TEST(SettleCarried, EndsValidAndLosesLittleWhereLittleIsWrong)
+TEST(MendProlonged, EndsValidAndLosesLittleWhereLittleIsWrong)
 {
     NoisySphere sphere(0.0);
     // All but one end at a tenth of the radius; that one goes through the middle and beyond.
     std::vector<double> lengths(sphere.s.a.size(), 0.9);
     lengths[100] = 1.15;
-    settle_carried(sphere.s, radial(sphere), lengths, StageProgress(nullptr, "test"));
+    mend_prolonged(sphere.s, radial(sphere), lengths, StageProgress(nullptr, "test"));
     EXPECT_EQ(invalid_prisms(sphere.s), 0);
     EXPECT_EQ(all_contacts(sphere.s), 0);
     EXPECT_EQ(std::count(sphere.s.pinned.begin(), sphere.s.pinned.end(), 1), 0);
@@ -176,10 +176,10 @@ TEST(SettleCarried, EndsValidAndLosesLittleWhereLittleIsWrong)
     EXPECT_LT(short_ones, 12);
 }
 
-TEST(SettleCarried, EndsEvenWhereEverythingIsWrong)
+TEST(MendProlonged, EndsEvenWhereEverythingIsWrong)
 {
     NoisySphere sphere(0.0);
-    settle_carried(sphere.s, radial(sphere), std::vector<double>(sphere.s.a.size(), 1.5),
+    mend_prolonged(sphere.s, radial(sphere), std::vector<double>(sphere.s.a.size(), 1.5),
                    StageProgress(nullptr, "test"));
     EXPECT_EQ(invalid_prisms(sphere.s), 0);
     EXPECT_EQ(all_contacts(sphere.s), 0);

@@ -14,7 +14,8 @@ namespace vdb_shell
 {
 
 /// The proof that a shell is free of inverted and of overlapping tets, or what stands against it.
-/// Conditions of docs/theory.md, all decided exactly on the stored float32 coordinates.
+/// Conditions of docs/theory.md, "The whole shell", all decided exactly on the stored float32
+/// coordinates.
 struct Certificate {
     PrismTest test = PrismTest::twelve_tets;
     Defect<std::uint32_t> bad_prisms; ///< prisms with a tet that is not positive, by triangle

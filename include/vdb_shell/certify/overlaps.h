@@ -20,8 +20,8 @@ using PrismIndex = std::array<std::uint32_t, 2>; ///< triangle and layer
 /// What can be said tet by tet where the whole is not certified: which tets overlap, and which are
 /// sound by themselves. A tet is certified when it is positive and its interior has no point in
 /// common with any other tet, flat ones aside; a prism when all its tets are. All decided exactly
-/// on the float32 coordinates (docs/theory.md, section 5). Nothing is said of how certified tets
-/// touch: that is what conformity and the certificate of the whole are for.
+/// on the float32 coordinates (docs/theory.md, "A surface that crosses itself"). Nothing is said
+/// of how certified tets touch: that is what conformity and the certificate of the whole are for.
 struct Overlaps {
     std::size_t tets = 0;
     std::size_t prisms = 0;                ///< those with at least one tet

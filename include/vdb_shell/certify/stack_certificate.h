@@ -13,7 +13,7 @@ namespace vdb_shell
 /// The certificate of a stack of layers: that of each layer, and of the whole against other
 /// components. Layers of one component cannot overlap when each of them is certified: their numbers
 /// of tets over a point, w_k - w_k+1 in the winding numbers of the surfaces, add up to w_0 - w_n,
-/// which is at most 1 (docs/theory.md).
+/// which is at most 1 (docs/theory.md, "Layers, and shells scaled down").
 struct StackCertificate {
     std::vector<Certificate> layers; ///< from the outermost to the innermost
     /// Only asked where there are several layers and several components: triangles of the outermost

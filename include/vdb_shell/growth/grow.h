@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/growth/schedule.h"
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/resample/coarsen.h"
 #include "vdb_shell/shell/tessellate.h"
@@ -20,7 +21,8 @@ enum class Method {
     raw,       ///< the lengths of line stepping as they are (the paper): overlaps are reported, not
                ///< prevented
     certified, ///< grown from a valid start, all twelve tets of each prism positive: every diagonal
-               ///< and every thinner shell is valid too (docs/theory.md)
+               ///< and every thinner shell is valid too (docs/theory.md, "One prism: the
+               ///< twelve tets")
     thickest,  ///< the same, then on with only the three chosen tets of each prism positive
 };
 const NameTable<Method>& names(Method);
@@ -52,6 +54,8 @@ struct GrowOptions {
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.
     double min_quality = 0;
+    /// Every other number that steers growth. None bears on validity.
+    GrowthSchedule schedule;
 };
 OptionList describe(GrowOptions& options);
 
@@ -76,11 +80,18 @@ std::vector<std::uint32_t> vertices_of_coarsest(const TriangleMesh& mesh,
                                                 const std::vector<Coarsened>& levels);
 
 /// What growth sets out from.
+enum class GrowFrom {
+    lines,  ///< the lines of the mesh itself
+    levels, ///< GrowStart::levels, or the lines of the mesh where there are none
+    shell,  ///< GrowStart::inner
+};
+
 struct GrowStart {
-    /// A shell to grow on from in place of lines, that of a coarser surface on the refined one: one
-    /// point per vertex, the vertex itself where it is pinned. Empty: there is none.
+    GrowFrom from = GrowFrom::lines;
+    /// GrowFrom::shell: the inner points of a shell to grow on from, as that of a coarser surface
+    /// on the refined one: one per vertex, the vertex itself where it is pinned.
     std::vector<openvdb::Vec3s> inner;
-    /// Otherwise: surfaces to begin on (coarse_levels); none: on the mesh itself.
+    /// GrowFrom::levels: surfaces to begin on, of coarse_levels.
     std::vector<Coarsened> levels;
 };
 
@@ -92,8 +103,9 @@ struct GrowResult {
 
 /// Grows the shell of an embedded surface to the thickest that the levers find, through valid
 /// states only: every accepted move is tested exactly on the float32 coordinates, so no tet inverts
-/// and no two surfaces touch, nor does one component end up inside another's shell.
-/// `start` gives the first lengths to try (line stepping) where they exceed half the ray to the
+/// and no two surfaces touch, nor does one component end up inside another's shell (docs/theory.md,
+/// "Growth"). Begins on coarse_levels of the mesh.
+/// `stepped` gives the first lengths to try (line stepping) where they exceed half the ray to the
 /// other side; they bound nothing. `cap` bounds
 /// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).
 /// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back.
@@ -104,14 +116,20 @@ struct GrowResult {
 /// Precondition: closed, manifold mesh, oriented so that the side to fill lies behind its
 /// triangles; one entry per vertex in all lists; cap not negative, and finite where that side has
 /// no bound (a reversed surface: shell/sides.h); method not raw. On a surface that crosses itself
-/// the result is some shell; only a certificate tells. Without `from`, growth begins on
-/// coarse_levels of the mesh. With from->inner it starts there instead of with lines, after moving,
-/// or else shortening, what is not valid in it; `start` is not read then. With levels, `start` is
-/// of use at vertices_of_coarsest alone and may be 0 elsewhere. Throws InvalidOption when
-/// free_rounds is negative or min_quality out of range, Cancelled.
+/// the result is some shell; only a certificate tells. Throws InvalidOption when free_rounds is
+/// negative or min_quality out of range, Cancelled.
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
-                      const LineLengths& start, const std::vector<double>& cap,
+                      const LineLengths& stepped, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,
-                      Interrupter* interrupter = nullptr, const GrowStart* from = nullptr);
+                      Interrupter* interrupter = nullptr);
+
+/// The same from another start. From a shell growth goes on after moving, or else shortening, what
+/// is not valid in it, and `stepped` is not read. With levels, `stepped` is of use at
+/// vertices_of_coarsest alone and may be 0 elsewhere. Precondition: start.inner has one point per
+/// vertex if it is a shell; start.levels are those of this mesh.
+GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
+                           const Directions& directions, const LineLengths& stepped,
+                           const std::vector<double>& cap, const GrowOptions& options,
+                           const SplitOptions& split, Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell

@@ -29,8 +29,8 @@ struct RefineOptions {
     /// shell there is. 0: none.
     int rounds = 0;
     RefineBy by = RefineBy::contacts;
-    /// In each round as many triangles are cut, those most worth it first, as make up this share of
-    /// the sum over all; more than 0, up to 1.
+    /// In each round as many triangles are cut, those of the largest predicted gain first, as make
+    /// up this share of the sum over all; more than 0, up to 1.
     double share = 0.5;
     /// No round makes a surface whose prisms, in all layers, could give more tets than this.
     std::optional<std::size_t> max_tets;
@@ -72,10 +72,11 @@ struct RefineReport {
     double gain_per_tet(std::size_t round) const;
 };
 
-/// How much each triangle is worth cutting by the given measure, 0 or more.
-std::vector<double> refinement_worth(const PrismShell& shell, RefineBy by);
+/// The predicted gain of cutting each triangle, by the given measure, 0 or more.
+std::vector<double> refinement_gain(const PrismShell& shell, RefineBy by);
 
-/// The triangles to cut, most worth first: the fewest that have `share` of the sum.
-std::vector<std::uint32_t> triangles_to_cut(const std::vector<double>& worth, double share);
+/// The triangles to cut, those of the largest predicted gain first: the fewest that have `share` of
+/// the sum.
+std::vector<std::uint32_t> triangles_to_cut(const std::vector<double>& gain, double share);
 
 } // namespace vdb_shell

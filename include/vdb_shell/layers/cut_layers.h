@@ -38,15 +38,15 @@ struct LayerResult {
 /// Surfaces of the given stack stay as they are. All layers keep the diagonals of the one they were
 /// cut from.
 ///
-/// With twelve positive tets in a prism any cut gives positive tets (docs/theory.md), but rounding
-/// may spoil them, and with the chosen three alone there is no such promise. A point whose tets are
-/// not positive is moved: along its pillar, to next floats, towards its neighbours. Where
-/// that does not help the pillars of the prism stay whole. So a certified shell is
-/// cut into certified layers, always: at worst with no cut at all, and the report tells how many
-/// pillars that concerns. A prism that failed `test` before cutting keeps its failure.
-/// Same bits for any number of threads.
-/// Precondition: as certify_stack. Throws InvalidOption for fewer than one layer, more than
-/// ShellStack::kMostLayers in all, or a grading that is not positive and finite; Cancelled.
+/// With twelve positive tets in a prism any cut gives positive tets (docs/theory.md, "Layers, and
+/// shells scaled down"), but rounding may spoil them, and with the chosen three alone there is no
+/// such promise. A point whose tets are not positive is moved: along its pillar, to next floats,
+/// towards its neighbours. Where that does not help the pillars of the prism stay whole. So a
+/// certified shell is cut into certified layers, always: at worst with no cut at all, and the
+/// report tells how many pillars that concerns. A prism that failed `test` before cutting keeps its
+/// failure. Same bits for any number of threads. Precondition: as certify_stack. Throws
+/// InvalidOption for fewer than one layer, more than ShellStack::kMostLayers in all, or a grading
+/// that is not positive and finite; Cancelled.
 LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, PrismTest test,
                        Interrupter* interrupter = nullptr);
 

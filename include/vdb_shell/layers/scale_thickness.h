@@ -28,11 +28,11 @@ struct ScaleReport {
 /// no pillar is longer than factor times its length (as extrude). A factor of 1 changes no bit.
 ///
 /// A shell with twelve positive tets in each prism stays free of overlaps under any factor
-/// (docs/theory.md), rounding aside; one with the chosen three need not. All prisms and triangles
-/// are tested exactly, and pillars around one that fails are shortened further, at last pinned,
-/// until nothing fails: a certified shell stays certified. Same bits for any number of threads.
-/// Precondition: a closed, manifold surface; a consistent split. Throws InvalidOption for a
-/// factor that is not above 0 and at most 1, Cancelled.
+/// (docs/theory.md, "Layers, and shells scaled down"), rounding aside; one with the chosen three
+/// need not. All prisms and triangles are tested exactly, and pillars around one that fails are
+/// shortened further, at last pinned, until nothing fails: a certified shell stays certified. Same
+/// bits for any number of threads. Precondition: a closed, manifold surface; a consistent split.
+/// Throws InvalidOption for a factor that is not above 0 and at most 1, Cancelled.
 ScaleReport scale_thickness(PrismShell& shell, const PrismSplit& split, const ScaleOptions& options,
                             PrismTest test, Interrupter* interrupter = nullptr);
 

@@ -19,7 +19,8 @@ const NameTable<Side>& names(Side);
 /// Shells outside a surface are shells inside the reversed one: what was outside lies behind its
 /// triangles, a solid without a bound. Stages from compute_directions to grow_shell run on the
 /// reversed surface, with the level set negated and a finite cap on every length, and turn_back
-/// then gives the shell in the orientation of the input (docs/theory.md, "Outward shells").
+/// then gives the shell in the orientation of the input (docs/theory.md, "Outward
+/// shells, and shells on both sides").
 
 /// Every triangle turned round: its second and third corner change places.
 TriangleMesh reversed_surface(TriangleMesh mesh);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "growth/coarse_start.h"
+#include "growth/prolongate.h"
 
 #include "support/shapes.h"
 #include "support/stacks.h"
@@ -25,7 +25,7 @@ double fill_of(const PrismShell& shell)
                    signed_volume(shell.outer, shell.triangles);
 }
 
-TEST(CoarseStart, PillarsEndWhereThoseOfTheCoarseShellDo)
+TEST(Prolongate, PillarsEndWhereThoseOfTheCoarseShellDo)
 {
     // The coarse shell of a sphere ends at a third of its radius.
     const TriangleMesh coarse = test::icosphere(3.0, 2), fine = test::icosphere(3.0, 4);
@@ -36,7 +36,7 @@ TEST(CoarseStart, PillarsEndWhereThoseOfTheCoarseShellDo)
     lines.inward.assign(fine.points.size(), Vec3d(0.0));
     lines.visibility.assign(fine.points.size(), 0.7);
     const growth::Pillars pillars =
-        growth::pillars_in(coarse, inner, fine, lines, growth::Bends::kept);
+        growth::prolonged_pillars(coarse, inner, fine, lines, growth::Bends::kept);
     for (std::size_t v = 0; v < fine.points.size(); ++v) {
         const Vec3d end = Vec3d(fine.points[v]) + pillars.length[v] * pillars.lines.inward[v];
         // On a chord of the inner sphere, which lies up to 0.035 below its arc.
@@ -47,7 +47,7 @@ TEST(CoarseStart, PillarsEndWhereThoseOfTheCoarseShellDo)
     }
 }
 
-TEST(CoarseStart, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
+TEST(Prolongate, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
 {
     const TriangleMesh sphere = test::icosphere(1.0, 2);
     std::vector<Vec3d> outside;
@@ -58,14 +58,14 @@ TEST(CoarseStart, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
         lines.inward.push_back(-Vec3d(p).unit());
     lines.visibility.assign(sphere.points.size(), 1.0);
     const growth::Pillars pillars =
-        growth::pillars_in(sphere, outside, sphere, lines, growth::Bends::kept);
+        growth::prolonged_pillars(sphere, outside, sphere, lines, growth::Bends::kept);
     for (std::size_t v = 0; v < sphere.points.size(); ++v) {
         EXPECT_EQ(pillars.lines.inward[v], lines.inward[v]);
         EXPECT_NEAR(pillars.length[v], 0.5, 1e-6);
     }
 }
 
-TEST(CoarseStart, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
+TEST(Prolongate, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
 {
     // One pillar is longer than all others.
     const TriangleMesh coarse = test::icosphere(1.0, 1), fine = test::icosphere(1.0, 4);
@@ -79,7 +79,7 @@ TEST(CoarseStart, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
     const auto tip = std::find(fine.points.begin(), fine.points.end(), coarse.points[0]);
     ASSERT_NE(tip, fine.points.end());
     const auto length = [&](growth::Bends bends) {
-        return growth::pillars_in(coarse, inner, fine, lines, bends)
+        return growth::prolonged_pillars(coarse, inner, fine, lines, bends)
             .length[std::size_t(tip - fine.points.begin())];
     };
     EXPECT_NEAR(length(growth::Bends::kept), 0.7, 1e-6);
@@ -109,7 +109,7 @@ TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThread
     EXPECT_EQ(alone.split.order, with.split.order);
 }
 
-TEST(CoarseStart, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
+TEST(Prolongate, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
 {
     const TriangleMesh mesh = test::bumpy_sphere(5);
     const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
@@ -120,7 +120,7 @@ TEST(CoarseStart, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
     EXPECT_NEAR(all / first, first / last, 0.2);
 }
 
-TEST(CoarseStart, TheCoarsestSurfacesVerticesAreTheMeshs)
+TEST(Prolongate, TheCoarsestSurfacesVerticesAreTheMeshs)
 {
     const TriangleMesh mesh = test::bumpy_sphere(5);
     const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
@@ -131,7 +131,7 @@ TEST(CoarseStart, TheCoarsestSurfacesVerticesAreTheMeshs)
     EXPECT_EQ(vertices_of_coarsest(mesh, {}).size(), mesh.points.size());
 }
 
-TEST(CoarseStart, NoLevelsForFewTrianglesNorOutwardNorWithoutItsLevers)
+TEST(Prolongate, NoLevelsForFewTrianglesNorOutwardNorWithoutItsLevers)
 {
     const TriangleMesh mesh = test::bumpy_sphere(5);
     GrowOptions options;
@@ -148,12 +148,12 @@ TEST(CoarseStart, NoLevelsForFewTrianglesNorOutwardNorWithoutItsLevers)
     EXPECT_TRUE(coarse_levels(mesh, options).empty());
 }
 
-TEST(CoarseStart, ReadsLengthsOfTheCoarsestVerticesAlone)
+TEST(Prolongate, ReadsLengthsOfTheCoarsestVerticesAlone)
 {
     const TriangleMesh mesh = test::bumpy_sphere(4);
     GrowOptions options;
     options.coarse_from = 500;
-    GrowStart start{{}, coarse_levels(mesh, options)};
+    const GrowStart start{GrowFrom::levels, {}, coarse_levels(mesh, options)};
     ASSERT_FALSE(start.levels.empty());
     Directions directions;
     for (const Vec3s& p : mesh.points)
@@ -164,28 +164,28 @@ TEST(CoarseStart, ReadsLengthsOfTheCoarsestVerticesAlone)
     some.length.assign(mesh.points.size(), 0.0);
     for (const std::uint32_t v : vertices_of_coarsest(mesh, start.levels))
         some.length[v] = all.length[v];
-    const auto grow = [&](const LineLengths& lengths, const GrowStart* from) {
-        return grow_shell(mesh, directions, lengths, cap, options, {}, nullptr, from).shell.inner;
+    const auto grow = [&](const LineLengths& lengths) {
+        return grow_shell_from(start, mesh, directions, lengths, cap, options, {}).shell.inner;
     };
-    EXPECT_EQ(grow(some, &start), grow(all, &start));
+    EXPECT_EQ(grow(some), grow(all));
     // Without levels growth makes its own.
-    EXPECT_EQ(grow(all, nullptr), grow(all, &start));
+    EXPECT_EQ(grow_shell(mesh, directions, all, cap, options, {}).shell.inner, grow(all));
 }
 
-TEST(CoarseStart, IsThickerWhenRoundsAreAskedFor)
+TEST(Prolongate, IsThickerWhenRoundsAreAskedFor)
 {
     const TriangleMesh mesh = test::bumpy_sphere(4);
     GrowOptions options;
     options.coarse_from = 500;
-    const GrowResult hasty = test::grown(mesh, options);
+    const GrowResult brief = test::grown(mesh, options);
     options.free_rounds = 40;
     const GrowResult patient = test::grown(mesh, options);
-    EXPECT_GT(fill_of(patient.shell), fill_of(hasty.shell));
+    EXPECT_GT(fill_of(patient.shell), fill_of(brief.shell));
     options.free_rounds = 3;
     EXPECT_EQ(test::grown(mesh, options).report.rounds, 3U);
 }
 
-TEST(CoarseStart, IsMostlyDoneBeforeTheFirstRoundOnTheWhole)
+TEST(Prolongate, IsMostlyDoneBeforeTheFirstRoundOnTheWhole)
 {
     const TriangleMesh mesh = test::bumpy_sphere(6);
     ASSERT_GT(mesh.triangles.size(), 50000U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "growth/free_moves.h"
+#include "growth/relax.h"
 
 #include "growth/move_tests.h"
 #include "support/shapes.h"
@@ -29,52 +29,62 @@ struct HalfFull {
         for (std::size_t v = 0; v < s.b.size(); ++v)
             s.b[v] = rounded(0.5 * s.a[v]);
     }
-    void move(const FreeStage& stage)
+    void relax_with(const RelaxOptions& relax_options)
     {
         GrowReport report;
-        move_freely(s, std::vector<double>(s.b.size(), 1.0), GrowOptions{}, stage,
-                    StageProgress(nullptr, "test"), report);
+        relax(s, std::vector<double>(s.b.size(), 1.0), GrowOptions{}, relax_options,
+              StageProgress(nullptr, "test"), report);
     }
 };
 
-constexpr double kSoftness = 0.01;
+/// One or more rounds with a light barrier, in which only vertices that win something are active.
+RelaxOptions by_gain(int rounds, std::vector<double> predicted_gain)
+{
+    RelaxOptions relax;
+    relax.most_rounds = rounds;
+    relax.first_weight = 0.01;
+    relax.weight_decrease = 0.5;
+    relax.active_gain = 1e-3;
+    relax.predicted_gain = std::move(predicted_gain);
+    return relax;
+}
 
-TEST(FreeMoves, AsksOnlyWhereSomethingIsToBeWonAndBeside)
+TEST(Relax, MovesOnlyVerticesThatAreToWinAndThoseBeside)
 {
     HalfFull sphere;
     const std::vector<Vec3d> before = sphere.s.b;
-    const int hopeful = 100;
-    std::vector<double> hope(before.size(), 0.0);
-    hope[hopeful] = 1.0;
-    sphere.move({1, kSoftness, 0.5, 0.0, 0.0, 0.0, -1.0, 1e-3, hope});
+    const int winner = 100;
+    std::vector<double> gain(before.size(), 0.0);
+    gain[winner] = 1.0;
+    sphere.relax_with(by_gain(1, gain));
     int moved = 0;
     for (int v = 0; v < sphere.s.mesh->vertices; ++v) {
         if (sphere.s.b[v] == before[v])
             continue;
         ++moved;
         const Slice<int> around = neighbours(*sphere.s.mesh, v);
-        EXPECT_TRUE(v == hopeful ||
-                    std::find(around.begin(), around.end(), hopeful) != around.end())
+        EXPECT_TRUE(v == winner || std::find(around.begin(), around.end(), winner) != around.end())
             << v;
     }
     EXPECT_GT(moved, 3);
 }
 
-TEST(FreeMoves, WithoutHopesAllAreAsked)
+TEST(Relax, WithoutPredictedGainsAllVerticesAreActive)
 {
     HalfFull sphere;
     const std::vector<Vec3d> before = sphere.s.b;
-    sphere.move({1, kSoftness, 0.5, 0.0, 0.0, 0.0, -1.0, 1e-3});
+    sphere.relax_with(by_gain(1, {}));
     for (std::size_t v = 0; v < before.size(); ++v)
         EXPECT_NE(sphere.s.b[v], before[v]) << v;
 }
 
-TEST(FreeMoves, EndsWhenNobodyHopes)
+TEST(Relax, EndsWhenNoVertexIsToWin)
 {
     HalfFull sphere;
     const std::vector<Vec3d> before = sphere.s.b;
-    sphere.move(
-        {40, kSoftness, 0.5, 0.0, 0.0, 0.0, 1e-6, 1e-3, std::vector<double>(before.size(), 0.0)});
+    RelaxOptions relax = by_gain(40, std::vector<double>(before.size(), 0.0));
+    relax.least_gain_per_vertex = 1e-6;
+    sphere.relax_with(relax);
     EXPECT_EQ(sphere.s.b, before);
 }
 

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "growth/improve_quality.h"
+
+// Takes: a valid shell with its diagonals and a bound on the mean ratio. Leaves: a valid shell with
+// fewer tets below the bound, a little thinner. Each vertex goes down the gradient of the squared
+// shortfall of the tets around it. Mean ratio: Liu and Joe 1994, "Relationship between tetrahedron
+// shape measures".
+
+#include "growth/raise_quality.h"
 
 #include "growth/diagonals.h"
 #include "growth/sweep.h"
@@ -12,13 +18,6 @@ namespace vdb_shell::growth
 {
 namespace
 {
-
-constexpr int kMostRounds = 60;
-constexpr int kSweepsPerRound = 3;
-constexpr int kHalvings = 7;
-constexpr double kLeastGain = 1e-3; ///< share of the shortfall that a move has to take away
-constexpr double kRoundGain = 2e-3; ///< share of the whole shortfall that a round has to win
-constexpr double kReachShare = 0.3; ///< of the edges around a vertex, within one round
 
 /// How far the tets around a vertex are under the bound: the sum of squares, the worst mean ratio
 /// and the direction in which the sum falls.
@@ -65,24 +64,30 @@ Shortfall shortfall_at(const GrowState& s, int v, const Vec3d& x, double bound)
 
 /// A step down the shortfall's gradient, at first as long as would take it to nothing if it were
 /// the square that it resembles, then shorter.
-bool propose_better(const GrowState& s, const Walls& w, int v, double bound, Vec3d& out)
+bool propose_better(const GrowState& s, const SeparatingPlanes& planes, int v, double bound,
+                    Vec3d& out)
 {
     const Shortfall now = shortfall_at(s, v, s.b[v], bound);
     const double slope = now.gradient.lengthSqr();
     if (now.sum == 0 || slope == 0)
         return false;
+    // A sum of squares that falls to nought along its gradient does so at this distance, if it is a
+    // square itself.
     Vec3d step = -(2.0 * now.sum / slope) * now.gradient;
-    const double most = 0.9 * (s.reach[v] - (s.b[v] - s.home[v]).length());
+    const QualitySchedule& schedule = s.schedule.quality;
+    const double most =
+        schedule.share_of_radius * (s.trust_radius[v] - (s.b[v] - s.trust_centre[v]).length());
     if (most <= 0)
         return false;
     if (step.length() > most)
         step *= most / step.length();
-    for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
+    for (int i = 0; i < schedule.halvings; ++i, step *= 0.5) {
         out = rounded(s.b[v] + step);
         const Shortfall then = shortfall_at(s, v, out, bound);
-        const bool better = then.sum < (1 - kLeastGain) * now.sum &&
+        // The worst tet must not pay for the others, unless it is good enough all the same.
+        const bool better = then.sum < (1 - schedule.least_gain) * now.sum &&
                             (then.worst >= now.worst || then.worst >= bound);
-        if (better && move_allowed_between(s, w, v, out))
+        if (better && move_allowed(s, planes, v, out))
             return true;
     }
     return false;
@@ -126,21 +131,25 @@ double whole_shortfall(const GrowState& s, double bound, QualityResult& result)
 QualityResult raise_quality(GrowState& s, double bound, bool flips, const StageProgress& progress)
 {
     QualityResult result;
-    Walls walls;
+    const QualitySchedule& schedule = s.schedule.quality;
+    SeparatingPlanes planes;
     for (int v = 0; v < s.mesh->vertices; ++v)
-        s.reach[v] = std::max(kReachShare * mean_edge(s, v), 200 * s.rounding);
+        s.trust_radius[v] = std::max(schedule.radius_edge_share * mean_edge(s, v),
+                                     kLeastRadiusInRoundings * s.rounding);
+    const auto most_rounds = static_cast<std::size_t>(schedule.most_rounds);
     double shortfall = whole_shortfall(s, bound, result);
-    while (result.rounds < kMostRounds && shortfall > 0) {
-        progress.stop_if_interrupted(int(100 * result.rounds / kMostRounds));
-        raise_walls(s, s.pinned, walls);
-        for (int i = 0; i < kSweepsPerRound; ++i)
-            sweep(s, walls, s.pinned,
-                  [&](int v, Vec3d& x) { return propose_better(s, walls, v, bound, x); });
+    while (result.rounds < most_rounds && shortfall > 0) {
+        progress.stop_if_interrupted(int(100 * result.rounds / most_rounds));
+        separate_triangles(s, s.pinned, planes);
+        for (int i = 0; i < schedule.sweeps; ++i)
+            sweep(s, planes, s.pinned,
+                  [&](int v, Vec3d& x) { return propose_better(s, planes, v, bound, x); });
         if (flips)
             result.flips += flip_for_quality(s);
         ++result.rounds;
         const double left = whole_shortfall(s, bound, result);
-        if (left > (1 - kRoundGain) * shortfall)
+        // More rounds would cost time and thickness for next to nothing.
+        if (left > (1 - schedule.least_gain_of_round) * shortfall)
             break;
         shortfall = left;
     }

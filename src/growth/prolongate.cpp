@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "growth/coarse_start.h"
+
+// Takes: the shell of a coarser surface and the vertices of a finer one. Gives: for each vertex a
+// pillar that ends where the coarse shell ends under it. Nothing is tested here; mend_prolonged
+// makes a valid shell of it. Prolongation as in multigrid methods: linear within each coarse prism.
+
+#include "growth/prolongate.h"
 
 #include "core/parallel.h"
 #include "mesh/nearest_on_triangle.h"
@@ -20,11 +25,6 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-// Cosine to the normals of the triangles around; less is next to lying in one of them.
-constexpr double kLeastVisibility = 0.05;
-// Of the coarse surface's diagonal: nearest enough.
-constexpr float kNearEnough = 1e-4F;
-
 /// Barycentric coordinates of a point of the triangle; those of its middle where it has no area.
 std::array<double, 3> weights_in(const std::array<Vec3d, 3>& corner, const Vec3d& at)
 {
@@ -38,6 +38,8 @@ std::array<double, 3> weights_in(const std::array<Vec3d, 3>& corner, const Vec3d
     return weight;
 }
 
+/// Where the pillar of a point beside this coarse triangle ends: at the point with the same
+/// barycentric coordinates on the inner triangle.
 Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
                    std::uint32_t triangle, const Vec3d& at)
 {
@@ -50,12 +52,12 @@ Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
     return end;
 }
 
-/// Each pillar halfway to the mean of its neighbours. Those handed on bend at the edges of the
-/// coarse triangles, where most of the sheared prisms are; a second time takes off more than it
-/// mends.
+/// Each pillar halfway to the mean of its neighbours, once: a second pass takes off more thickness
+/// than it spares in mending.
 std::vector<Vec3s> smoothed(const TriangleMesh& mesh, const std::vector<Vec3s>& inner)
 {
     const VertexTriangles around = triangles_around_vertices(inner.size(), mesh.triangles);
+    // A neighbour comes up once for each of the two triangles at their edge, which changes no mean.
     std::vector<Vec3s> result = inner;
     for_each_index(inner.size(), [&](std::size_t v) {
         Vec3d sum(0.0);
@@ -89,25 +91,28 @@ Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Di
     return pillars;
 }
 
-Pillars pillars_in(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
-                   const TriangleMesh& mesh, const Directions& lines, Bends bends)
+Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
+                          const TriangleMesh& mesh, const Directions& lines, Bends bends,
+                          const MultilevelSchedule& schedule)
 {
     const TriangleTree tree(coarse, diagonal_of(bounds_of(coarse.points)));
     std::vector<Vec3s> inner(mesh.points.size());
     for_each_index(inner.size(), [&](std::size_t v) {
         const Vec3d at(mesh.points[v]);
+        // Within the tolerance any triangle will do: the prolonged shell is mended anyway.
         TriangleTree::Seed seed = TriangleTree::kNoSeed;
-        inner[v] = Vec3s(
-            end_in_prism(coarse, coarse_inner, tree.nearest(at, kNearEnough, seed).triangle, at));
+        const auto nearest = tree.nearest(at, schedule.nearest_tolerance, seed);
+        inner[v] = Vec3s(end_in_prism(coarse, coarse_inner, nearest.triangle, at));
     });
     Pillars pillars =
         pillars_to(mesh, bends == Bends::smoothed ? smoothed(mesh, inner) : inner, lines);
+    // A pillar that its own triangles hide would be shortened to nothing by mending.
     std::vector<Vec3d> outward(inner.size());
     for (std::size_t v = 0; v < outward.size(); ++v)
         outward[v] = -pillars.lines.inward[v];
     const std::vector<double> visibility = visibility_of(mesh, outward);
     for (std::size_t v = 0; v < outward.size(); ++v)
-        if (!(visibility[v] > kLeastVisibility))
+        if (!(visibility[v] > schedule.least_visibility))
             pillars.lines.inward[v] = lines.inward[v];
     return pillars;
 }

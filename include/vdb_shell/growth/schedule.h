@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// Every number that steers growth, by the phase that reads it. None of them bears on validity: each
+// accepted state passes the exact tests whatever stands here (docs/theory.md, "Growth"). They
+// decide how thick the shell gets and how long that takes. docs/growth.md has what halving and
+// doubling each of them does, on the meshes that they were chosen on and on others that they were
+// not.
+//
+// Units: "share of the solid" is a volume over that of the solid to fill; "share of the diagonal"
+// a length over the diagonal of the surface's bounding box; "mean tets" a volume over the mean
+// volume that a tet would have if the solid were full.
+
+#include <cstddef>
+
+namespace vdb_shell
+{
+
+/// Initialise: directions, first lengths, and a valid start.
+struct InitialSchedule {
+    /// Cosine. A direction whose visibility is not above this is replaced by the most visible one,
+    /// for a pillar along it would be held at once.
+    double poor_visibility = 0.02;
+    /// Count. Passes of bilateral smoothing over the directions.
+    int smoothing_passes = 8;
+    /// Cosine. A neighbour whose direction is further off than this angle (60 degrees) has no part
+    /// in the smoothing, so that the faces of a machined solid keep their own directions.
+    double smoothing_cosine = 0.5;
+    /// Cosine, and share of the visibility before smoothing: a smoothed direction is taken if its
+    /// visibility is not below the smaller of the two.
+    double kept_visibility = 0.3, kept_visibility_share = 0.5;
+    /// Share of the first lengths to try: a little short of where two fronts would touch.
+    double share_of_half_ray = 0.98;
+    /// Share of the smallest altitude around a vertex: the length of a thin start.
+    double thin_share = 0.02;
+    /// Factor on the length of the pillars of a prism that fails a test, until it passes.
+    double shrink_factor = 0.65;
+};
+
+/// Initialise: pillars lengthened along their lines.
+struct LineSchedule {
+    /// Shares of the solid. Below the first the start is thin and lines go first, since free moves
+    /// alone get stuck; above the second the inner surface has collapsed in one direction at least,
+    /// and lines finish that sooner. In between lines are left out.
+    double thin_start = 0.3, nearly_full = 0.9;
+    /// Share of the solid that a round has to win for another to follow, where free moves come
+    /// after the lines.
+    double least_gain = 3e-3;
+    /// Shares of the diagonal: a vertex's first step, its longest, and the one below which it is
+    /// tried no more.
+    double first_step = 1e-3, longest_step = 1e-2, shortest_step = 2e-4;
+    /// Count. Rounds at most: a bound for termination that no mesh tried has reached.
+    int most_rounds = 400;
+    /// Count. Rounds before least_gain is asked for, while the steps find their length.
+    int first_rounds = 3;
+    /// Share of the way to the first separating plane that a step goes: some room is left for the
+    /// vertices on its other side.
+    double share_of_room = 0.9;
+};
+
+/// Initialise and relax: pinned vertices given a pillar.
+struct PinSchedule {
+    /// Count. Lengths tried for a pinned vertex, each half the one before.
+    int lengths = 16;
+    /// Share of the diagonal: the longest that is tried.
+    double longest = 0.05;
+};
+
+/// Prolongate: which coarser surfaces growth begins on, and the rounds on them.
+struct MultilevelSchedule {
+    /// Triangles of the coarsest surface, about.
+    double coarsest_triangles = 1200;
+    /// Ratio of triangles between one surface and the next at most.
+    double greatest_ratio = 9;
+    /// Rounds on a coarse surface end once the barrier weight (mean tets) is below the first and a
+    /// round has won no more than the second (share of the solid) for each active vertex.
+    double end_weight = 0.004, end_gain_per_vertex = 1e-5;
+    /// Factor on the barrier weight in each round: on the coarsest surface, and on those after it.
+    double coarsest_weight_decrease = 0.5, weight_decrease = 0.35;
+    /// The first barrier weight after a prolongation, in mean tets over the share of the solid that
+    /// is still empty. Twice this where the user asked for more than the default.
+    double first_weight_over_void = 0.5;
+    /// Triangles up to which a surface gets one round after a prolongation; n times fewer get n^2.
+    double one_round_triangles = 50000;
+    /// Cost of all rounds on one coarse surface, where a round on the whole surface costs 1.
+    double cost_share = 1.0 / 3;
+    /// Share of the coarse surface's diagonal: the nearest point on it is found to within this.
+    float nearest_tolerance = 1e-4F;
+    /// Cosine. A prolonged pillar whose visibility is not above this gives way to the line.
+    double least_visibility = 0.05;
+};
+
+/// Prolongate: a prolonged shell made valid, first by moves, then by shortening.
+struct MendSchedule {
+    /// Shares of a failing pillar that shortening takes away: at first, doubled each time, and at
+    /// most.
+    double first_cut = 0.01, greatest_cut = 0.7;
+    /// Count. Rounds that move inner points before they shorten; after these only shortening is
+    /// left, which terminates.
+    int moving_rounds = 7;
+    /// Counts. Sweeps of moves in the first such round and in the others.
+    int first_sweeps = 12, sweeps = 5;
+    /// Shares of the shortest inner edge at a vertex: the distance that a move seeks to each plane
+    /// of its tets, and the longest move of one sweep.
+    double room = 0.1, longest_move = 1.0;
+    /// The same two, in roundings of a coordinate: below that float32 cannot tell.
+    double room_in_roundings = 4, longest_move_in_roundings = 20;
+    /// Weight of staying in place, where each unmet plane has weight 1, in all directions and along
+    /// the normal of the inner surface besides: a move along the surface loses no thickness.
+    double weight_of_staying = 1.0, weight_of_staying_across = 10.0;
+    /// Count. Gauss-Newton steps for one vertex.
+    int newton_steps = 6;
+};
+
+/// Relax: the interior-point method of all inner vertices.
+struct BarrierSchedule {
+    /// Mean tets. First barrier weight under the twelve-tet test, where a large one spreads the
+    /// inner vertices, and under the three-tet test after it, where it would undo what is reached.
+    double first_weight_twelve = 1.0, first_weight_three = 0.02;
+    /// First barrier weight at most, over the share of the solid that is still empty: a barrier
+    /// that weighs more than what there is to win undoes what is reached.
+    double most_weight_over_void = 7;
+    /// Mean tets. The smallest barrier weight.
+    double least_weight = 1e-3;
+    /// Factor on the barrier weight in each round, from lines and under Method::thickest; the
+    /// slower, the thicker and the longer.
+    double weight_decrease = 0.65, weight_decrease_thickest = 0.72;
+    /// The same after a prolongation, where most is done already.
+    double weight_decrease_prolonged = 0.4;
+    /// The same in a round that won less than stale_gain (share of the solid) with the weight below
+    /// settled_weight.
+    double weight_decrease_stale = 0.3, stale_gain = 5e-4;
+    /// Mean tets. Above it a round may lose volume, because the barrier undoes jams of vertices.
+    double settled_weight = 0.05;
+    /// Share of the solid that a round has to win at the smallest barrier weight for another to
+    /// follow, and under Method::thickest.
+    double least_gain = 3e-4, least_gain_thickest = 1e-4;
+    /// Share of the solid from which no round follows.
+    double enough_fill = 0.998;
+    /// Count. Rounds at most, and those under the twelve-tet test before the three-tet one.
+    int most_rounds = 40, twelve_rounds_before_three = 25;
+    /// Count. Sweeps in a round; before each but the first the separating planes are recentred.
+    int sweeps = 2;
+    /// Weight of all near separating planes of a vertex together, where one tet has weight 1.
+    float planes_weight = 4;
+    /// Share of the trust radius within which a separating plane is a barrier; farther ones only
+    /// stop a move.
+    double plane_range = 0.8;
+    /// Factor on the thickness bound for the barrier's ball, so that a vertex on the bound has room
+    /// on every side.
+    double cap_factor = 1.02;
+    /// Count. Lengths tried for a move, each half the one before.
+    int halvings = 5;
+    /// Share of the diagonal: a shorter move is not tried.
+    double shortest_move = 1e-6;
+};
+
+/// Relax: how far a vertex may go in one round. A longer radius needs more separating planes, and
+/// they are dearer than all else.
+struct TrustRadiusSchedule {
+    /// Share of the mean outer edge at a vertex: its first radius at most.
+    double first_edge_share = 0.3;
+    /// Share of that first radius, and shortest inner edges, in a solid that is nearly full: there
+    /// most vertices move less.
+    double first_share_nearly_full = 0.45, first_inner_edges_nearly_full = 3;
+    /// Factor on the length of a vertex's move in one round: its radius for the next.
+    double factor_on_move = 1.1;
+    /// Share of its radius that a vertex keeps for the next round at least.
+    double kept_share = 0.6;
+    /// Shares of the diagonal: the shortest and the longest radius.
+    double shortest = 1e-4, longest = 0.05;
+};
+
+/// Relax: which vertices take part in a round.
+struct ActiveSetSchedule {
+    /// A vertex rests in a round when it has moved less than this in more than `patience` rounds
+    /// running: the larger of a share of the diagonal and a share of its pillar. It takes part
+    /// again in one round out of `period`.
+    double resting_move = 3e-5, resting_pillar_share = 3e-3;
+    int patience = 1, period = 4;
+    /// Share of the solid. After a prolongation a vertex is active when it, or a neighbour, has won
+    /// more than this in the round before: what it costs to try, on a surface of full_size vertices
+    /// or more; less in proportion on a smaller one.
+    double gain_per_vertex = 1e-6, full_size = 6500;
+    /// Share of the solid over all vertices: the same from lines.
+    double gain_of_all = 3e-4;
+    /// Share of that gain that all active vertices have to win on average for another round.
+    double gain_share_to_go_on = 0.46;
+    /// Share of that gain that keeps a vertex active from one sweep to the next.
+    double gain_share_in_round = 0.3;
+};
+
+/// Improve: inner vertices moved for better tets, when GrowOptions::min_quality asks for it.
+struct QualitySchedule {
+    /// Counts. Rounds at most, sweeps in each, and lengths tried for a move.
+    int most_rounds = 60, sweeps = 3, halvings = 7;
+    /// Share of a vertex's shortfall that a move has to take away.
+    double least_gain = 1e-3;
+    /// Share of the whole shortfall that a round has to take away for another to follow.
+    double least_gain_of_round = 2e-3;
+    /// Share of the mean outer edge at a vertex: its trust radius.
+    double radius_edge_share = 0.3;
+    /// Share of what is left of the trust radius that one move may use.
+    double share_of_radius = 0.9;
+    /// Count. Passes over all diagonals at most.
+    int diagonal_passes = 20;
+};
+
+/// Improve: what holds each vertex at the end, for the report.
+struct StopSchedule {
+    /// Share of the diagonal: the step along its pillar that a vertex is asked to make.
+    double step = 1e-3;
+    /// Share of the thickness bound: a pillar this close to it is held by it, for rounding stops
+    /// short of the bound.
+    double at_cap = 1e-6;
+};
+
+struct GrowthSchedule {
+    InitialSchedule initial;
+    LineSchedule lines;
+    PinSchedule pins;
+    MultilevelSchedule multilevel;
+    MendSchedule mend;
+    BarrierSchedule barrier;
+    TrustRadiusSchedule radius;
+    ActiveSetSchedule active;
+    QualitySchedule quality;
+    StopSchedule stops;
+};
+
+} // namespace vdb_shell

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: a valid shell whose vertices have come to rest. Leaves: a valid shell with diagonals
+// chosen for the shape of the tets, and the reason that holds each vertex back, for the report.
+
+#include "growth/improve.h"
+
+#include "core/parallel.h"
+#include "growth/diagonals.h"
+#include "growth/raise_quality.h"
+#include "growth/stops.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+/// Under the twelve-tet test any rule of the user's will do; otherwise growth has its own orders.
+bool may_turn_diagonals(const GrowState& s, const GrowOptions& options, const SplitOptions& split)
+{
+    return options.flips && (!s.twelve || split.rule == SplitRule::length_descending);
+}
+
+/// Settles the diagonals; gives back the ripples of the user's rule.
+std::size_t choose_diagonals(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
+                             const SplitOptions& split, GrowReport& report)
+{
+    PrismSplit by_rule;
+    if (s.twelve) {
+        // The rule looks at lengths, which moves have changed since the last time.
+        by_rule = split_prisms(shell_of(mesh, s), split);
+        for (std::size_t f = 0; f < by_rule.order.size(); ++f)
+            s.order[f] = static_cast<std::uint8_t>(order_index(by_rule.order[f]));
+    }
+    if (may_turn_diagonals(s, options, split))
+        report.flips += flip_for_quality(s);
+    return by_rule.ripples;
+}
+
+void hold_to_quality(GrowState& s, const GrowOptions& options, const SplitOptions& split,
+                     const StageProgress& progress, GrowReport& report)
+{
+    const QualityResult raised =
+        raise_quality(s, options.min_quality, may_turn_diagonals(s, options, split), progress);
+    report.quality_rounds = raised.rounds;
+    report.flips += raised.flips;
+    report.tets_below_quality = raised.tets_below;
+    report.vertices_below_quality = raised.vertices_below;
+}
+
+PrismSplit split_of(const GrowState& s, std::size_t ripples)
+{
+    PrismSplit split;
+    split.ripples = ripples;
+    for (const std::uint8_t order : s.order)
+        split.order.push_back(tables().order[order]);
+    return split;
+}
+
+} // namespace
+
+Improved improve(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
+                 const SplitOptions& split, const StageProgress& progress, GrowReport& report)
+{
+    Improved improved;
+    std::size_t ripples = 0;
+    const auto choose = [&] { ripples = choose_diagonals(s, mesh, options, split, report); };
+    const auto probe = [&] { improved.stop = probe_stops(s); };
+    if (s.twelve && !(options.min_quality > 0)) {
+        // With all twelve tets tested the stops do not depend on the diagonals.
+        run_together(choose, probe);
+    } else {
+        // Here the tets that hold a vertex depend on the diagonals, so the stops come last.
+        choose();
+        if (options.min_quality > 0)
+            hold_to_quality(s, options, split, progress, report);
+        probe();
+    }
+    improved.split = split_of(s, ripples);
+    return improved;
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: pillars prolonged from a coarser shell, or those of a refined surface; a few prisms in a
+// hundred are sheared so much that a tet of theirs is inverted. Leaves: a valid shell that is
+// nearly as thick. Moving inner points along the inner surface loses nothing, so it comes first;
+// shortening always ends, so it comes last (docs/theory.md, "Termination").
+
+#include "growth/mend_prolonged.h"
+
+#include "core/parallel.h"
+#include "growth/move_tests.h"
+#include "growth/place_pillars.h"
+#include "growth/untangle.h"
+#include "growth/violations.h"
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+/// Shortens the pillars of violating prisms, each by its share, and doubles that; marks in `moved`
+/// what this moves. False when there is nothing to shorten.
+bool shorten_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& cut,
+                    std::vector<std::uint8_t>& moved)
+{
+    moved = free_corners_of(s, bad);
+    bool any = false;
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        if (!moved[v])
+            continue;
+        any = true;
+        const Vec3d arm = (1 - cut[v]) * (s.b[v] - s.a[v]);
+        // Little at first, for mostly it is a neighbour's move that was missing.
+        cut[v] = std::min(2 * cut[v], s.schedule.mend.greatest_cut);
+        s.b[v] = arm.length() < shortest_pillar(s) ? s.a[v] : rounded(s.a[v] + arm);
+        s.pinned[v] = s.b[v] == s.a[v];
+    }
+    return any;
+}
+
+/// Adds to `look` the vertices that moved and those beside them.
+void look_around(const Connectivity& m, const std::vector<std::uint8_t>& moved,
+                 std::vector<std::uint8_t>& look)
+{
+    for (int v = 0; v < m.vertices; ++v) {
+        if (!moved[v])
+            continue;
+        look[v] = 1;
+        for (const int u : neighbours(m, v))
+            look[u] = 1;
+    }
+}
+
+/// To first order, what each vertex's move from where it was has taken from the shell.
+std::vector<double> volume6_lost(const GrowState& s, const std::vector<Vec3d>& before)
+{
+    std::vector<double> lost(before.size());
+    for_each_index(lost.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        lost[i] = -inner_volume6_gradient(s, v).dot(before[i] - s.b[i]);
+    });
+    return lost;
+}
+
+} // namespace
+
+std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
+                                   const std::vector<double>& length, const StageProgress& progress)
+{
+    const MendSchedule& schedule = s.schedule.mend;
+    pin_unservable(s, directions, length);
+    place_pillars(s, directions, length);
+    const std::vector<Vec3d> prolonged = s.b;
+    std::vector<std::uint8_t> look(length.size(), 1), moved(length.size(), 1);
+    std::vector<double> cut(length.size(), schedule.first_cut);
+    for (int round = 0;; ++round) {
+        progress.stop_if_interrupted(0);
+        const bool first = round == 0;
+        if (round < schedule.moving_rounds)
+            untangle(s, first ? schedule.first_sweeps : schedule.sweeps, look, moved);
+        const std::vector<std::uint8_t> changed =
+            first ? std::vector<std::uint8_t>(s.mesh->faces.size(), 1) : faces_around(s, moved);
+        if (!shorten_around(s, violating_faces(s, changed, first), cut, moved))
+            break;
+        look_around(*s.mesh, moved, look);
+    }
+    return volume6_lost(s, prolonged);
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: a surface of many triangles. Leaves: a valid shell on it that is nearly as thick as it
+// will get, for a fraction of the cost of growing it there: the volume is won on a surface of a
+// thousand triangles, where a round is cheap and a vertex goes far in one, and prolonged over some
+// surfaces in between. Each of them is grown as the whole would be, through valid states only.
+// Source: nested iteration, as in Brandt 1977, "Multi-level adaptive solutions to boundary-value
+// problems".
+
+#include "growth/multilevel.h"
+
+#include "growth/initialise.h"
+#include "growth/mend_prolonged.h"
+#include "growth/prolongate.h"
+#include "growth/relax.h"
+#include "growth/relax_options.h"
+#include "vdb_shell/mesh/normals.h"
+#include "vdb_shell/resample/coarsen.h"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace growth
+{
+namespace
+{
+
+/// Lines of a level: its own pseudo-normals, for the level set's gradient is known at the vertices
+/// of the mesh alone. Lines that are only fallen back on are not worth smoothing.
+Directions lines_of_level(const TriangleMesh& mesh, const GrowOptions& options, StartedFrom from)
+{
+    Directions directions;
+    directions.inward = pseudo_normals(mesh);
+    directions.visibility = visibility_of(mesh, directions.inward);
+    for (Vec3d& d : directions.inward)
+        d = -d;
+    return prepare_directions(mesh, std::move(directions), options, from == StartedFrom::lines);
+}
+
+/// By level, its vertices as those of the mesh.
+std::vector<std::vector<std::uint32_t>> vertices_of(const std::vector<Coarsened>& levels)
+{
+    std::vector<std::vector<std::uint32_t>> from;
+    for (const Coarsened& level : levels) {
+        from.push_back(level.from);
+        if (from.size() > 1)
+            for (std::uint32_t& v : from.back())
+                v = from[from.size() - 2][v];
+    }
+    return from;
+}
+
+std::vector<double> at_vertices(const std::vector<double>& all,
+                                const std::vector<std::uint32_t>& vertices)
+{
+    std::vector<double> some;
+    some.reserve(vertices.size());
+    for (const std::uint32_t v : vertices)
+        some.push_back(all[v]);
+    return some;
+}
+
+/// Where no rounds on a surface of so many triangles follow, most of the time goes into mending,
+/// and smoothing saves some of that; else rounds win back more than it saves.
+Bends bends_towards(std::size_t triangles, const GrowthSchedule& schedule)
+{
+    return affordable_rounds(triangles, schedule) > 0 ? Bends::kept : Bends::smoothed;
+}
+
+/// What stays the same over all levels.
+struct LevelJob {
+    std::size_t triangles; ///< of the whole surface
+    const GrowOptions& options;
+    const StageProgress& progress;
+};
+
+/// Prolongs the shell of a coarser surface onto the state of a finer one and mends it.
+std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
+                                       const Directions& lines, const TriangleMesh& coarser,
+                                       const std::vector<Vec3d>& coarser_inner, const LevelJob& job)
+{
+    const Pillars pillars =
+        prolonged_pillars(coarser, coarser_inner, mesh, lines,
+                          bends_towards(job.triangles, s.schedule), s.schedule.multilevel);
+    return mend_prolonged(s, pillars.lines, pillars.length, job.progress);
+}
+
+/// Grows on one level, from what start(state, lines) makes a valid shell. Gives back its inner
+/// points, which growth has not finished.
+template <class Start>
+std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<double>& cap,
+                                 StartedFrom from, const LevelJob& job, const Start& start)
+{
+    const Directions lines = lines_of_level(mesh, job.options, from);
+    const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
+    GrowState s = make_state(connectivity, mesh.points, cap, job.options.schedule);
+    // A level's shell is valid by itself, but nothing reads it except the next prolongation.
+    start(s, lines);
+    GrowReport ignored;
+    relax(s, lines.visibility, job.options, relax_coarse(s, from, job.triangles), job.progress,
+          ignored);
+    return std::move(s.b);
+}
+
+bool wants_levels(const TriangleMesh& mesh, const GrowOptions& options)
+{
+    return options.coarse_from > 0 && mesh.triangles.size() >= options.coarse_from &&
+           options.top_down && options.free_moves && signed_volume(mesh.points, mesh.triangles) > 0;
+}
+
+} // namespace
+
+std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
+                                      const Directions& lines, const std::vector<double>& stepped,
+                                      const std::vector<Coarsened>& levels,
+                                      const GrowOptions& options, const StageProgress& progress)
+{
+    // From the coarsest surface to the mesh: each takes over what the one before has won.
+    const LevelJob job{mesh.triangles.size(), options, progress};
+    const auto from = vertices_of(levels);
+    std::vector<Vec3d> inner =
+        grow_on_level(levels.back().mesh, at_vertices(s.cap, from.back()), StartedFrom::lines, job,
+                      [&](GrowState& level, const Directions& own_lines) {
+                          start_from_lines(level, own_lines, at_vertices(stepped, from.back()),
+                                           options, progress);
+                      });
+    for (std::size_t i = levels.size() - 1; i-- > 0;)
+        inner = grow_on_level(levels[i].mesh, at_vertices(s.cap, from[i]), StartedFrom::prolonged,
+                              job, [&](GrowState& level, const Directions& own_lines) {
+                                  start_from_coarser(level, levels[i].mesh, own_lines,
+                                                     levels[i + 1].mesh, inner, job);
+                              });
+    return start_from_coarser(s, mesh, lines, levels.front().mesh, inner, job);
+}
+
+} // namespace growth
+
+std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options)
+{
+    std::vector<Coarsened> levels;
+    if (!growth::wants_levels(mesh, options))
+        return levels;
+    const auto finest = [&]() -> const TriangleMesh& {
+        return levels.empty() ? mesh : levels.back().mesh;
+    };
+    const MultilevelSchedule& schedule = options.schedule.multilevel;
+    const double times =
+        std::max(static_cast<double>(mesh.triangles.size()) / schedule.coarsest_triangles,
+                 schedule.greatest_ratio);
+    // As few steps as keep each ratio in bounds, all of the same ratio.
+    const double steps = std::ceil(std::log(times) / std::log(schedule.greatest_ratio));
+    const double ratio = std::pow(times, 1 / steps);
+    for (int step = 0; step < steps; ++step) {
+        const std::size_t count = finest().triangles.size();
+        Coarsened coarse = coarsen(finest(), static_cast<std::size_t>(double(count) / ratio));
+        // A surface that cannot be coarsened by half would cost about as much as the finer one.
+        if (coarse.mesh.triangles.size() > count / 2)
+            break;
+        levels.push_back(std::move(coarse));
+    }
+    return levels;
+}
+
+std::vector<std::uint32_t> vertices_of_coarsest(const TriangleMesh& mesh,
+                                                const std::vector<Coarsened>& levels)
+{
+    if (!levels.empty())
+        return growth::vertices_of(levels).back();
+    std::vector<std::uint32_t> all(mesh.points.size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// The shell of a coarser surface carried over to a finer one.
+
+#include "vdb_shell/growth/schedule.h"
+#include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/step/directions.h"
+
+#include <openvdb/Types.h>
+
+#include <vector>
+
+namespace vdb_shell::growth
+{
+
+/// The way of each vertex to its inner point.
+struct Pillars {
+    Directions lines; ///< visibility is that of the lines that the vertices had before
+    std::vector<double> length;
+};
+
+/// The pillars to given inner points. Vertices that have no pillar keep their line, for growth may
+/// release them.
+Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& inner,
+                   Directions lines);
+
+/// What to do with the bends of prolonged pillars over the edges of coarse triangles, where most of
+/// the sheared prisms are: smoothed, there are fewer of them, but the inner surface takes on some
+/// of the outer one's roughness.
+enum class Bends { kept, smoothed };
+
+/// The pillars of a surface prolonged from the shell of a coarser one of about the same shape: each
+/// vertex goes along the prism in which its nearest point on the coarse surface lies. A pillar of
+/// poor visibility goes along the vertex's line instead, as far.
+Pillars prolonged_pillars(const TriangleMesh& coarse,
+                          const std::vector<openvdb::Vec3d>& coarse_inner, const TriangleMesh& mesh,
+                          const Directions& lines, Bends bends,
+                          const MultilevelSchedule& schedule = {});
+
+} // namespace vdb_shell::growth

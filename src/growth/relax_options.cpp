@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: the schedule, the user's options and what growth goes on from. Gives: the options of one
+// run of relax(). Nothing here touches the shell. After a prolongation most is done, and growth
+// goes on only as long as that pays, unless the user asked for more (docs/growth.md).
+
+#include "growth/relax_options.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+/// Whether growth stops as soon as it wins little for its cost.
+bool thrifty(StartedFrom from, const GrowOptions& options)
+{
+    // From lines all volume is still to be won, and to save rounds would show.
+    return from == StartedFrom::prolonged && !asks_for_more(options);
+}
+
+double first_weight(const GrowState& s, StartedFrom from, bool saves_time)
+{
+    if (from == StartedFrom::lines)
+        return s.schedule.barrier.first_weight_twelve;
+    // In proportion to the void: a barrier that weighs more would push the inner surface back.
+    return (saves_time ? 1 : 2) * s.schedule.multilevel.first_weight_over_void * (1 - fill_of(s));
+}
+
+int most_rounds(const GrowState& s, StartedFrom from, const GrowOptions& options)
+{
+    return thrifty(from, options) ? affordable_rounds(s.mesh->faces.size(), s.schedule)
+                                  : options.free_rounds.value_or(s.schedule.barrier.most_rounds);
+}
+
+double weight_decrease(const GrowState& s, StartedFrom from, const GrowOptions& options)
+{
+    const BarrierSchedule& barrier = s.schedule.barrier;
+    if (options.method == Method::thickest)
+        return barrier.weight_decrease_thickest;
+    return thrifty(from, options) ? barrier.weight_decrease_prolonged : barrier.weight_decrease;
+}
+
+double least_gain(const GrowState& s, const GrowOptions& options)
+{
+    return options.method == Method::thickest ? s.schedule.barrier.least_gain_thickest
+                                              : s.schedule.barrier.least_gain;
+}
+
+/// RelaxOptions::active_gain. Who asks for more has all vertices active.
+double active_gain(const GrowState& s, StartedFrom from, const GrowOptions& options)
+{
+    const ActiveSetSchedule& active = s.schedule.active;
+    if (thrifty(from, options))
+        return active.gain_per_vertex * std::min(1.0, s.mesh->vertices / active.full_size);
+    // One share of the solid over all vertices: from lines a vertex is tried until all of them
+    // together win next to nothing.
+    return asks_for_more(options) ? 0 : active.gain_of_all / s.mesh->vertices;
+}
+
+} // namespace
+
+bool asks_for_more(const GrowOptions& options)
+{
+    return options.method == Method::thickest || options.free_rounds;
+}
+
+int affordable_rounds(std::size_t triangles, const GrowthSchedule& schedule)
+{
+    // Falls with the square: a round on more triangles costs more, and it wins less, since the
+    // surfaces before have won most.
+    const double over = schedule.multilevel.one_round_triangles / double(triangles);
+    return static_cast<int>(std::min(double(schedule.barrier.most_rounds), over * over));
+}
+
+RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t triangles)
+{
+    const MultilevelSchedule& schedule = s.schedule.multilevel;
+    const double paid_for = schedule.cost_share * double(triangles) / s.mesh->face_count();
+    // Rounds on a coarse surface are cheap next to those on the whole, so they are counted by cost.
+    RelaxOptions relax;
+    relax.most_rounds =
+        std::max(affordable_rounds(s.mesh->faces.size(), s.schedule),
+                 static_cast<int>(std::min(double(s.schedule.barrier.most_rounds), paid_for)));
+    relax.first_weight = first_weight(s, from, true);
+    relax.weight_decrease = from == StartedFrom::prolonged ? schedule.weight_decrease
+                                                           : schedule.coarsest_weight_decrease;
+    relax.least_gain = s.schedule.barrier.least_gain;
+    relax.end_weight = schedule.end_weight;
+    relax.end_gain_per_vertex = schedule.end_gain_per_vertex;
+    return relax;
+}
+
+RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions& options,
+                         std::vector<double> predicted_gain)
+{
+    const bool saves_time = thrifty(from, options);
+    RelaxOptions relax;
+    relax.most_rounds = most_rounds(s, from, options);
+    if (options.method == Method::thickest)
+        relax.most_rounds =
+            std::min(s.schedule.barrier.twelve_rounds_before_three, relax.most_rounds);
+    relax.first_weight = first_weight(s, from, saves_time);
+    relax.weight_decrease = weight_decrease(s, from, options);
+    relax.least_gain = least_gain(s, options);
+    // Only where time is to be saved may a round that wins too little end it early on.
+    relax.active_gain = active_gain(s, from, options);
+    if (saves_time)
+        relax.least_gain_per_vertex = s.schedule.active.gain_share_to_go_on * relax.active_gain;
+    relax.predicted_gain = std::move(predicted_gain);
+    return relax;
+}
+
+RelaxOptions relax_thickest(const GrowState& s, StartedFrom from, const GrowOptions& options)
+{
+    RelaxOptions relax;
+    relax.most_rounds = most_rounds(s, from, options);
+    // All vertices are active and no gain is predicted: under the new test every vertex has new
+    // room.
+    relax.first_weight = s.schedule.barrier.first_weight_three;
+    relax.weight_decrease = weight_decrease(s, from, options);
+    relax.least_gain = least_gain(s, options);
+    return relax;
+}
+
+} // namespace vdb_shell::growth

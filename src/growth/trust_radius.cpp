@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: where vertices are and how far they went. Leaves: a trust radius for each, on which the
+// separating planes of the next round rest: a pair of triangles farther apart than the radii of
+// their corners needs no plane, so short radii keep planes few (docs/theory.md, "Separating
+// planes"). Trust regions: Nocedal and Wright 2006, "Numerical Optimization", chapter 4; here they
+// bound the moves, and the step itself is that of the barrier method.
+
+#include "growth/trust_radius.h"
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+/// Short where the inner surface has collapsed already, for there planes would be many. In a solid
+/// that is nearly full it has collapsed in one direction at least.
+double first_radius(const GrowState& s, int v, bool nearly_full)
+{
+    const TrustRadiusSchedule& schedule = s.schedule.radius;
+    const double most_edges = schedule.first_inner_edges_nearly_full;
+    double outer = 0, longest = 0, shortest = most_edges * s.diagonal;
+    for (const int u : neighbours(*s.mesh, v)) {
+        const double inner = (s.b[u] - s.b[v]).length();
+        outer += (s.a[u] - s.a[v]).length();
+        longest = std::max(longest, inner);
+        shortest = std::min(shortest, inner);
+    }
+    const int count = std::max(1, neighbours(*s.mesh, v).size());
+    const double inner = nearly_full ? std::min(longest, most_edges * shortest) : longest;
+    const double share = nearly_full ? schedule.first_share_nearly_full : 1.0;
+    return std::max(share * std::min(schedule.first_edge_share * outer / count, inner),
+                    kLeastRadiusInRoundings * s.rounding);
+}
+
+} // namespace
+
+void set_first_radii(GrowState& s, double fill)
+{
+    const bool nearly_full = s.bounded && fill > s.schedule.lines.nearly_full;
+    for (int v = 0; v < s.mesh->vertices; ++v)
+        s.trust_radius[v] = first_radius(s, v, nearly_full);
+}
+
+void adapt_radii(GrowState& s, const std::vector<std::uint8_t>& inactive)
+{
+    const TrustRadiusSchedule& schedule = s.schedule.radius;
+    const double least =
+        std::max(schedule.shortest * s.diagonal, kLeastRadiusInRoundings * s.rounding);
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        if (inactive[v])
+            continue;
+        // A vertex that came to rest keeps a share of its radius, so that it can start again.
+        const double ahead = schedule.factor_on_move * (s.b[v] - s.trust_centre[v]).length();
+        s.trust_radius[v] = std::max({least, schedule.kept_share * s.trust_radius[v],
+                                      std::min(ahead, schedule.longest * s.diagonal)});
+    }
+}
+
+Vec3d within_trust_radius(const GrowState& s, int v, const Vec3d& x)
+{
+    const Vec3d off = x - s.trust_centre[v];
+    const double distance = off.length(), most = (1 - kRadiusMargin) * s.trust_radius[v];
+    return distance > most ? s.trust_centre[v] + off * (most / distance) : x;
+}
+
+} // namespace vdb_shell::growth

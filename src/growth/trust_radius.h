@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// How far each vertex may go in one round.
+
+#include "growth/grow_state.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell::growth
+{
+
+/// First radii, for a shell that fills so much of the solid.
+void set_first_radii(GrowState& s, double fill);
+
+/// Radii for the next round, of the vertices that were active in this one: hardly more than a
+/// vertex went.
+void adapt_radii(GrowState& s, const std::vector<std::uint8_t>& inactive);
+
+/// x, or the point towards it that rounding cannot take out of the trust region of v.
+Vec3d within_trust_radius(const GrowState& s, int v, const Vec3d& x);
+
+} // namespace vdb_shell::growth

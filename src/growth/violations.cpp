@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: a shell whose pillars have just been placed. Gives: which prisms fail the exact tests of
+// the certificate, conditions 2, 3, 5 and 6 of docs/theory.md, "The whole shell", so that their
+// pillars can be shortened until none does. Only faces that have changed are tested again.
+
+#include "growth/violations.h"
+
+#include "core/parallel.h"
+#include "growth/move_tests.h"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <utility>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+using Marks = std::vector<std::atomic<std::uint8_t>>;
+
+void mark(std::atomic<std::uint8_t>& entry)
+{
+    entry.store(1, std::memory_order_relaxed);
+}
+
+/// By vertex, for the corners of the faces that changed: whether doubles show for certain that the
+/// inner triangles around it do not meet each other.
+std::vector<std::uint8_t> embedded_fans(const GrowState& s,
+                                        const std::vector<std::uint8_t>& changed)
+{
+    std::vector<std::uint8_t> embedded(s.b.size(), 0);
+    for_each_index(embedded.size(), [&](std::size_t i) {
+        const int v = static_cast<int>(i);
+        const Slice<FaceCorner> around = star(*s.mesh, v);
+        embedded[i] = std::any_of(around.begin(), around.end(),
+                                  [&](const FaceCorner& at) { return changed[at.face] != 0; }) &&
+                      inner_fan_surely_embedded(s, v);
+    });
+    return embedded;
+}
+
+/// The contact tests of the faces that changed and are not known to be bad yet.
+class ContactSearch
+{
+public:
+    ContactSearch(const GrowState& s, const std::vector<std::uint8_t>& tested,
+                  const std::vector<std::uint8_t>& changed, Marks& bad)
+        : s_(s), tested_(tested), embedded_(embedded_fans(s, changed)), bad_(bad)
+    {
+    }
+
+    /// Marks the faces of one range of groups of the inner tree that touch others.
+    void mark_groups(std::size_t begin, std::size_t end) const
+    {
+        BoxTree::Near near;
+        // Pairs come face by face, and the plane of the first one is worth computing only once.
+        std::optional<InnerTriangle> triangle;
+        const auto of = [&](int f) -> const InnerTriangle& {
+            if (!triangle || triangle->face() != f)
+                triangle.emplace(s_, f);
+            return *triangle;
+        };
+        const auto tested = [&](int f) { return tested_[f] != 0; };
+        for (std::size_t group = begin; group < end; ++group) {
+            s_.inner_tree.for_each_overlap_of(
+                group, s_.inner_tree, near, tested, [&](int f, int g) {
+                    // Each pair once where both are tested, and only if it could mark one of them.
+                    if (f == g || (tested(g) && g < f) || (bad_[f] && bad_[g]) ||
+                        share_embedded_fan(f, g) || !of(f).meets_inner(g))
+                        return;
+                    mark(bad_[f]);
+                    mark(bad_[g]);
+                });
+            s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, tested,
+                                              [&](int f, int g) {
+                                                  if (!bad_[f] && of(f).meets_outer(g))
+                                                      mark(bad_[f]);
+                                              });
+        }
+    }
+
+private:
+    bool share_embedded_fan(int f, int g) const
+    {
+        const Connectivity& m = *s_.mesh;
+        for (int k = 0; k < 3; ++k)
+            if (embedded_[m.corner(f, k)] && m.incident_to(g, m.corner(f, k)))
+                return true;
+        return false;
+    }
+
+    const GrowState& s_;
+    const std::vector<std::uint8_t>& tested_;
+    std::vector<std::uint8_t> embedded_;
+    Marks& bad_;
+};
+
+/// Marks the triangles that touch others in a place where they should not, of those that `changed`
+/// and are not marked yet.
+void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
+{
+    std::vector<FloatBox> boxes(changed.size());
+    std::vector<std::uint8_t> tested(changed.size());
+    for_each_index(tested.size(), [&](std::size_t f) {
+        if (changed[f])
+            boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
+        tested[f] = changed[f] && !bad[f];
+    });
+    first ? s.inner_tree.build(std::move(boxes)) : s.inner_tree.refit(boxes, changed);
+    const ContactSearch search(s, tested, changed, bad);
+    for_each_range(
+        s.inner_tree.groups(),
+        [&](std::size_t begin, std::size_t end) { search.mark_groups(begin, end); }, 4);
+}
+
+} // namespace
+
+std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
+                                          bool first)
+{
+    Marks bad(changed.size());
+    for_each_index(bad.size(), [&](std::size_t i) {
+        const int f = static_cast<int>(i);
+        if (changed[f] && (!prism_valid(s, f) || holds_component(s, f)))
+            mark(bad[f]);
+    });
+    // A face that fails already is not asked for contacts: its pillars will be shortened anyway.
+    mark_contacts(s, changed, first, bad);
+    return {bad.begin(), bad.end()};
+}
+
+std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<std::uint8_t>& bad)
+{
+    std::vector<std::uint8_t> corners(s.b.size(), 0);
+    for (int f = 0; f < s.mesh->face_count(); ++f)
+        for (int k = 0; bad[f] && k < 3; ++k) {
+            const int v = s.mesh->corner(f, k);
+            // A pin has nothing left to shorten.
+            corners[v] = !s.pinned[v];
+        }
+    return corners;
+}
+
+std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std::uint8_t>& moved)
+{
+    const Connectivity& m = *s.mesh;
+    // A witness that moves may come to lie in any prism of another component.
+    const bool all = m.components > 1;
+    std::vector<std::uint8_t> faces(m.faces.size());
+    for (int f = 0; f < m.face_count(); ++f)
+        faces[f] = all || moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)];
+    return faces;
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+// What is wrong with a shell that is not valid yet.
+
+#include "growth/grow_state.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell::growth
+{
+
+/// The faces, of those that `changed`, whose prism has a tet that is not positive or holds another
+/// component, or whose inner triangle touches another triangle where it should not; and the faces
+/// that these touch. `first`: the inner tree is built anew. Precondition otherwise: since it was
+/// built or last refitted only these faces have changed.
+std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
+                                          bool first);
+
+/// The corners of such faces that are not pinned.
+std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<std::uint8_t>& bad);
+
+/// The faces to test again once these vertices have moved.
+std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std::uint8_t>& moved);
+
+} // namespace vdb_shell::growth
