@@ -6,7 +6,7 @@
 
 Looks at each .md below FOLDER but those in build folders: the file or folder that a link or picture names exists, and
 a page that it names with an anchor (`page.md#section`) has a heading of that name. Links to the web are not looked up.
-Pages that a source or a script names (`docs/theory.md`) must exist as well.
+Pages that a source or a script names by their path must exist as well.
 Prints what is broken and ends with status 1, or says how many links there are.
 """
 import os

@@ -14,8 +14,8 @@ namespace vdb_shell
 
 /// How the diagonals of the prisms' quads are chosen. A quad over the edge {u,v} has its diagonal
 /// from outer u to inner v when u comes before v; prisms on both sides see the same diagonal, so
-/// the tets are conforming by construction (docs/theory.md: any order without a cycle inside a
-/// triangle will do).
+/// the tets are conforming by construction (any order without a cycle inside a triangle will do:
+/// docs/theory.md, "Splits").
 enum class SplitRule {
     vertex_index,      ///< smaller index first: stable when lengths change
     length_descending, ///< longest pillar first, ties by index: the best shaped tets
@@ -57,7 +57,7 @@ PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options);
 
 /// The tets in order of their prisms, in each from the outer to the inner triangle: three a prism,
 /// less one for each pinned corner (its pillar's tet). The tets that are left meet face to face
-/// (docs/theory.md), and their points are those of the shell bit for bit.
+/// (docs/theory.md, "The whole shell"), and their points are those of the shell bit for bit.
 /// Precondition: `split` is consistent, as split_prisms gives it; every vertex is in a triangle, or
 /// has no point in the result.
 TetMesh make_tets(const PrismShell& shell, const PrismSplit& split);
