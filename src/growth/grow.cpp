@@ -166,12 +166,7 @@ int most_rough_rounds(const GrowState& s, std::size_t triangles)
 
 Directions rough_lines(const TriangleMesh& mesh, const GrowOptions& options, Start start)
 {
-    Directions directions;
-    directions.inward = pseudo_normals(mesh);
-    directions.visibility = visibility_of(mesh, directions.inward);
-    for (Vec3d& d : directions.inward)
-        d = -d;
-    return prepare(mesh, std::move(directions), options, start);
+    return prepare(mesh, directions_along(mesh, pseudo_normals(mesh)), options, start);
 }
 
 /// The levels' vertices as those of the mesh: by level.

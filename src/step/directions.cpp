@@ -67,6 +67,16 @@ void check_options(const DirectionOptions& options)
 
 } // namespace
 
+Directions directions_along(const TriangleMesh& mesh, std::vector<Vec3d> outward)
+{
+    Directions directions;
+    directions.visibility = visibility_of(mesh, outward);
+    directions.inward = std::move(outward);
+    for (Vec3d& d : directions.inward)
+        d = -d;
+    return directions;
+}
+
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                               const DirectionOptions& options)
 {
@@ -89,12 +99,7 @@ Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid
                 outward[v] = tilted(outward[v], disk_point(options.seed, v), tangent);
         });
     }
-    Directions directions;
-    directions.visibility = visibility_of(mesh, outward);
-    directions.inward = std::move(outward);
-    for (Vec3d& d : directions.inward)
-        d = -d;
-    return directions;
+    return directions_along(mesh, std::move(outward));
 }
 
 } // namespace vdb_shell
