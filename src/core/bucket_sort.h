@@ -14,7 +14,7 @@ namespace vdb_shell
 {
 
 /// All items of all parts, sorted by key(item), a number below `keys`, and by `less` among equal
-/// keys: dealt out by key and sorted in their heaps. Much faster than a sort where no key has many
+/// keys: a bucket for each key, sorted in itself. Much faster than a sort where no key has many
 /// items, as with the smallest vertex of an edge or a face. The result does not depend on how the
 /// items are spread over the parts if `less` tells all items of a key apart.
 template <typename Item, typename Parts, typename Key, typename Less>

@@ -22,11 +22,7 @@ using openvdb::Vec3d;
 /// Vertices that even growth's mended directions leave blind.
 std::vector<std::uint32_t> find_blind_vertices(const TriangleMesh& mesh)
 {
-    Directions directions;
-    directions.inward = pseudo_normals(mesh);
-    directions.visibility = visibility_of(mesh, directions.inward);
-    for (Vec3d& d : directions.inward)
-        d = -d;
+    Directions directions = directions_along(mesh, pseudo_normals(mesh));
     growth::mend_directions(mesh, directions);
     std::vector<char> used(mesh.points.size());
     for (const openvdb::Vec3I& t : mesh.triangles)

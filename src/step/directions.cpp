@@ -80,6 +80,16 @@ OptionList describe(DirectionOptions& o)
          option("seed", o.seed, "--perturb-seed", "Seed of the random tilt").in(Unit::seed)});
 }
 
+Directions directions_along(const TriangleMesh& mesh, std::vector<Vec3d> outward)
+{
+    Directions directions;
+    directions.visibility = visibility_of(mesh, outward);
+    directions.inward = std::move(outward);
+    for (Vec3d& d : directions.inward)
+        d = -d;
+    return directions;
+}
+
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                               const DirectionOptions& options)
 {
@@ -102,12 +112,7 @@ Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid
                 outward[v] = tilted(outward[v], disk_point(options.seed, v), tangent);
         });
     }
-    Directions directions;
-    directions.visibility = visibility_of(mesh, outward);
-    directions.inward = std::move(outward);
-    for (Vec3d& d : directions.inward)
-        d = -d;
-    return directions;
+    return directions_along(mesh, std::move(outward));
 }
 
 } // namespace vdb_shell

@@ -22,14 +22,14 @@ std::vector<Item> mixed_items(std::size_t count, std::uint32_t keys)
     return items;
 }
 
-std::vector<Item> dealt(const std::vector<std::vector<Item>>& parts, std::size_t keys)
+std::vector<Item> sorted_by_key(const std::vector<std::vector<Item>>& parts, std::size_t keys)
 {
     return bucket_sort<Item>(
         parts, keys, [](const Item& item) { return item[0]; }, std::less<>());
 }
 
 // Few columns, and so many that far ones share a number.
-TEST(DealOut, SortsWhatStandsOverColumns)
+TEST(BucketSort, SortsWhatStandsOverColumns)
 {
     for (const std::int64_t apart : {1, 1000, 1000000}) {
         std::vector<std::array<std::int64_t, 3>> items;
@@ -53,28 +53,28 @@ TEST(DealOut, SortsWhatStandsOverColumns)
                     .empty());
 }
 
-TEST(DealOut, Sorts)
+TEST(BucketSort, Sorts)
 {
     for (const std::uint32_t keys : {1U, 2U, 100U, 5000U}) {
         std::vector<Item> items = mixed_items(3000, keys);
-        const std::vector<Item> found = dealt({items}, keys);
+        const std::vector<Item> found = sorted_by_key({items}, keys);
         std::sort(items.begin(), items.end());
         EXPECT_EQ(found, items) << keys;
     }
 }
 
-TEST(DealOut, DoesNotDependOnTheParts)
+TEST(BucketSort, DoesNotDependOnTheParts)
 {
     const std::vector<Item> items = mixed_items(1000, 37);
-    const std::vector<Item> whole = dealt({items}, 37);
+    const std::vector<Item> whole = sorted_by_key({items}, 37);
     const auto middle = items.begin() + 321;
-    EXPECT_EQ(dealt({{middle, items.end()}, {}, {items.begin(), middle}}, 37), whole);
+    EXPECT_EQ(sorted_by_key({{middle, items.end()}, {}, {items.begin(), middle}}, 37), whole);
 }
 
-TEST(DealOut, OfNothingIsNothing)
+TEST(BucketSort, OfNothingIsNothing)
 {
-    EXPECT_TRUE(dealt({}, 0).empty());
-    EXPECT_TRUE(dealt({{}, {}}, 5).empty());
+    EXPECT_TRUE(sorted_by_key({}, 0).empty());
+    EXPECT_TRUE(sorted_by_key({{}, {}}, 5).empty());
 }
 
 } // namespace

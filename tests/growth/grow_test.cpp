@@ -48,10 +48,7 @@ Case case_of(const TriangleMesh& mesh, double cap = kInfinity)
 {
     Case c;
     c.mesh = mesh;
-    c.directions.inward = pseudo_normals(mesh);
-    c.directions.visibility = visibility_of(mesh, c.directions.inward);
-    for (Vec3d& d : c.directions.inward)
-        d = -d;
+    c.directions = directions_along(mesh, pseudo_normals(mesh));
     const std::size_t count = mesh.points.size();
     c.start = {std::vector<double>(count, 0.0), std::vector<std::uint32_t>(count, 0),
                std::vector<StopReason>(count, StopReason::none)};

@@ -32,12 +32,7 @@ using test::SplitShell;
 
 Directions normals_of(const TriangleMesh& mesh)
 {
-    Directions directions;
-    directions.inward = pseudo_normals(mesh);
-    directions.visibility = visibility_of(mesh, directions.inward);
-    for (Vec3d& d : directions.inward)
-        d = -d;
-    return directions;
+    return directions_along(mesh, pseudo_normals(mesh));
 }
 
 GrowResult grown(const TriangleMesh& mesh, const std::vector<double>& cap,

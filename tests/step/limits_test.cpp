@@ -17,20 +17,12 @@ namespace
 
 using openvdb::Vec3d;
 
-Directions inward_along(const TriangleMesh& mesh, const std::vector<Vec3d>& outward)
-{
-    Directions directions{outward, visibility_of(mesh, outward)};
-    for (Vec3d& d : directions.inward)
-        d = -d;
-    return directions;
-}
-
 Directions radial(const TriangleMesh& mesh)
 {
     std::vector<Vec3d> outward;
     for (const auto& p : mesh.points)
         outward.push_back(Vec3d(p).unit());
-    return inward_along(mesh, outward);
+    return directions_along(mesh, outward);
 }
 
 TEST(Limits, SphereFoldsAtItsCentreEverywhere)
@@ -49,7 +41,7 @@ TEST(Limits, HollowBallNeverFoldsOnItsInnerSurface)
     std::vector<Vec3d> outward;
     for (const auto& p : cavity.points)
         outward.push_back(-Vec3d(p).unit());
-    for (const double limit : triangle_limits(cavity, inward_along(cavity, outward)))
+    for (const double limit : triangle_limits(cavity, directions_along(cavity, outward)))
         EXPECT_TRUE(std::isinf(limit)) << limit;
 }
 
@@ -57,7 +49,7 @@ TEST(Limits, ParallelDirectionsNeverFold)
 {
     const TriangleMesh mesh = test::unit_tetrahedron();
     const std::vector<Vec3d> same(mesh.points.size(), Vec3d(1, 2, 3).unit());
-    for (const double limit : triangle_limits(mesh, inward_along(mesh, same)))
+    for (const double limit : triangle_limits(mesh, directions_along(mesh, same)))
         EXPECT_TRUE(std::isinf(limit));
 }
 
@@ -67,7 +59,7 @@ TEST(Limits, TwoPillarsThatMeetAreTheAnswerOfALinearEquation)
     // sqrt(1/2), pillar 2 goes straight down.
     TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5f, 1, 0}}, {{0, 1, 2}}};
     const std::vector<Vec3d> outward{Vec3d(-1, 0, 1).unit(), Vec3d(1, 0, 1).unit(), Vec3d(0, 0, 1)};
-    const double limit = triangle_limits(mesh, inward_along(mesh, outward))[0];
+    const double limit = triangle_limits(mesh, directions_along(mesh, outward))[0];
     EXPECT_LE(limit, std::sqrt(0.5) + 1e-12);
     EXPECT_GT(limit, 0.5);
 }
@@ -75,7 +67,7 @@ TEST(Limits, TwoPillarsThatMeetAreTheAnswerOfALinearEquation)
 TEST(Limits, LimitIsWhereTheJacobianVanishes)
 {
     const TriangleMesh mesh = test::torus(1, 0.4, 16, 9);
-    const Directions directions = inward_along(mesh, pseudo_normals(mesh));
+    const Directions directions = directions_along(mesh, pseudo_normals(mesh));
     const auto limits = triangle_limits(mesh, directions);
     const auto least_jacobian = [&](const openvdb::Vec3I& t, double e) {
         const auto at = [&](int i) {
@@ -99,7 +91,7 @@ TEST(Limits, LimitIsWhereTheJacobianVanishes)
 TEST(Limits, AdaptiveIsTheSmallestAroundEachVertexAndNeverBelowUniform)
 {
     const TriangleMesh mesh = test::torus(1, 0.4, 16, 9);
-    const Directions directions = inward_along(mesh, pseudo_normals(mesh));
+    const Directions directions = directions_along(mesh, pseudo_normals(mesh));
     const auto triangles = triangle_limits(mesh, directions);
     const auto adaptive = vertex_limits(mesh, directions, Limit::adaptive);
     const auto uniform = vertex_limits(mesh, directions, Limit::uniform);

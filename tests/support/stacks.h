@@ -26,14 +26,10 @@ inline GrowResult grown(const TriangleMesh& mesh, const GrowOptions& options = {
                         double cap = std::numeric_limits<double>::infinity())
 {
     const std::size_t count = mesh.points.size();
-    Directions directions;
-    directions.inward = pseudo_normals(mesh);
-    directions.visibility = visibility_of(mesh, directions.inward);
-    for (openvdb::Vec3d& d : directions.inward)
-        d = -d;
     const LineLengths none{std::vector<double>(count, 0.0), std::vector<std::uint32_t>(count, 0),
                            std::vector<StopReason>(count, StopReason::none)};
-    return grow_shell(mesh, directions, none, std::vector<double>(count, cap), options, {});
+    return grow_shell(mesh, directions_along(mesh, pseudo_normals(mesh)), none,
+                      std::vector<double>(count, cap), options, {});
 }
 
 inline GrowOptions by_method(Method method)

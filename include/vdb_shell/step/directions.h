@@ -35,6 +35,9 @@ struct Directions {
     std::vector<double> visibility;
 };
 
+/// Against `outward`, one unit vector (or zero) for each point of the mesh.
+Directions directions_along(const TriangleMesh& mesh, std::vector<openvdb::Vec3d> outward);
+
 /// Directions of the extrusion lines. The level set is read only for DirectionSource::gradient.
 /// The same seed gives the same directions, whatever the number of threads.
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
