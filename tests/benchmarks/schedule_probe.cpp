@@ -34,7 +34,8 @@ struct Number {
     void (*multiply)(GrowthSchedule&, double factor);
 };
 
-/// Counts are rounded, and at least 1.
+/// Counts are rounded, and at least 1. A share below 1 goes no farther than halfway to 1: at 1 some
+/// phases would not end.
 template <auto Group, auto Member> void multiply(GrowthSchedule& schedule, double factor)
 {
     auto& value = schedule.*Group.*Member;
@@ -42,7 +43,8 @@ template <auto Group, auto Member> void multiply(GrowthSchedule& schedule, doubl
     if constexpr (std::is_integral_v<T>)
         value = std::max(T{1}, static_cast<T>(std::lround(factor * value)));
     else
-        value = static_cast<T>(factor * value);
+        value = value < T{1} ? std::min(static_cast<T>(factor * value), (1 + value) / 2)
+                             : static_cast<T>(factor * value);
 }
 
 #define VDB_SHELL_NUMBER(group, Type, member)                                                      \
