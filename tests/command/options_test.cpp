@@ -225,7 +225,7 @@ TEST_F(Options, BashCompletesCommandsFlagsAndChoices)
         return read_bytes(folder / "said");
     };
     EXPECT_EQ(completed("vdb_shell bu", 1), "build\n");
-    EXPECT_EQ(completed("vdb_shell build --thickness-", 2), "--thickness-grid --thickness-scale\n");
+    EXPECT_EQ(completed("vdb_shell build --thickness-", 2), "--thickness-scale --thickness-grid\n");
     EXPECT_EQ(completed("vdb_shell build --no-fl", 2), "--no-flips\n");
     EXPECT_EQ(completed("vdb_shell build --method ''", 3), "raw certified thickest\n");
     EXPECT_EQ(completed("vdb_shell build --method t", 3), "thickest\n");

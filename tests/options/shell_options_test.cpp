@@ -77,8 +77,9 @@ TEST(ShellOptions, EveryOptionSurvivesJson)
             pointer.replace(pointer.find('.'), 1, "/");
         const nlohmann::json::json_pointer where(pointer);
         EXPECT_EQ(after.contains(where), option.stored) << path;
-        if (option.stored)
+        if (option.stored) {
             EXPECT_NE(after.at(where), before.at(where)) << path;
+        }
     });
 }
 
