@@ -32,12 +32,8 @@ namespace
 /// of the mesh alone. Lines that are only fallen back on are not worth smoothing.
 Directions lines_of_level(const TriangleMesh& mesh, const GrowOptions& options, StartedFrom from)
 {
-    Directions directions;
-    directions.inward = pseudo_normals(mesh);
-    directions.visibility = visibility_of(mesh, directions.inward);
-    for (Vec3d& d : directions.inward)
-        d = -d;
-    return prepare_directions(mesh, std::move(directions), options, from == StartedFrom::lines);
+    return prepare_directions(mesh, directions_along(mesh, pseudo_normals(mesh)), options,
+                              from == StartedFrom::lines);
 }
 
 /// By level, its vertices as those of the mesh.
