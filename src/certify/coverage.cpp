@@ -4,15 +4,15 @@
 #include "vdb_shell/options/option.h"
 
 #include "certify/cell_grid.h"
+#include "certify/points_in_planes.h"
 #include "certify/solid_cells.h"
 #include "certify/tet_faces.h"
 #include "core/counter_random.h"
 #include "core/exact.h"
-#include "core/lanes.h"
 #include "core/orient3d_filter.h"
 #include "core/parallel.h"
+#include "core/simd.h"
 #include "core/stage_progress.h"
-#include "core/two_targets.h"
 
 #include <algorithm>
 #include <atomic>
@@ -262,57 +262,57 @@ SortedPoints sort_points(const std::vector<Point>& points, const Bounds& bounds)
 }
 
 /// The tet by floats: which points lie outside for certain.
-struct RoughPlanes {
-    std::array<std::array<float, 3>, 4> outward; ///< unit normals
-    std::array<float, 4> most;                   ///< beyond it along the normal, a point is outside
-
-    RoughPlanes(const std::array<Vec3s, 4>& corners, int sign, const Vec3d& middle, double span)
-    {
-        // A normal's rounding is that of doubles times the edges over the area; then floats round a
-        // dozen terms that are not longer than the span. Four times as much each, and no less than
-        // floats can tell from nought.
-        constexpr double kOfNormal = 0x1p-48, kOfFloats = 0x1p-18;
-        constexpr double kLeast = std::numeric_limits<float>::min();
-        for (std::size_t face = 0; face < 4; ++face) {
-            const Vec3d p(corners[std::size_t(kTetFaces[face][0])]);
-            const Vec3d u = Vec3d(corners[std::size_t(kTetFaces[face][1])]) - p;
-            const Vec3d w = Vec3d(corners[std::size_t(kTetFaces[face][2])]) - p;
-            const Vec3d normal = double(sign) * u.cross(w);
-            const double size = normal.length();
-            const double slack = kOfNormal * std::sqrt(u.lengthSqr() * w.lengthSqr()) / size;
-            for (int a = 0; a < 3; ++a)
-                outward[face][std::size_t(a)] = static_cast<float>(normal[a] / size);
-            most[face] = static_cast<float>(normal.dot(p - middle) / size +
-                                            (slack + kOfFloats) * span + kLeast);
-        }
+FloatPlanes float_planes(const std::array<Vec3s, 4>& corners, int sign, const Vec3d& middle,
+                         double span)
+{
+    // A normal's rounding is that of doubles times the edges over the area; then floats round a
+    // dozen terms that are not longer than the span. Four times as much each, and no less than
+    // floats can tell from nought.
+    constexpr double kOfNormal = 0x1p-48, kOfFloats = 0x1p-18;
+    constexpr double kLeast = std::numeric_limits<float>::min();
+    FloatPlanes planes;
+    for (std::size_t face = 0; face < 4; ++face) {
+        const Vec3d p(corners[std::size_t(kTetFaces[face][0])]);
+        const Vec3d u = Vec3d(corners[std::size_t(kTetFaces[face][1])]) - p;
+        const Vec3d w = Vec3d(corners[std::size_t(kTetFaces[face][2])]) - p;
+        const Vec3d normal = double(sign) * u.cross(w);
+        const double size = normal.length();
+        const double slack = kOfNormal * std::sqrt(u.lengthSqr() * w.lengthSqr()) / size;
+        for (int a = 0; a < 3; ++a)
+            planes.outward[face][std::size_t(a)] = static_cast<float>(normal[a] / size);
+        planes.most[face] =
+            static_cast<float>(normal.dot(p - middle) / size + (slack + kOfFloats) * span + kLeast);
     }
+    return planes;
+}
+
+/// The points near one tet after the other. Kept, for its memory serves all.
+struct NearPoints {
+    std::vector<PointRun> runs;
+    std::vector<std::uint32_t> place; ///< in SortedPoints; the first `count` count
+    std::size_t count = 0;
 };
 
-/// Puts the places in `sorted` of the points in a box of cells that may lie in the tet into `near`.
-/// A plane that is not a number, that of a tet next to flat, leaves all points in.
-VDB_SHELL_TWO_TARGETS void list_near(const SortedPoints& sorted, const CellRange& box,
-                                     const RoughPlanes& planes, std::vector<std::uint32_t>& near)
+/// The points in a box of cells that may lie in the tet.
+void list_near(const SortedPoints& sorted, const CellRange& box, const FloatPlanes& planes,
+               NearPoints& near)
 {
-    near.clear();
+    near.runs.clear();
+    std::size_t most = 0;
     for (std::uint32_t i = box.first[0]; i <= box.last[0]; ++i)
         for (std::uint32_t j = box.first[1]; j <= box.last[1]; ++j) {
-            const std::uint32_t end = sorted.offset[sorted.grid.cell(i, j, box.last[2]) + 1];
-            std::uint32_t k = sorted.offset[sorted.grid.cell(i, j, box.first[2])];
-            for (; k < end; k += kLanes) {
-                Lanes x, y, z;
-                load_lanes(sorted.off[0].data() + k, x);
-                load_lanes(sorted.off[1].data() + k, y);
-                load_lanes(sorted.off[2].data() + k, z);
-                LaneIndices outside{};
-                for (std::size_t face = 0; face < 4; ++face) {
-                    const auto& [nx, ny, nz] = planes.outward[face];
-                    outside |= nx * x + ny * y + nz * z > planes.most[face];
-                }
-                const unsigned valid = end - k < kLanes ? (1U << (end - k)) - 1 : 0xFFU;
-                for (unsigned left = ~bits_of(outside) & valid; left != 0; left &= left - 1)
-                    near.push_back(k + unsigned(__builtin_ctz(left)));
-            }
+            const PointRun run{sorted.offset[sorted.grid.cell(i, j, box.first[2])],
+                               sorted.offset[sorted.grid.cell(i, j, box.last[2]) + 1]};
+            if (run.begin == run.end)
+                continue;
+            near.runs.push_back(run);
+            most += run.end - run.begin;
         }
+    if (near.place.size() < most)
+        near.place.resize(most);
+    near.count =
+        points_in_planes({sorted.off[0].data(), sorted.off[1].data(), sorted.off[2].data()},
+                         near.runs.data(), near.runs.size(), planes, near.place.data());
 }
 
 /// In how many tets each point lies, as far as it matters. Integer increments, and no point that
@@ -323,7 +323,7 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
     const SortedPoints sorted = sort_points(points, scene.bounds);
     std::vector<std::atomic<std::uint32_t>> hits(points.size());
     for_each_range(scene.tets.tets.size(), [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t> near;
+        NearPoints near;
         for (std::size_t tet = begin; tet < end; ++tet) {
             const std::int8_t sign = scene.sign[tet];
             if (sign == 0)
@@ -331,9 +331,10 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
             const std::array<Vec3s, 4> corners = corners_of(scene.tets, tet);
             const FloatBox box = box_of(corners);
             list_near(sorted, sorted.grid.overlapped(box.low, box.high),
-                      RoughPlanes(corners, sign, sorted.middle, scene.span), near);
+                      float_planes(corners, sign, sorted.middle, scene.span), near);
             std::optional<TetInside> inside;
-            for (const std::uint32_t k : near) {
+            for (std::size_t n = 0; n < near.count; ++n) {
+                const std::uint32_t k = near.place[n];
                 std::atomic<std::uint32_t>& count = hits[sorted.point[k]];
                 if (count.load(std::memory_order_relaxed) >= sorted.enough[k])
                     continue;

@@ -89,9 +89,7 @@ int orient2d_filter(const Point& a, const Point& b, const Point& c)
 {
     constexpr double kError = 3.4e-16;
     const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
-    const double det = left - right;
-    const double bound = kError * (std::abs(left) + std::abs(right)) + kUnderflowGuard;
-    return (det > bound) - (det < -bound);
+    return certain_sign(left - right, std::abs(left) + std::abs(right), kError);
 }
 
 /// Whether the line of an edge of s has s on one side and t, but for corners that it shares with

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+// The floating-point filter before exact orientation: one form here for one determinant, one in
+// core/orient3d_filter-inl.h for four at a time.
+
 namespace vdb_shell::exact
 {
 
@@ -16,25 +19,16 @@ inline constexpr double kOrientError = 7.8e-16;
 // tiny absolute term leaves those open.
 inline constexpr double kUnderflowGuard = 1e-280;
 
-/// Sign of det(b-a, c-a, d-a) where doubles decide it for certain, else 0. The points are float32
-/// values held as doubles.
-inline int orient3d_filter(const openvdb::Vec3d& a, const openvdb::Vec3d& b,
-                           const openvdb::Vec3d& c, const openvdb::Vec3d& d)
+/// Sign of a determinant where doubles decide it for certain, else 0. `permanent` is the sum of the
+/// sizes of its products, `error` the bound for it.
+inline int certain_sign(double det, double permanent, double error = kOrientError)
 {
-    const double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
-    const double cx = c[0] - a[0], cy = c[1] - a[1], cz = c[2] - a[2];
-    const double dx = d[0] - a[0], dy = d[1] - a[1], dz = d[2] - a[2];
-    const double xy = bx * cy, yx = by * cx, yz = by * cz, zy = bz * cy, zx = bz * cx, xz = bx * cz;
-    const double det = dz * (xy - yx) + dx * (yz - zy) + dy * (zx - xz);
-    const double permanent = std::abs(dz) * (std::abs(xy) + std::abs(yx)) +
-                             std::abs(dx) * (std::abs(yz) + std::abs(zy)) +
-                             std::abs(dy) * (std::abs(zx) + std::abs(xz));
-    const double bound = kOrientError * permanent + kUnderflowGuard;
+    const double bound = error * permanent + kUnderflowGuard;
     return (det > bound) - (det < -bound);
 }
 
-/// orient3d_filter for many points against one triangle: what depends on the triangle alone is done
-/// once.
+/// The plane of a triangle, and the sides of it that points lie on. Points are float32 values held
+/// as doubles.
 class PlaneFilter
 {
 public:
@@ -55,12 +49,18 @@ public:
         const double det = z * normal_[2] + x * normal_[0] + y * normal_[1];
         const double permanent =
             std::abs(z) * size_[2] + std::abs(x) * size_[0] + std::abs(y) * size_[1];
-        const double bound = kOrientError * permanent + kUnderflowGuard;
-        return (det > bound) - (det < -bound);
+        return certain_sign(det, permanent);
     }
 
 private:
     openvdb::Vec3d a_, normal_, size_;
 };
+
+/// Sign of det(b-a, c-a, d-a) where doubles decide it for certain, else 0.
+inline int orient3d_filter(const openvdb::Vec3d& a, const openvdb::Vec3d& b,
+                           const openvdb::Vec3d& c, const openvdb::Vec3d& d)
+{
+    return PlaneFilter(a, b, c).side(d);
+}
 
 } // namespace vdb_shell::exact

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/lanes.h"
+#include "core/simd.h"
 
 #include <openvdb/Types.h>
 
 #include <array>
+#include <cstdint>
 
 // Distances from eight points to a triangle at once, in floats, relative to a place nearby.
 
 namespace vdb_shell
 {
 
-struct EightPoints {
-    Lanes x, y, z;
+struct alignas(kLanesAlignment) EightPoints {
+    std::array<float, kLanes> x, y, z;
 };
 
 /// A triangle made ready: corners, edges, the edges' normals in its plane (outward) and its own.
@@ -52,25 +53,20 @@ inline PreparedTriangle prepare_triangle(const std::array<openvdb::Vec3d, 3>& co
     return t;
 }
 
-/// Squared distances of the points. `height` is over the triangle's plane, positive along its
-/// normal, for points that project into the triangle; 0 for others.
-VDB_SHELL_LANES_PART void eight_distances(const PreparedTriangle& t, const EightPoints& p,
-                                          Lanes& squared, Lanes& height)
-{
-    const Lanes zero{}, one = zero + 1.0F;
-    Lanes nearest = zero + 3e38F, outside = zero + t.bias, over = zero;
-    for (const PreparedTriangle::Side& s : t.side) {
-        const Lanes x = p.x - s.x, y = p.y - s.y, z = p.z - s.z;
-        Lanes along = (x * s.ex + y * s.ey + z * s.ez) * s.inverse;
-        raise_to(along, zero);
-        lower_to(along, one);
-        const Lanes dx = x - along * s.ex, dy = y - along * s.ey, dz = z - along * s.ez;
-        lower_to(nearest, dx * dx + dy * dy + dz * dz);
-        raise_to(outside, x * s.mx + y * s.my + z * s.mz);
-        over = x * t.nx + y * t.ny + z * t.nz;
-    }
-    squared = outside > zero ? nearest : over * over;
-    height = outside > zero ? zero : over;
-}
+/// The nearest of some triangles to each of eight points. `height` is over the triangle's plane,
+/// positive along its normal, for a point that projects into the triangle; 0 for others.
+struct alignas(kLanesAlignment) EightNearest {
+    std::array<float, kLanes> squared, height;
+    std::array<std::int32_t, kLanes> triangle;
+};
+
+/// Of the triangles that `list` picks, the first where several are as near. `squared`, where not
+/// null, gets the squared distances of the eight points to each of the list.
+void nearest_of(const PreparedTriangle* triangles, const std::uint32_t* list, std::size_t count,
+                const EightPoints& points, float* squared, EightNearest& nearest);
+
+/// For each eight of `squared` the bits of those that are not above their limit.
+void list_within(const float* squared, std::size_t count, const std::array<float, kLanes>& limit,
+                 std::uint8_t* bits);
 
 } // namespace vdb_shell

@@ -147,53 +147,7 @@ std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::siz
         parts, [](const LeafTriangle& pair) { return pair.column(); }, std::less<>());
 }
 
-/// The nearest of some triangles to each of eight points.
-struct EightNearest {
-    Lanes squared, height; ///< as of eight_distances
-    LaneIndices triangle;
-};
-
-/// `list` picks from the triangles; `squared`, where wanted, gets the distances to each of it.
-VDB_SHELL_TWO_TARGETS void nearest_of(const std::vector<PreparedTriangle>& triangles,
-                                      const std::vector<std::uint32_t>& list,
-                                      const EightPoints& points, float* squared,
-                                      EightNearest& nearest)
-{
-    Lanes least = Lanes{} + std::numeric_limits<float>::max(), height{};
-    LaneIndices triangle{};
-    for (const std::uint32_t t : list) {
-        Lanes d, over;
-        eight_distances(triangles[t], points, d, over);
-        if (squared) {
-            store_lanes(d, squared);
-            squared += kLanes;
-        }
-        const LaneIndices here = LaneIndices{} + static_cast<std::int32_t>(t);
-        triangle = d < least ? here : triangle;
-        height = d < least ? over : height;
-        lower_to(least, d);
-    }
-    nearest.squared = least;
-    nearest.height = height;
-    nearest.triangle = triangle;
-}
-
 using List = std::vector<std::uint32_t>;
-
-/// Gives each of eight points those of the list that are no farther from it than its limit.
-VDB_SHELL_TWO_TARGETS void thin_out(const List& list, const float* squared, const Lanes& limit,
-                                    std::array<List, kLanes>& of_point)
-{
-    for (List& near : of_point)
-        near.clear();
-    for (const std::uint32_t t : list) {
-        Lanes d;
-        load_lanes(squared, d);
-        squared += kLanes;
-        for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1)
-            of_point[std::size_t(__builtin_ctz(bits))].push_back(t);
-    }
-}
 
 /// The triangles that matter to a block of voxels, thinned out from leaf to half to quarter.
 class LeafFill
@@ -239,15 +193,15 @@ private:
         }
         EightNearest nearest;
         if (level == 2) {
-            nearest_of(prepared_, list, points, nullptr, nearest);
+            nearest_of(prepared_.data(), list.data(), list.size(), points, nullptr, nearest);
             store(corner, nearest);
             return;
         }
         squared_.resize(list.size() * kLanes);
-        nearest_of(prepared_, list, points, squared_.data(), nearest);
+        nearest_of(prepared_.data(), list.data(), list.size(), points, squared_.data(), nearest);
         // From an eighth's middle to its farthest voxel centre.
         const float radius = std::sqrt(3.0F) * 0.5F * static_cast<float>(eighth - 1);
-        Lanes limit{};
+        std::array<float, kLanes> limit;
         for (std::size_t i = 0; i < kLanes; ++i) {
             const float closest = std::sqrt(nearest.squared[i]);
             const float most =
@@ -255,10 +209,24 @@ private:
             limit[i] = closest > reach_ + radius ? -1.0F : most * most;
         }
         std::array<List, kLanes>& of_eighth = lists_[level];
-        thin_out(list, squared_.data(), limit, of_eighth);
+        deal_out(list, limit, of_eighth);
         for (std::size_t i = 0; i < kLanes; ++i)
             if (!of_eighth[i].empty())
                 descend(level + 1, corner_of_eighth(corner, eighth, i), of_eighth[i]);
+    }
+
+    /// Gives each of eight points those of the list that are no farther from it than its limit, by
+    /// the distances in squared_.
+    void deal_out(const List& list, const std::array<float, kLanes>& limit,
+                  std::array<List, kLanes>& of_point)
+    {
+        for (List& near : of_point)
+            near.clear();
+        within_.resize(list.size());
+        list_within(squared_.data(), list.size(), limit, within_.data());
+        for (std::size_t n = 0; n < list.size(); ++n)
+            for (unsigned bits = within_[n]; bits != 0; bits &= bits - 1)
+                of_point[std::size_t(__builtin_ctz(bits))].push_back(list[n]);
     }
 
     static Coord corner_of_eighth(const Coord& corner, int eighth, std::size_t i)
@@ -296,6 +264,7 @@ private:
     List all_;
     std::array<std::array<List, kLanes>, 2> lists_; ///< by level, of each eighth
     std::vector<float> squared_;
+    std::vector<std::uint8_t> within_;
 };
 
 void fill_leaves(openvdb::FloatTree& tree, const SignedDistance& surface, double voxel,

@@ -4,19 +4,29 @@
 // Gives: about where its convex problem has its minimum. In float32 and a few steps, because
 // nothing rests on it: every move is tested exactly afterwards (docs/theory.md, "Barrier").
 
-#include "growth/barrier.h"
+#include "core/simd.h"
 
-#include "core/four_floats.h"
-#include "core/lanes.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "growth/barrier.cpp"
+#include <hwy/foreach_target.h>
+
+#include "core/simd-inl.h"
+#include "growth/barrier.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+HWY_BEFORE_NAMESPACE();
 namespace vdb_shell::growth
+{
+namespace HWY_NAMESPACE
 {
 namespace
 {
+
+using namespace simd::HWY_NAMESPACE;
+using Block = LinearBounds::Block;
 
 // More steps change neither fill nor time much: the neighbours move before the vertex's next turn.
 constexpr int kNewtonSteps = 3;
@@ -32,7 +42,7 @@ struct Curvature {
 };
 
 /// Solves h dx = -g by Cholesky; false where h is not safely positive.
-bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
+HWY_INLINE bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
 {
     const double l00 = std::sqrt(h.xx);
     const double l10 = h.xy / l00, l20 = h.xz / l00;
@@ -53,7 +63,7 @@ bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
 }
 
 /// Where x + t dx leaves the ball. Precondition: x lies in it.
-double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
+HWY_INLINE double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
 {
     const Vec3d arm = x - ball.centre;
     const double a = dx.lengthSqr(), b = arm.dot(dx);
@@ -64,7 +74,7 @@ double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
     return b > 0 ? c / (root + b) : (root - b) / a;
 }
 
-void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
+HWY_INLINE void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
 {
     const Vec3d arm = x - ball.centre;
     const double room = ball.radius * ball.radius - arm.lengthSqr();
@@ -76,7 +86,139 @@ void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
     h.xy += n[0] * n[1], h.xz += n[0] * n[2], h.yz += n[1] * n[2];
 }
 
+/// LinearBounds::add_prism, of corners relative to the vertex.
+void bound_prism(const std::array<Vec3d, 5>& corner, const Vec3d& here, double scale, Block& out)
+{
+    // By axis; the last three lanes are not picked.
+    FloatPoint p, u, w;
+    for (int k = 0; k < 3; ++k) {
+        const Doubles first =
+            (four(corner[0][k], corner[1][k], corner[2][k], corner[3][k]) - here[k]) * scale;
+        const Floats at(to_floats(first),
+                        Floats::Half(static_cast<float>((corner[4][k] - here[k]) * scale)));
+        const auto axis = static_cast<std::size_t>(k);
+        // The bases of PrismTables, in an order of their own. The nearest corner comes first, an
+        // inner one if there is one, for floats are relative to the vertex.
+        p[axis] = pick<4, 4, 4, 2, 4, 3, 3, 4>(at);
+        u[axis] = pick<3, 3, 1, 1, 3, 0, 1, 1>(at) - p[axis];
+        w[axis] = pick<0, 1, 2, 0, 2, 2, 2, 0>(at) - p[axis];
+    }
+    const Floats x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
+                 z = u[0] * w[1] - u[1] * w[0];
+    const Floats squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
+    // A base without area has no normal: its value is nought, and it does not count.
+    constexpr float kTiny = 1e-30F;
+    const Floats zero(0.0F), one(1.0F), inverse = one / (square_root(squared) + kTiny);
+    const auto counts = value > zero;
+    store(x * inverse, out.x.data());
+    store(y * inverse, out.y.data());
+    store(z * inverse, out.z.data());
+    store(select(counts, value * inverse, one), out.value.data());
+    store(select(counts, one, zero), out.weight.data());
+}
+
+/// A direction across a block of bounds.
+struct Normals {
+    Floats x, y, z;
+    HWY_INLINE explicit Normals(const Block& b)
+        : x(Floats::load(b.x.data())), y(Floats::load(b.y.data())), z(Floats::load(b.z.data()))
+    {
+    }
+    HWY_INLINE Floats dot(const Vec3s& d) const { return x * d[0] + y * d[1] + z * d[2]; }
+};
+
+HWY_INLINE double wide_sum(Floats x)
+{
+    return static_cast<double>(sum_of(x));
+}
+
+/// Adds gradient and curvature of the logarithms.
+HWY_INLINE void add_logarithms(const Block* first, const Block* last, Vec3d& gradient, Curvature& h)
+{
+    Floats gx(0.0F), gy(0.0F), gz(0.0F), xx(0.0F), xy(0.0F), xz(0.0F), yy(0.0F), yz(0.0F), zz(0.0F);
+    for (const Block* b = first; b != last; ++b) {
+        const Floats inverse = 1.0F / Floats::load(b->value.data());
+        const Normals n(*b);
+        const Floats x = n.x * inverse, y = n.y * inverse, z = n.z * inverse;
+        const Floats weight = Floats::load(b->weight.data());
+        const Floats wx = weight * x, wy = weight * y, wz = weight * z;
+        gx += wx, gy += wy, gz += wz;
+        xx += wx * x, xy += wx * y, xz += wx * z;
+        yy += wy * y, yz += wy * z, zz += wz * z;
+    }
+    gradient -= Vec3d(wide_sum(gx), wide_sum(gy), wide_sum(gz));
+    h = {wide_sum(xx), wide_sum(xy), wide_sum(xz), wide_sum(yy), wide_sum(yz), wide_sum(zz)};
+}
+
+/// How far along d the first bound is met.
+HWY_INLINE double room_along(const Block* first, const Block* last, const Vec3s& d, double room)
+{
+    Floats least(std::numeric_limits<float>::max());
+    for (const Block* b = first; b != last; ++b) {
+        // Of the values over the slopes only the positive ones are ahead.
+        Floats down = -Normals(*b).dot(d);
+        raise_to(down, Floats(1e-30F));
+        lower_to(least, Floats::load(b->value.data()) / down);
+    }
+    alignas(kLanesAlignment) std::array<float, kLanes> rooms;
+    store(least, rooms.data());
+    for (const float of_lane : rooms)
+        room = std::min(room, static_cast<double>(of_lane));
+    return room;
+}
+
+HWY_INLINE void move_by(const Vec3s& d, Block* first, Block* last)
+{
+    const Floats zero(0.0F), one(1.0F);
+    for (Block* b = first; b != last; ++b) {
+        const Floats value = Floats::load(b->value.data()) + Normals(*b).dot(d);
+        // A bound overstepped by a damped step no longer counts.
+        const auto kept = value > zero;
+        store(select(kept, Floats::load(b->weight.data()), zero), b->weight.data());
+        store(select(kept, value, one), b->value.data());
+    }
+}
+
+/// Newton's method in the bounds' own scale, from the origin; the position is held as values of the
+/// bounds.
+void newton_minimum(Block* first, Block* last, const Ball& ball, const Vec3d& gradient, Vec3d& x)
+{
+    x = Vec3d(0.0);
+    for (int step = 0; step < kNewtonSteps; ++step) {
+        Vec3d g = gradient, dx;
+        Curvature h{};
+        add_logarithms(first, last, g, h);
+        add_ball(ball, x, g, h);
+        const double trace = h.xx + h.yy + h.zz;
+        if (!(trace > 0))
+            break;
+        // The bounds may leave a direction free.
+        h.xx += 1e-9 * trace, h.yy += 1e-9 * trace, h.zz += 1e-9 * trace;
+        if (!solve_positive(h, g, dx))
+            break;
+        const double decrement = std::sqrt(std::max(0.0, -g.dot(dx)));
+        const double damped = decrement > kDamped ? 1 / (1 + decrement) : 1;
+        // Far from the centre a longer step pays off, as long as it stays well inside every bound.
+        const double room = room_along(first, last, Vec3s(dx), room_in_ball(ball, x, dx));
+        const double share = std::max(damped, std::min(1.0, 0.7 * room));
+        x += share * dx;
+        if (decrement < kConverged)
+            break;
+        move_by(Vec3s(share * dx), first, last);
+    }
+}
+
 } // namespace
+} // namespace HWY_NAMESPACE
+} // namespace vdb_shell::growth
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vdb_shell::growth
+{
+
+HWY_EXPORT(bound_prism);
+HWY_EXPORT(newton_minimum);
 
 void LinearBounds::clear(const Vec3d& here, double scale)
 {
@@ -103,8 +245,9 @@ void LinearBounds::add_unit(const Vec3s& n, double value)
     const std::size_t lane = size_++ % kLanes;
     if (lane == 0) {
         Block& empty = block_.emplace_back();
-        empty.x = empty.y = empty.z = empty.weight = Lanes{};
-        empty.value = Lanes{} + 1.0f;
+        for (auto* of : {&empty.x, &empty.y, &empty.z, &empty.weight})
+            of->fill(0.0F);
+        empty.value.fill(1.0F);
     }
     Block& b = block_.back();
     b.x[lane] = n[0], b.y[lane] = n[1], b.z[lane] = n[2];
@@ -112,41 +255,10 @@ void LinearBounds::add_unit(const Vec3s& n, double value)
     b.weight[lane] = 1.0f;
 }
 
-VDB_SHELL_TWO_TARGETS void LinearBounds::add_prism(const std::array<Vec3d, 5>& corner)
+void LinearBounds::add_prism(const std::array<Vec3d, 5>& corner)
 {
-    // By axis; the last three lanes are not read.
-    std::array<Lanes, 3> at;
-    for (int k = 0; k < 3; ++k) {
-        const DoubleLanes four =
-            (DoubleLanes{corner[0][k], corner[1][k], corner[2][k], corner[3][k]} - here_[k]) *
-            scale_;
-        const FourFloats first = __builtin_convertvector(four, FourFloats),
-                         last = vdb_shell::four(
-                             static_cast<float>((corner[4][k] - here_[k]) * scale_));
-        at[k] = __builtin_shufflevector(first, last, 0, 1, 2, 3, 4, 5, 6, 7);
-    }
-    std::array<Lanes, 3> p, u, w;
-    for (int k = 0; k < 3; ++k) {
-        // The bases of PrismTables, in an order of their own. The nearest corner comes first, an
-        // inner one if there is one, for floats are relative to the vertex.
-        p[k] = __builtin_shufflevector(at[k], at[k], 4, 4, 4, 2, 4, 3, 3, 4);
-        u[k] = __builtin_shufflevector(at[k], at[k], 3, 3, 1, 1, 3, 0, 1, 1) - p[k];
-        w[k] = __builtin_shufflevector(at[k], at[k], 0, 1, 2, 0, 2, 2, 2, 0) - p[k];
-    }
-    const Lanes x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
-                z = u[0] * w[1] - u[1] * w[0];
-    const Lanes squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
     size_ += kLanes;
-    Block& b = block_.emplace_back();
-    // A base without area has no normal: its value is nought, and it does not count.
-    constexpr float kTiny = 1e-30F;
-    Lanes length;
-    for (std::size_t i = 0; i < kLanes; ++i)
-        length[i] = std::sqrt(squared[i]);
-    const Lanes inverse = 1.0F / (length + kTiny);
-    b.x = x * inverse, b.y = y * inverse, b.z = z * inverse;
-    b.value = value > 0 ? value * inverse : Lanes{} + 1.0F;
-    b.weight = value > 0 ? Lanes{} + 1.0F : Lanes{};
+    HWY_DYNAMIC_DISPATCH(bound_prism)(corner, here_, scale_, block_.emplace_back());
 }
 
 void LinearBounds::weigh(std::size_t first, float weight)
@@ -155,106 +267,16 @@ void LinearBounds::weigh(std::size_t first, float weight)
         block_[i / kLanes].weight[i % kLanes] = weight;
 }
 
-/// Newton's method in the bounds' own scale; the position is held as values of the bounds.
-class Newton
+Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball, const Vec3d& gradient, double weight)
 {
-public:
-    Newton(LinearBounds& bounds, const Ball& ball, const Vec3d& gradient, double weight)
-        : bounds_(bounds),
-          gradient_(gradient / (weight * bounds.scale_)), ball_{(ball.centre - bounds.here_) *
-                                                                    bounds.scale_,
-                                                                ball.radius * bounds.scale_}
-    {
-    }
-
-    Vec3d minimum()
-    {
-        for (int step = 0; step < kNewtonSteps; ++step) {
-            Vec3d g, dx;
-            Curvature h{};
-            slope(g, h);
-            const double trace = h.xx + h.yy + h.zz;
-            if (!(trace > 0))
-                break;
-            // The bounds may leave a direction free.
-            h.xx += 1e-9 * trace, h.yy += 1e-9 * trace, h.zz += 1e-9 * trace;
-            if (!solve_positive(h, g, dx))
-                break;
-            const double decrement = std::sqrt(std::max(0.0, -g.dot(dx)));
-            const double damped = decrement > kDamped ? 1 / (1 + decrement) : 1;
-            // Far from the centre a longer step pays off, as long as it stays well inside every
-            // bound.
-            const double share = std::max(damped, std::min(1.0, 0.7 * room_along(dx)));
-            x_ += share * dx;
-            if (decrement < kConverged)
-                break;
-            move_by(share * dx);
-        }
-        return bounds_.here_ + x_ / bounds_.scale_;
-    }
-
-private:
-    static double sum(const Lanes& lane)
-    {
-        std::array<float, 4> four;
-        for (std::size_t i = 0; i < 4; ++i)
-            four[i] = lane[i] + lane[i + 4];
-        return static_cast<double>((four[0] + four[2]) + (four[1] + four[3]));
-    }
-
-    void slope(Vec3d& gradient, Curvature& h) const
-    {
-        Lanes gx{}, gy{}, gz{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
-        for (const LinearBounds::Block& b : bounds_.block_) {
-            const Lanes inverse = 1.0f / b.value;
-            const Lanes x = b.x * inverse, y = b.y * inverse, z = b.z * inverse;
-            const Lanes wx = b.weight * x, wy = b.weight * y, wz = b.weight * z;
-            gx += wx, gy += wy, gz += wz;
-            xx += wx * x, xy += wx * y, xz += wx * z;
-            yy += wy * y, yz += wy * z, zz += wz * z;
-        }
-        gradient = gradient_ - Vec3d(sum(gx), sum(gy), sum(gz));
-        h = {sum(xx), sum(xy), sum(xz), sum(yy), sum(yz), sum(zz)};
-        add_ball(ball_, x_, gradient, h);
-    }
-
-    /// How far along dx the first bound is met.
-    double room_along(const Vec3d& dx) const
-    {
-        const Vec3s d(dx);
-        Lanes least = Lanes{} + std::numeric_limits<float>::max();
-        for (const LinearBounds::Block& b : bounds_.block_) {
-            // Of the values over the slopes only the positive ones are ahead.
-            Lanes down = -(b.x * d[0] + b.y * d[1] + b.z * d[2]);
-            raise_to(down, Lanes{} + 1e-30f);
-            lower_to(least, b.value / down);
-        }
-        double room = room_in_ball(ball_, x_, dx);
-        for (std::size_t i = 0; i < kLanes; ++i)
-            room = std::min(room, static_cast<double>(least[i]));
-        return room;
-    }
-
-    void move_by(const Vec3d& dx)
-    {
-        const Vec3s d(dx);
-        for (LinearBounds::Block& b : bounds_.block_) {
-            const Lanes value = b.value + (b.x * d[0] + b.y * d[1] + b.z * d[2]);
-            // A bound overstepped by a damped step no longer counts.
-            b.weight = value > 0 ? b.weight : Lanes{};
-            b.value = value > 0 ? value : Lanes{} + 1.0f;
-        }
-    }
-
-    LinearBounds& bounds_;
-    Vec3d gradient_, x_{0.0};
-    Ball ball_;
-};
-
-VDB_SHELL_TWO_TARGETS Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball,
-                                            const Vec3d& gradient, double weight)
-{
-    return Newton(bounds, ball, gradient, weight).minimum();
+    const double scale = bounds.scale();
+    const Ball scaled{(ball.centre - bounds.here()) * scale, ball.radius * scale};
+    LinearBounds::Block* const first = bounds.blocks().data();
+    Vec3d x;
+    HWY_DYNAMIC_DISPATCH(newton_minimum)
+    (first, first + bounds.blocks().size(), scaled, gradient / (weight * scale), x);
+    return bounds.here() + x / scale;
 }
 
 } // namespace vdb_shell::growth
+#endif

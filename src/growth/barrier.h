@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/lanes.h"
+#include "core/simd.h"
 #include "growth/grow_state.h"
 
 #include <array>
@@ -28,12 +28,18 @@ public:
     void weigh(std::size_t first, float weight);
     std::size_t size() const { return size_; }
 
-private:
-    friend class Newton;
+    /// Bounds side by side; lanes that are not used have the weight 0.
     struct alignas(kLanesAlignment) Block {
         Block() {} // whoever adds one fills it
-        Lanes x, y, z, value, weight;
+        std::array<float, kLanes> x, y, z, value, weight;
     };
+    /// For barrier_minimum: the bounds, the place that they are relative to, and the inverse of
+    /// their unit.
+    std::vector<Block>& blocks() { return block_; }
+    const Vec3d& here() const { return here_; }
+    double scale() const { return scale_; }
+
+private:
     std::vector<Block> block_;
     std::size_t size_ = 0;
     Vec3d here_{0.0};

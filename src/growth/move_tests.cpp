@@ -34,32 +34,6 @@ bool positive(const GrowState& s, int f, const OrientedTet& tet)
                   corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])) > 0;
 }
 
-VDB_SHELL_LANES_PART void filter(const Bases& bases, DoubleLanes& room)
-{
-    const auto& [p, u, w] = bases;
-    DoubleLanes det{}, permanent{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        const DoubleLanes left = u[i] * w[j], right = u[j] * w[i];
-        det -= p[k] * (left - right);
-        const DoubleLanes sum = (left < 0 ? -left : left) + (right < 0 ? -right : right);
-        permanent += (p[k] < 0 ? -p[k] : p[k]) * sum;
-    }
-    room = det - (exact::kOrientError * permanent + exact::kUnderflowGuard);
-}
-
-/// Whether doubles show for certain that the tets of all pillars of a prism that hold its inner
-/// point `at` are positive with it at x: exact::orient3d_filter, four tets at a time.
-VDB_SHELL_TWO_TARGETS bool surely_positive(const GrowState& s, const FaceCorner& at, const Vec3d& x)
-{
-    std::array<Bases, 2> half;
-    bases_around(s, at, x, half);
-    DoubleLanes room, other;
-    filter(half[0], room), filter(half[1], other);
-    room = other < room ? other : room;
-    return room[0] > 0 && room[1] > 0 && room[2] > 0 && room[3] > 0;
-}
-
 bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
 {
     const auto& [a, b, c] = base;
@@ -181,7 +155,7 @@ Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
 bool tets_positive_at(const GrowState& s, int v, const Vec3d& x)
 {
     for (const FaceCorner& at : star(*s.mesh, v)) {
-        if (s.twelve && surely_positive(s, at, x))
+        if (s.twelve && surely_positive(prism_around(s, at), x.asPointer()))
             continue;
         for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local))
             if (!dropped(s, at.face, tet.pillar) &&

@@ -4,9 +4,20 @@
 #include "core/fan.h"
 #include "growth/barrier.h"
 #include "growth/grow_state.h"
+#include "growth/prism_lanes.h"
 
 namespace vdb_shell::growth
 {
+
+/// The prism of a face around one of its corners' inner points.
+inline PrismAround prism_around(const GrowState& s, const FaceCorner& at)
+{
+    const int v = s.mesh->corner(at.face, at.local);
+    const int next = s.mesh->corner(at.face, (at.local + 1) % 3),
+              last = s.mesh->corner(at.face, (at.local + 2) % 3);
+    return {s.a[v].asPointer(), s.a[next].asPointer(), s.a[last].asPointer(), s.b[next].asPointer(),
+            s.b[last].asPointer()};
+}
 
 /// The tets of the prism's present split that hold inner corner `local` of face f.
 inline Slice<TetFromInner> chosen_tets_with_inner(const GrowState& s, int f, int local)

@@ -3,42 +3,45 @@
 
 // The eight of a prism's twelve tets that hold one inner point, four at a time.
 
-#include "core/lanes.h"
-#include "growth/grow_state.h"
+#include "core/simd.h"
 
 #include <array>
+#include <cstddef>
 
 namespace vdb_shell::growth
 {
 
-/// Bases of four tets, by corner and relative to their apex: the apex lies where
-/// p.(u x w) is negative if they are positive.
-struct Bases {
-    DoublePoint p, u, w;
+/// The corners of a prism but for the inner point of the vertex that is asked about: that vertex's
+/// outer point, the outer points of the next and the last in its triangle, and their inner ones.
+/// Three doubles each.
+struct PrismAround {
+    const double *outer, *outer_next, *outer_last, *inner_next, *inner_last;
 };
 
-/// As PrismTables has them, in an order of their own: those of half 0 belong to the pillars of v,
-/// the next vertex, the last and v, those of half 1 to the last, v, the next and v. `apex` stands
-/// for the inner point of v, the corner `at`.
-VDB_SHELL_LANES_PART void bases_around(const GrowState& s, const FaceCorner& at, const Vec3d& apex,
-                                       std::array<Bases, 2>& half)
-{
-    const int v = s.mesh->corner(at.face, at.local);
-    const int next = s.mesh->corner(at.face, (at.local + 1) % 3),
-              last = s.mesh->corner(at.face, (at.local + 2) % 3);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const int axis = static_cast<int>(k);
-        const DoubleLanes four =
-            DoubleLanes{s.a[v][axis], s.a[next][axis], s.a[last][axis], s.b[next][axis]} -
-            apex[axis];
-        const DoubleLanes fifth = DoubleLanes{} + (s.b[last][axis] - apex[axis]);
-        half[0].p[k] = __builtin_shufflevector(four, fifth, 4, 4, 4, 2);
-        half[0].u[k] = __builtin_shufflevector(four, fifth, 3, 3, 1, 1);
-        half[0].w[k] = __builtin_shufflevector(four, fifth, 0, 1, 2, 0);
-        half[1].p[k] = __builtin_shufflevector(four, fifth, 4, 3, 3, 4);
-        half[1].u[k] = __builtin_shufflevector(four, fifth, 3, 0, 1, 1);
-        half[1].w[k] = __builtin_shufflevector(four, fifth, 2, 2, 2, 0);
-    }
-}
+/// Whether doubles show for certain that all tets of the prism that hold the inner point are
+/// positive with it at x, those of dropped pillars too: exact::orient3d_filter of each.
+bool surely_positive(const PrismAround& prism, const double* x);
+
+/// The bounds of half the tets of one prism, lane by lane: n.(x - here) + value, unit n. A tet that
+/// does not count has n = 0 and a value that is always enough.
+struct alignas(kLanesAlignment) TetBounds {
+    std::array<double, kDoubleLanes> x, y, z, value;
+};
+
+/// A prism, and 0 for each of next and last whose pillar is dropped, 1 else.
+struct CountedPrism {
+    PrismAround prism;
+    double of_next, of_last;
+};
+/// The bounds of each prism's tets that hold the inner point, which is `here`: two halves a prism.
+/// Gives back the least value of one.
+double bound_tets(const CountedPrism* prisms, std::size_t count, const double* here,
+                  TetBounds* bounds);
+
+/// Gradient x, y, z and curvature xx, xy, xz, yy, yz, zz of half the squares of what the bounds
+/// are short of `room` at x.
+using ShortfallSlopes = std::array<double, 9>;
+ShortfallSlopes sum_shortfalls(const TetBounds* bounds, std::size_t count, double room,
+                               const double* x);
 
 } // namespace vdb_shell::growth

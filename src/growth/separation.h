@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/lanes.h"
+#include "core/simd.h"
 #include "growth/predicates.h"
 
 #include <cstddef>

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace vdb_shell
@@ -19,10 +18,7 @@ using openvdb::Vec3f;
 namespace
 {
 
-constexpr std::uint32_t kLeafBit = 1U << 31;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Queries that begin with many boxes take longer over these than over the levels above.
-constexpr std::size_t kMostPicked = 48;
 // Below it a range is not worth another thread.
 constexpr std::size_t kWorthAThread = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
@@ -197,53 +193,21 @@ TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std
     return node;
 }
 
-using Point = std::array<Lanes, 3>;
-
-template <typename Boxes>
-VDB_SHELL_LANES_PART void box_distances(const Boxes& node, const Point& p, Lanes& squared)
-{
-    squared = Lanes{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes x = node.axis[k][0] * p[0] + node.axis[k][1] * p[1] + node.axis[k][2] * p[2];
-        Lanes off = node.low[k] - x;
-        raise_to(off, x - node.high[k]);
-        raise_to(off, Lanes{});
-        squared += off * off;
-    }
-}
-
-VDB_SHELL_LANES_PART void distances(const TriangleTree::Block& t, const Point& p, Lanes& squared)
-{
-    const Lanes zero{}, one = zero + 1.0F;
-    Lanes nearest = zero + kInfinity, outside = t.bias;
-    Lanes x = p[0] - t.corner[0][0], y = p[1] - t.corner[0][1], z = p[2] - t.corner[0][2];
-    const Lanes height = x * t.normal[0] + y * t.normal[1] + z * t.normal[2];
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto &from = t.corner[k], &to = t.corner[(k + 1) % 3], &m = t.beyond[k];
-        const Lanes ex = to[0] - from[0], ey = to[1] - from[1], ez = to[2] - from[2];
-        Lanes along = (x * ex + y * ey + z * ez) * t.inverse[k];
-        raise_to(along, zero);
-        lower_to(along, one);
-        const Lanes dx = x - along * ex, dy = y - along * ey, dz = z - along * ez;
-        lower_to(nearest, dx * dx + dy * dy + dz * dz);
-        raise_to(outside, x * m[0] + y * m[1] + z * m[2]);
-        x -= ex, y -= ey, z -= ez;
-    }
-    squared = outside > zero ? nearest : height * height;
-}
-
 } // namespace
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit) : unit_(unit)
+TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit)
 {
+    std::vector<Node>& nodes = arrays_.nodes;
+    std::vector<Block>& blocks = arrays_.blocks;
+    arrays_.unit = unit;
     const Bounds bounds = bounds_of(mesh.points);
-    middle_ = 0.5 * (bounds.low + bounds.high);
+    arrays_.middle = 0.5 * (bounds.low + bounds.high);
     const float slack = kBoxSlack * static_cast<float>(diagonal_of(bounds) / unit);
-    const Ordered ordered(mesh, middle_, unit);
-    blocks_.resize(ordered.leaves());
-    for_each_index(blocks_.size(), [&](std::size_t i) { blocks_[i] = make_block(ordered, i); });
+    const Ordered ordered(mesh, arrays_.middle, unit);
+    blocks.resize(ordered.leaves());
+    for_each_index(blocks.size(), [&](std::size_t i) { blocks[i] = make_block(ordered, i); });
     if (ordered.leaves() == 1) {
-        root_ = kLeafBit;
+        arrays_.root = kLeafBit;
         return;
     }
     // The nodes of a level lie together, the root first, and have as many leaves each.
@@ -253,178 +217,19 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit) : unit_(unit)
     std::reverse(below.begin(), below.end());
     std::size_t count = 1;
     for (const std::size_t children : below) {
-        const std::size_t start = nodes_.size(), leaves = ordered.leaves() / children;
-        nodes_.resize(start + count);
-        const std::size_t next = children < ordered.leaves() ? nodes_.size() : kLeafBit;
+        const std::size_t start = nodes.size(), leaves = ordered.leaves() / children;
+        nodes.resize(start + count);
+        const std::size_t next = children < ordered.leaves() ? nodes.size() : kLeafBit;
         const std::size_t each = children / count;
         for_each_index(
             count,
             [&](std::size_t i) {
-                Node& node = nodes_[start + i];
+                Node& node = nodes[start + i];
                 node = make_node(ordered, i * each * leaves, leaves, each, slack);
                 node.first_child = static_cast<std::uint32_t>(next + i * each);
             },
             1);
         count = children;
-    }
-}
-
-/// A query under way.
-struct TriangleTree::Search {
-    struct Entry {
-        float squared;
-        std::uint32_t id;
-    };
-    // No list of members in braces: that would clear the stack for every query.
-    VDB_SHELL_LANES_PART Search(const TriangleTree& tree, const Vec3d& at, float spare, Seed& last)
-        : nodes(tree.nodes_), blocks(tree.blocks_), tolerance(spare), seed(last)
-    {
-        const Vec3f p((at - tree.middle_) / tree.unit_);
-        point = {Lanes{} + p[0], Lanes{} + p[1], Lanes{} + p[2]};
-    }
-    const std::vector<Node>& nodes;
-    const std::vector<Block>& blocks;
-    Point point;
-    float tolerance;
-    Seed& seed;
-    Seed done = kNoSeed; ///< the block looked into first
-    float limit = std::numeric_limits<float>::max();
-    Found found{0, kInfinity};
-    // What is picked, and at each of at most 12 levels all but one of the siblings.
-    std::array<Entry, kMostPicked + 12 * kLanes> stack;
-    std::size_t top = 0;
-
-    VDB_SHELL_LANES_PART void look_into(std::uint32_t id)
-    {
-        const Block& block = blocks[id & ~kLeafBit];
-        Lanes d;
-        distances(block, point, d);
-        unsigned bits = bits_of(d < found.squared);
-        if (bits == 0)
-            return;
-        for (; bits != 0; bits &= bits - 1) {
-            const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
-            if (d[i] < found.squared)
-                found = {block.triangle[i], d[i]};
-        }
-        seed = id;
-        const float nearer = std::max(std::sqrt(found.squared) - tolerance, 0.0F);
-        limit = tolerance > 0 ? nearer * nearer : found.squared;
-    }
-
-    VDB_SHELL_LANES_PART void begin()
-    {
-        done = seed;
-        if (seed != kNoSeed)
-            look_into(seed);
-    }
-
-    /// Nearest on top of what is above `bottom`.
-    VDB_SHELL_LANES_PART void push(const Entry& entry, std::size_t bottom)
-    {
-        std::size_t place = top++;
-        for (; place > bottom && stack[place - 1].squared < entry.squared; --place)
-            stack[place] = stack[place - 1];
-        stack[place] = entry;
-    }
-
-    VDB_SHELL_LANES_PART void run()
-    {
-        while (top > 0) {
-            const Entry entry = stack[--top];
-            if (entry.squared > limit || entry.id == done)
-                continue;
-            if (entry.id & kLeafBit) {
-                look_into(entry.id);
-                continue;
-            }
-            const Node& node = nodes[entry.id];
-            Lanes d;
-            box_distances(node, point, d);
-            const std::size_t bottom = top;
-            for (unsigned bits = bits_of(d <= limit); bits != 0; bits &= bits - 1) {
-                const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
-                push({d[i], node.first_child + std::uint32_t(i)}, bottom);
-            }
-        }
-    }
-};
-
-VDB_SHELL_TWO_TARGETS TriangleTree::Found TriangleTree::nearest(const Vec3d& at, float tolerance,
-                                                                Seed& seed) const
-{
-    Search search(*this, at, tolerance, seed);
-    search.begin();
-    search.push({0.0F, root_}, 0);
-    search.run();
-    return search.found;
-}
-
-VDB_SHELL_TWO_TARGETS float TriangleTree::squared_distance(const Vec3d& at, Nearby& nearby) const
-{
-    Search search(*this, at, 0.0F, nearby.seed);
-    search.begin();
-    for (std::size_t g = 0; g * kLanes < nearby.count; ++g) {
-        const Picked& picked = nearby.picked[g];
-        Lanes d;
-        box_distances(picked, search.point, d);
-        for (unsigned bits = bits_of(d <= search.limit); bits != 0; bits &= bits - 1) {
-            const auto i = static_cast<std::size_t>(__builtin_ctz(bits));
-            search.push({d[i], picked.child[i]}, 0);
-        }
-    }
-    search.run();
-    return search.found.squared;
-}
-
-VDB_SHELL_TWO_TARGETS void TriangleTree::gather(const Vec3d& centre, double radius,
-                                                Nearby& nearby) const
-{
-    nearby.centre = centre;
-    nearby.radius = radius;
-    nearby.count = 0;
-    const auto distance = std::sqrt(nearest(centre, 0.0F, nearby.seed).squared);
-    // Rounding is far less than a hundredth of the ball.
-    const float reach = distance + 2.01F * static_cast<float>(radius / unit_);
-    const Vec3f p((centre - middle_) / unit_);
-    const Point point{Lanes{} + p[0], Lanes{} + p[1], Lanes{} + p[2]};
-    struct Place {
-        std::uint32_t node, lane;
-    };
-    // Level by level, as long as that does not give too many.
-    std::array<Place, kMostPicked> list, next;
-    std::size_t count = 0;
-    std::array<std::uint32_t, kMostPicked> ids{root_};
-    for (std::size_t parents = 1; !(ids[0] & kLeafBit);) {
-        std::size_t found = 0;
-        for (std::size_t n = 0; n < parents && found <= kMostPicked; ++n) {
-            Lanes d;
-            box_distances(nodes_[ids[n]], point, d);
-            for (unsigned bits = bits_of(d <= reach * reach); bits != 0; bits &= bits - 1, ++found)
-                if (found < kMostPicked)
-                    next[found] = {ids[n], static_cast<std::uint32_t>(__builtin_ctz(bits))};
-        }
-        if (found > kMostPicked)
-            break;
-        std::swap(list, next);
-        count = parents = found;
-        for (std::size_t n = 0; n < count; ++n)
-            ids[n] = nodes_[list[n].node].first_child + list[n].lane;
-    }
-    nearby.picked.resize((count + kLanes - 1) / kLanes);
-    nearby.count = count;
-    for (std::size_t n = 0; n < nearby.picked.size() * kLanes; ++n) {
-        Picked& to = nearby.picked[n / kLanes];
-        const std::size_t i = n % kLanes;
-        const Node* from = n < count ? &nodes_[list[n].node] : nullptr;
-        const std::size_t lane = n < count ? list[n].lane : 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                to.axis[k][axis][i] = from ? from->axis[k][axis][lane] : 0.0F;
-            to.low[k][i] = from ? from->low[k][lane] : kInfinity;
-            to.high[k][i] = from ? from->high[k][lane] : kInfinity;
-        }
-        to.child[i] = from ? from->first_child + static_cast<std::uint32_t>(lane) : 0;
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/lanes.h"
+#include "core/simd.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <array>
@@ -35,17 +35,18 @@ public:
     /// the distance does not depend on the seed, to the last bit.
     Found nearest(const openvdb::Vec3d& point, float tolerance, Seed& seed) const;
 
+    using LaneFloats = std::array<float, kLanes>;
     /// Boxes of eight children, each in a frame of its own; a child that is not there has an
     /// infinite box. Children have successive numbers.
     struct alignas(kLanesAlignment) Node {
-        std::array<std::array<Lanes, 3>, 3> axis;
-        std::array<Lanes, 3> low, high;
+        std::array<std::array<LaneFloats, 3>, 3> axis;
+        std::array<LaneFloats, 3> low, high;
         std::uint32_t first_child; ///< from kLeafBit on a block
     };
     /// Boxes picked from several nodes.
     struct alignas(kLanesAlignment) Picked {
-        std::array<std::array<Lanes, 3>, 3> axis;
-        std::array<Lanes, 3> low, high;
+        std::array<std::array<LaneFloats, 3>, 3> axis;
+        std::array<LaneFloats, 3> low, high;
         std::array<std::uint32_t, kLanes> child;
     };
     /// What can be nearest to the points of a ball: many queries near each other begin here.
@@ -65,20 +66,25 @@ public:
     /// Prepared triangles, by component: corners, outward normals of their sides in the plane,
     /// inverse squares of the sides' lengths.
     struct alignas(kLanesAlignment) Block {
-        std::array<std::array<Lanes, 3>, 3> corner, beyond;
-        std::array<Lanes, 3> inverse, normal;
-        Lanes bias; ///< 1 for a triangle without a normal: no point projects into it
+        std::array<std::array<LaneFloats, 3>, 3> corner, beyond;
+        std::array<LaneFloats, 3> inverse, normal;
+        LaneFloats bias; ///< 1 for a triangle without a normal: no point projects into it
         std::array<std::uint32_t, kLanes> triangle;
     };
 
-private:
-    struct Search;
+    /// What queries read.
+    struct Arrays {
+        openvdb::Vec3d middle{0.0};
+        double unit = 1;
+        std::vector<Node> nodes;
+        std::vector<Block> blocks;
+        std::uint32_t root = 0;
+    };
+    /// Of the numbers of nodes, marks those of blocks.
+    static constexpr std::uint32_t kLeafBit = 1U << 31;
 
-    openvdb::Vec3d middle_;
-    double unit_;
-    std::vector<Node> nodes_;
-    std::vector<Block> blocks_;
-    std::uint32_t root_ = 0;
+private:
+    Arrays arrays_;
 };
 
 } // namespace vdb_shell

@@ -3,15 +3,13 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include "core/bucket_sort.h"
-#include "core/four_floats.h"
-#include "core/lanes.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "write/depth_lines.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -27,7 +25,8 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-constexpr int kLeafBits = 3, kLeafSize = 1 << kLeafBits;
+constexpr int kLeafBits = 3;
+static_assert(kLeafSize == 1 << kLeafBits);
 /// Barycentric slack: a centre on a face must not fall between its two tets by rounding.
 constexpr double kSlack = 1e-9;
 constexpr double kLargestCoordinate = double(1 << 30);
@@ -81,81 +80,23 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     return tet;
 }
 
-constexpr std::size_t kHalves = std::size_t(kLeafSize) / kDoubleLanes;
-using Integers __attribute__((vector_size(4 * kDoubleLanes))) = std::int32_t;
-
-/// Which voxels of each of the eight lines along z over x and y, y + 1 and so on are inside,
-/// `first` above `last` where none is.
-struct LineEnds {
-    std::array<int, kLeafSize> first, last;
-};
-
-/// Where lines along z enter and leave a tet.
-class LineClip
+TetLines lines_through(const IndexTet& tet)
 {
-public:
-    explicit LineClip(const IndexTet& tet) : tet_(tet)
-    {
-        for (const Affine& weight : tet.barycentric) {
-            const double slope = weight.slope[2];
-            if (slope == 0.0)
-                side_[sides_++] = &weight;
-            else
-                (slope > 0.0 ? floor_[floors_++] : ceiling_[ceilings_++]) = {
-                    tet.origin[2] - (weight.value + kSlack) / slope, -weight.slope[0] / slope,
-                    -weight.slope[1] / slope};
-        }
+    TetLines lines;
+    lines.origin_x = tet.origin[0], lines.origin_y = tet.origin[1];
+    lines.slack = kSlack;
+    lines.low_z = tet.low.z(), lines.high_z = tet.high.z();
+    for (const Affine& weight : tet.barycentric) {
+        const double slope = weight.slope[2];
+        if (slope == 0.0)
+            lines.side[lines.sides++] = {weight.value, weight.slope[0], weight.slope[1]};
+        else
+            (slope > 0.0 ? lines.floor[lines.floors++] : lines.ceiling[lines.ceilings++]) = {
+                tet.origin[2] - (weight.value + kSlack) / slope, -weight.slope[0] / slope,
+                -weight.slope[1] / slope};
     }
-
-    /// The lines over x and y, y + 1 and so on.
-    VDB_SHELL_TWO_TARGETS void ends(int x, int y, LineEnds& out) const
-    {
-        const double dx = x - tet_.origin[0];
-        const DoubleLanes up_to_three{0, 1, 2, 3};
-        // Bounds outside of the tet's box stay next to it, where they are integers that exist.
-        const DoubleLanes least = tet_.low.z() - 1.0 + DoubleLanes{},
-                          most = tet_.high.z() + 1.0 + DoubleLanes{};
-        for (std::size_t half = 0; half < kHalves; ++half) {
-            const DoubleLanes dy = y + double(half * kDoubleLanes) - tet_.origin[1] + up_to_three;
-            DoubleLanes low = least + 1.0, high = most - 1.0;
-            for (std::size_t i = 0; i < floors_; ++i) {
-                const DoubleLanes height = floor_[i].at + floor_[i].by_x * dx + floor_[i].by_y * dy;
-                low = low < height ? height : low;
-            }
-            for (std::size_t i = 0; i < ceilings_; ++i) {
-                const DoubleLanes height =
-                    ceiling_[i].at + ceiling_[i].by_x * dx + ceiling_[i].by_y * dy;
-                high = height < high ? height : high;
-            }
-            for (std::size_t i = 0; i < sides_; ++i) {
-                const DoubleLanes weight =
-                    side_[i]->value + side_[i]->slope[0] * dx + kSlack + side_[i]->slope[1] * dy;
-                high = weight < 0.0 ? least : high;
-            }
-            low = low < most ? low : most;
-            high = high > least ? high : least;
-            Integers first = __builtin_convertvector(low, Integers),
-                     last = __builtin_convertvector(high, Integers);
-            // A comparison that is true is -1.
-            first -= __builtin_convertvector(__builtin_convertvector(first, DoubleLanes) < low,
-                                             Integers);
-            last += __builtin_convertvector(__builtin_convertvector(last, DoubleLanes) > high,
-                                            Integers);
-            std::memcpy(out.first.data() + half * kDoubleLanes, &first, sizeof first);
-            std::memcpy(out.last.data() + half * kDoubleLanes, &last, sizeof last);
-        }
-    }
-
-private:
-    /// Over the way from the tet's origin.
-    struct Height {
-        double at, by_x, by_y;
-    };
-    const IndexTet& tet_;
-    std::array<Height, 4> floor_, ceiling_;
-    std::array<const Affine*, 4> side_;
-    std::size_t floors_ = 0, ceilings_ = 0, sides_ = 0;
-};
+    return lines;
+}
 
 /// A column of leaves under construction, from the lowest that one of its tets may meet.
 struct LeafColumn {
@@ -178,10 +119,14 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
     const int y_begin = std::max(tet.low.y(), leaf_y);
     const int y_end = std::min(tet.high.y(), leaf_y + kLeafSize - 1);
-    const LineClip clip(tet);
-    LineEnds ends;
-    for (int x = std::max(tet.low.x(), leaf_x); x <= x_end; ++x) {
-        clip.ends(x, leaf_y, ends);
+    const int x_begin = std::max(tet.low.x(), leaf_x);
+    if (x_begin > x_end)
+        return;
+    std::array<LineEnds, std::size_t(kLeafSize)> ends_over;
+    find_line_ends(lines_through(tet), x_begin, std::size_t(x_end - x_begin + 1), leaf_y,
+                   ends_over.data());
+    for (int x = x_begin; x <= x_end; ++x) {
+        const LineEnds& ends = ends_over[std::size_t(x - x_begin)];
         for (int y = y_begin; y <= y_end; ++y) {
             const auto k = std::size_t(y - leaf_y);
             if (ends.first[k] > ends.last[k])
@@ -194,53 +139,27 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     }
 }
 
-/// Not inlined, so that filling is all there is in its caller.
-__attribute__((noinline)) std::unique_ptr<Leaf> new_leaf(const Coord& origin)
-{
-    return std::make_unique<Leaf>(origin, 0.0f, false);
-}
-
-/// A line's voxels `begin` to `end` of the eight of a leaf, the first of them at z. The others keep
-/// what they have: eight at a time are faster than a loop of few.
-VDB_SHELL_LANES_PART void fill_row(const IndexTet& tet, const TetInColumn::Line& line, int z,
-                                   int begin, int end, float* row)
-{
-    for (std::size_t half = 0; half < kHalves; ++half) {
-        const int from = int(half * kDoubleLanes);
-        DoubleLanes depth =
-            tet.depth.value + (line.depth + tet.depth.slope[2] * (z + double(from) - tet.origin[2] +
-                                                                  DoubleLanes{0, 1, 2, 3}));
-        depth = depth < 0.0 ? DoubleLanes{} : depth;
-        depth = depth > 1.0 ? DoubleLanes{} + 1.0 : depth;
-        const FourFloats rounded = __builtin_convertvector(depth, FourFloats);
-        const FourTruths place = FourTruths{0, 1, 2, 3} + from;
-        FourFloats values;
-        std::memcpy(&values, row + from, sizeof values);
-        const FourTruths inside = (place >= begin) & (place < end);
-        values = inside ? rounded : values;
-        std::memcpy(row + from, &values, sizeof values);
-    }
-}
-
 /// Overwrites what is there: to be called with the tets in descending order, so that the smallest
 /// index stays.
-VDB_SHELL_TWO_TARGETS void fill_lines(LeafColumn& column, const IndexTet& tet,
-                                      const TetInColumn& part)
+void fill_lines(LeafColumn& column, const IndexTet& tet, const TetInColumn& part,
+                std::vector<DepthRow>& rows)
 {
+    rows.clear();
     for (std::size_t i = 0; i < part.count; ++i) {
         const TetInColumn::Line& line = part.lines[i];
         for (int z = line.first & ~(kLeafSize - 1); z <= line.last; z += kLeafSize) {
             std::unique_ptr<Leaf>& leaf = column.leaf[std::size_t(z - column.low_z) / kLeafSize];
             if (!leaf)
-                leaf = new_leaf(Coord(column.x, column.y, z));
+                leaf = std::make_unique<Leaf>(Coord(column.x, column.y, z), 0.0f, false);
             const int begin = std::max(line.first - z, 0),
                       end = std::min(line.last - z + 1, kLeafSize);
-            fill_row(tet, line, z, begin, end,
-                     leaf->buffer().data() + std::ptrdiff_t(line.row) * kLeafSize);
+            rows.push_back({leaf->buffer().data() + std::ptrdiff_t(line.row) * kLeafSize,
+                            line.depth, z, begin, end});
             auto& bits = leaf->getValueMask().getWord<std::uint8_t>(openvdb::Index(line.row));
             bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
         }
     }
+    fill_depth_rows(rows.data(), rows.size(), {tet.depth.value, tet.depth.slope[2], tet.origin[2]});
 }
 
 /// One tet in one column of leaves; sorted by column, then tet.
@@ -345,10 +264,11 @@ LeafColumn fill_column(const Parts& parts, const Job* first, const Job* last)
     }
     LeafColumn column{first->x * kLeafSize, first->y * kLeafSize, low & ~(kLeafSize - 1), {}};
     column.leaf.resize(std::size_t(high - column.low_z) / kLeafSize + 1);
+    std::vector<DepthRow> rows;
     while (last-- != first) {
         TetInColumn part;
         find_lines(parts.tet_of(*last), column.x, column.y, part);
-        fill_lines(column, parts.tet_of(*last), part);
+        fill_lines(column, parts.tet_of(*last), part, rows);
     }
     return column;
 }

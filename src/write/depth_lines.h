@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+// Voxels on lines along z that lie in a tet, eight lines at a time, in index space.
+
+namespace vdb_shell
+{
+
+/// Voxels along an edge of a leaf of OpenVDB's trees.
+inline constexpr int kLeafSize = 8;
+
+/// Where lines along z enter and leave a tet: between the highest of the floors and the lowest of
+/// the ceilings, where all sides are positive.
+struct TetLines {
+    /// An affine function of the way from the tet's first corner.
+    struct Affine {
+        double at, by_x, by_y;
+    };
+    std::array<Affine, 4> floor, ceiling, side;
+    std::size_t floors = 0, ceilings = 0, sides = 0;
+    double origin_x = 0, origin_y = 0; ///< the tet's first corner
+    double slack = 0;                  ///< added to the sides
+    int low_z = 0, high_z = 0;         ///< all voxels of the tet lie between
+};
+
+/// Which voxels of each of the eight lines over x and y, y + 1 and so on are inside, `first` above
+/// `last` where none is.
+struct LineEnds {
+    std::array<std::int32_t, kLeafSize> first, last;
+};
+
+/// The lines over x, x + 1 and so on, `count` times eight, beginning at y.
+void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEnds* ends);
+
+/// Voxels `begin` to `end` of the eight of a leaf's row, the first of them at z.
+struct DepthRow {
+    float* value;
+    double depth; ///< at z = 0, but for DepthAlongZ
+    int z, begin, end;
+};
+
+/// Depth as a function of z: value + (row's depth + slope * (z - origin)), clamped to [0, 1].
+struct DepthAlongZ {
+    double value, slope, origin;
+};
+
+/// Writes the depths into the rows, in order. The voxels of a row that do not lie between begin and
+/// end keep what they have.
+void fill_depth_rows(const DepthRow* rows, std::size_t count, const DepthAlongZ& depth);
+
+} // namespace vdb_shell
