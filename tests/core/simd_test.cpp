@@ -8,6 +8,9 @@
 #include "growth/barrier.h"
 #include "growth/prism_lanes.h"
 #include "growth/separation_lanes.h"
+#include "support/shapes.h"
+#include "vdb_shell/pipeline.h"
+#include "vdb_shell/write/vdb_file.h"
 #include "write/depth_lines.h"
 
 #include <gtest/gtest.h>
@@ -16,6 +19,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <set>
 #include <vector>
 
 #include <hwy/highway.h>
@@ -36,20 +40,45 @@ template <class T> void append(Bytes& bytes, const T& value)
     bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
-/// Calls `run` once for each target that this machine has and that was compiled, and for the
-/// baseline; each has to give the same bytes.
+template <class T> void append_all(Bytes& bytes, const std::vector<T>& values)
+{
+    for (const T& value : values)
+        append(bytes, value);
+}
+
+/// Until it goes, kernels run on this target alone.
+class OnTarget
+{
+public:
+    explicit OnTarget(std::int64_t target)
+    {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    }
+    ~OnTarget()
+    {
+        hwy::SetSupportedTargetsForTest(0);
+        hwy::GetChosenTarget().DeInit();
+    }
+};
+
+/// The targets that this machine has and that kernels are compiled for, with the baseline.
+std::set<std::int64_t> targets()
+{
+    const std::vector<std::int64_t> found = hwy::SupportedAndGeneratedTargets();
+    std::set<std::int64_t> all(found.begin(), found.end());
+    all.insert(HWY_STATIC_TARGET);
+    return all;
+}
+
+/// Each target has to give the same bytes.
 void expect_same_on_all_targets(const std::function<Bytes()>& run)
 {
     const Bytes best = run();
-    std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
-    targets.push_back(HWY_STATIC_TARGET);
-    for (const std::int64_t target : targets) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    for (const std::int64_t target : targets()) {
+        const OnTarget on(target);
         EXPECT_TRUE(run() == best) << hwy::TargetName(target);
     }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
 }
 
 /// Numbers that kernels meet, and others: of all sizes, equal ones, zeros of both signs, denormals.
@@ -86,9 +115,14 @@ private:
 
 constexpr int kRounds = 500;
 
-TEST(Simd, ThisMachineHasMoreThanOneTargetToCompare)
+TEST(Simd, EachTargetRunsCodeOfItsOwn)
 {
-    EXPECT_GE(hwy::SupportedAndGeneratedTargets().size(), 1U);
+    std::set<std::size_t> places; // in the tables of kernels
+    for (const std::int64_t target : targets()) {
+        const OnTarget on(target);
+        places.insert(hwy::GetChosenTarget().GetIndex());
+    }
+    EXPECT_EQ(places.size(), targets().size());
 }
 
 TEST(Simd, PointsInPlanesAreTheSameOnAllTargets)
@@ -262,6 +296,25 @@ TEST(Simd, DepthsAlongLinesAreTheSameOnAllTargets)
             fill_depth_rows(rows.data(), rows.size(), {numbers.next(), numbers.next(), 0.5});
             append(bytes, values);
         }
+        return bytes;
+    });
+}
+
+TEST(Simd, WholeShellsAreTheSameOnAllTargets)
+{
+    ShellOptions options;
+    options.level_set.resolution = 48;
+    options.coverage.samples = 5000;
+    const TriangleMesh mesh = test::torus(1.0, 0.4, 24, 12);
+    expect_same_on_all_targets([&] {
+        const ShellResult shell = build_shell(mesh, options);
+        Bytes bytes;
+        append_all(bytes, shell.tets.points), append_all(bytes, shell.tets.tets);
+        append(bytes, shell.report.coverage.in_none), append(bytes, shell.report.coverage.in_one);
+        const auto depth = shell_depth_grid(shell.tets, 0.02);
+        for (auto leaf = depth->tree().cbeginLeaf(); leaf; ++leaf)
+            for (openvdb::Index i = 0; i < leaf->SIZE; ++i)
+                append(bytes, leaf->getValue(i)), append(bytes, leaf->isValueOn(i));
         return bytes;
     });
 }
