@@ -4,8 +4,7 @@
 // Every number that steers growth, by the phase that reads it. None of them bears on validity: each
 // accepted state passes the exact tests whatever stands here (docs/theory.md, "Growth"). They
 // decide how thick the shell gets and how long that takes. docs/growth.md has what halving and
-// doubling each of them does, on the meshes that they were chosen on and on others that they were
-// not.
+// doubling does, on two halves of the meshes: one to choose a value on, one to check it on.
 //
 // Units: "share of the solid" is a volume over that of the solid to fill; "share of the diagonal"
 // a length over the diagonal of the surface's bounding box; "mean tets" a volume over the mean
