@@ -19,6 +19,7 @@
 #include "growth/pins.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
+#include "vdb_shell/options/option.h"
 
 #include <cassert>
 #include <string>
@@ -30,16 +31,6 @@ namespace
 {
 
 using namespace growth;
-
-void require_sensible(const GrowOptions& options)
-{
-    if (options.free_rounds && *options.free_rounds < 0)
-        throw InvalidOption("growth: free_rounds is " + std::to_string(*options.free_rounds) +
-                            ", must not be negative");
-    if (!(options.min_quality >= 0.0 && options.min_quality < 1.0))
-        throw InvalidOption("growth: min_quality is " + std::to_string(options.min_quality) +
-                            ", must be 0 or more and less than 1");
-}
 
 /// A valid shell on the mesh itself.
 struct Started {
@@ -78,7 +69,7 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
                            const SplitOptions& split, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "grow");
-    require_sensible(options);
+    require_in_range(options, "growth");
     assert(options.method != Method::raw);
     assert(directions.inward.size() == mesh.points.size());
     assert(stepped.length.size() == mesh.points.size() && cap.size() == mesh.points.size());

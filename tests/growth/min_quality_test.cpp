@@ -118,10 +118,13 @@ TEST(MinQuality, SameBitsForAnyNumberOfThreads)
 
 TEST(MinQuality, RefusesBadBoundsByName)
 {
-    for (const double bound : {-0.1, 1.0, double(NAN), double(INFINITY)})
-        EXPECT_EQ(test::refusal_of([&] { test::grown(test::icosphere(1, 1), bounded(bound)); }),
-                  "growth: min_quality is " + std::to_string(bound) +
-                      ", must be 0 or more and less than 1");
+    const std::pair<double, std::string> refused[] = {
+        {-0.1, "-0.1"}, {1.0, "1"}, {double(NAN), "nan"}, {double(INFINITY), "inf"}};
+    for (const auto& [bound, text] : refused)
+        EXPECT_EQ(test::refusal_of([&, bound = bound] {
+                      test::grown(test::icosphere(1, 1), bounded(bound));
+                  }),
+                  "growth: min_quality is " + text + ", must be at least 0 and below 1");
 }
 
 } // namespace
