@@ -8,6 +8,8 @@
 
 #include "usd_text.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

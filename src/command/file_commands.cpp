@@ -10,6 +10,8 @@
 #include "command/exit_code.h"
 #include "command/signals.h"
 
+#include <openvdb/openvdb.h>
+
 #include <nlohmann/json.hpp>
 
 #include <CLI/CLI.hpp>

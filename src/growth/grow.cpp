@@ -22,7 +22,6 @@
 #include "vdb_shell/options/option.h"
 
 #include <cassert>
-#include <string>
 #include <utility>
 
 namespace vdb_shell

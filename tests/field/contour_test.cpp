@@ -11,6 +11,7 @@
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

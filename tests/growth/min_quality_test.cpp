@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <set>
+#include <string>
+#include <utility>
 
 namespace
 {
@@ -121,10 +123,9 @@ TEST(MinQuality, RefusesBadBoundsByName)
     const std::pair<double, std::string> refused[] = {
         {-0.1, "-0.1"}, {1.0, "1"}, {double(NAN), "nan"}, {double(INFINITY), "inf"}};
     for (const auto& [bound, text] : refused)
-        EXPECT_EQ(test::refusal_of([&, bound = bound] {
-                      test::grown(test::icosphere(1, 1), bounded(bound));
-                  }),
-                  "growth: min_quality is " + text + ", must be at least 0 and below 1");
+        EXPECT_EQ(test::refusal_of(
+                      [&, bound = bound] { test::grown(test::icosphere(1, 1), bounded(bound)); }),
+                  "growth: min_quality is " + text + ", must be 0 or more and less than 1");
 }
 
 } // namespace

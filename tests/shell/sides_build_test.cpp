@@ -7,6 +7,7 @@
 #include "vdb_shell/io/read_mesh.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <cmath>
 

@@ -13,6 +13,7 @@
 #include "vdb_shell/growth/grow.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "vdb_shell/field/level_set.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cmath>

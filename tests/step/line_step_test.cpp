@@ -9,6 +9,7 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cmath>

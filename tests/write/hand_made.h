@@ -4,6 +4,8 @@
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include <openvdb/openvdb.h>
+
 #include <set>
 
 namespace vdb_shell::test
