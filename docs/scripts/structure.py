@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Figures about the structure of the sources, of one checkout or of several side by side.
+
+    structure.py CHECKOUT [CHECKOUT ...]
+
+Counts lines, comments, long files, long functions, constants of growth, includes against the order
+of docs/architecture.md (of the last checkout: earlier ones may not have had one), folders that
+include each other in a circle, and files that know the option --thickness. Functions are found by
+their braces at the level of a namespace: exact for sources that clang-format has laid out.
+"""
+import pathlib
+import re
+import sys
+
+INCLUDE = re.compile(r'^\s*#include "(?:vdb_shell/)?([a-z_]+)/', re.M)
+
+
+def sources(top):
+    for base in (top / "src", top / "include" / "vdb_shell"):
+        for path in sorted(base.rglob("*")):
+            if path.suffix in (".h", ".cpp"):
+                yield base, path
+
+
+def room(base, path):
+    parts = path.relative_to(base).parts
+    return parts[0] if len(parts) > 1 else {"main.cpp": "command"}.get(parts[0], "pipeline")
+
+
+def includes(top):
+    for base, path in sources(top):
+        for other in INCLUDE.findall(path.read_text()):
+            if other != room(base, path) and other != "houdini":
+                yield room(base, path), other
+
+
+def in_circles(pairs):
+    """Rooms from which includes lead back to them."""
+    after = {}
+    for a, b in pairs:
+        after.setdefault(a, set()).add(b)
+    circles = set()
+    for start in after:
+        seen, open_ = set(), list(after[start])
+        while open_:
+            at = open_.pop()
+            if at not in seen:
+                seen.add(at)
+                open_ += after.get(at, ())
+        if start in seen:
+            circles.add(start)
+    return circles
+
+
+def functions(text):
+    """(lines, first line) of each function body that begins with a brace in the first column, or of a member's."""
+    lines = text.splitlines()
+    for k, line in enumerate(lines):
+        indent = re.match(r"( {0,4})\{$", line)
+        if not indent or k == 0:
+            continue
+        head = lines[k - 1]
+        if re.match(r"\s*(namespace|struct|class|enum|union|extern)\b", head) or not re.search(r"[);]$|const$|override$|noexcept$", head):
+            continue
+        end = next((e for e in range(k + 1, len(lines)) if lines[e] == indent[1] + "}"), None)
+        if end:
+            yield end - k - 1, k
+
+
+def figures(top, order):
+    code = comments = long_files = long_functions = longest = 0
+    for _, path in sources(top):
+        text = path.read_text()
+        long_files += text.count("\n") > 400
+        lengths = [n for n, _ in functions(text)]
+        long_functions += sum(n > 40 for n in lengths)
+        longest = max([longest, *lengths])
+        if path.suffix == ".cpp":
+            filled = [line.strip() for line in text.splitlines() if line.strip()]
+            code += len(filled)
+            comments += sum(line.startswith("//") for line in filled)
+    growth = top / "src/growth" if (top / "src/growth").exists() else top / "src/shell/grow"
+    constants = [p for p in growth.rglob("*") if p.suffix in (".h", ".cpp")]
+    if growth.name == "grow":
+        constants.append(top / "src/shell/grow.cpp")
+    pairs = list(includes(top))
+    place = {name: k for k, name in enumerate(order)}
+    known = [(a, b) for a, b in pairs if a in place and b in place]
+    option = re.compile(r"--thickness(?![\w-])|\bline_step\.thickness\b|LineStepOptions::thickness|\boptions\.thickness\b|\bo\.thickness\b")
+    knows = [path for _, path in sources(top) if option.search(path.read_text())]
+    return {
+        "lines of library and command": sum(p.read_text().count("\n") for _, p in sources(top)),
+        "comment lines in sources, %": round(100 * comments / code, 1),
+        "files over 400 lines": long_files,
+        "functions over 40 lines": long_functions,
+        "longest function, lines": longest,
+        "constants in growth": sum(len(re.findall(r"^\s*(?:static |inline )*constexpr (?!.*\()", p.read_text(), re.M)) for p in constants),
+        "includes against the order": sum(place[b] > place[a] for a, b in known),
+        "rooms in a circle of includes": len(in_circles(pairs)),
+        "sources that know --thickness": len(knows),
+    }
+
+
+def main():
+    tops = [pathlib.Path(name) for name in sys.argv[1:]]
+    if not tops:
+        sys.exit(__doc__)
+    page = (tops[-1] / "docs/architecture.md").read_text()
+    order = re.search(r"```rooms\n\s*rooms:([^`]*)```", page)[1].split()
+    columns = [figures(top, order) for top in tops]
+    for name in columns[0]:
+        print(f"| {name} | " + " | ".join(str(column[name]) for column in columns) + " |")
+
+
+if __name__ == "__main__":
+    main()
