@@ -5,6 +5,8 @@
 #include <vdb_shell/pipeline.h>
 #include <vdb_shell/write/tet_file.h>
 
+#include <openvdb/openvdb.h> // for what a level set itself can tell
+
 #include <exception>
 #include <iostream>
 

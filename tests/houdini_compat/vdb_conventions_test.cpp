@@ -5,15 +5,12 @@
 
 #include "command/exit_code.h"
 #include "support/files.h"
+#include "support/grids.h"
 #include "support/shapes.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
-#include <openvdb/points/PointAttribute.h>
-#include <openvdb/points/PointConversion.h>
-#include <openvdb/points/PointGroup.h>
-#include <openvdb/tools/LevelSetSphere.h>
 
 #include <sys/wait.h>
 
@@ -36,12 +33,11 @@ using points::PointDataGrid;
 PointDataGrid::Ptr make_points(const char* name)
 {
     const std::vector<Vec3s> places{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    auto grid = points::createPointDataGrid<points::NullCodec, PointDataGrid>(
-        places, *math::Transform::createLinearTransform(0.5));
+    auto grid = point_grid(places, 0.5);
     grid->setName(name);
-    points::appendAttribute<std::int32_t>(grid->tree(), "tet", 0, 4);
-    points::appendAttribute<Vec3s>(grid->tree(), "N", Vec3s(0, 0, 1));
-    points::appendGroup(grid->tree(), "outer");
+    append_attribute<std::int32_t>(grid->tree(), "tet", 0, 4);
+    append_attribute<Vec3s>(grid->tree(), "N", Vec3s(0, 0, 1));
+    append_group(grid->tree(), "outer");
     grid->insertMeta("global:count", Int32Metadata(3));
     grid->insertMeta("global:size[0]", FloatMetadata(1));
     grid->insertMeta("global:size[1]", FloatMetadata(2));
@@ -60,7 +56,7 @@ struct Scene {
     Scene()
     {
         initialize();
-        surface = tools::createLevelSetSphere<FloatGrid>(1.0f, Vec3f(0.0f), 0.25f, 3.0f);
+        surface = sphere_level_set(1.0f, 0.25f);
         surface->setName("surface");
         surface->insertMeta("dict_report", StringMetadata("{\"fill\": 0.5}"));
         surface->insertMeta("is_closed", BoolMetadata(true));
@@ -208,31 +204,27 @@ std::vector<Wrong> wrong_points()
 {
     return {
         {"attribute-type", "points", "Alpha",
-         [](Scene& s) {
-             points::TypedAttributeArray<std::uint8_t>::registerType();
-             points::appendAttribute<std::uint8_t>(s.points->tree(), "Alpha", 0);
-         }},
+         [](Scene& s) { append_attribute<std::uint8_t>(s.points->tree(), "Alpha", 0); }},
         {"attribute-name", "points", "a|b",
-         [](Scene& s) { points::appendAttribute<float>(s.points->tree(), "a|b", 0.0f); }},
+         [](Scene& s) { append_attribute<float>(s.points->tree(), "a|b", 0.0f); }},
         {"attribute-name", "points", "2nd",
-         [](Scene& s) { points::appendAttribute<float>(s.points->tree(), "2nd", 0.0f); }},
+         [](Scene& s) { append_attribute<float>(s.points->tree(), "2nd", 0.0f); }},
         {"attribute-stride", "points", "uv",
-         [](Scene& s) { points::appendAttribute<Vec3s>(s.points->tree(), "uv", Vec3s(0.0f), 2); }},
+         [](Scene& s) { append_attribute<Vec3s>(s.points->tree(), "uv", Vec3s(0.0f), 2); }},
         {"attribute-clash", "points", "id",
          [](Scene& s) {
-             points::appendAttribute<std::int32_t>(s.points->tree(), "id", 0);
-             points::appendAttribute<float>(s.more_points->tree(), "id", 0.0f);
+             append_attribute<std::int32_t>(s.points->tree(), "id", 0);
+             append_attribute<float>(s.more_points->tree(), "id", 0.0f);
          }},
         {"integer-vector", "points", "cell",
          [](Scene& s) {
-             points::appendAttribute<Vec3i>(s.points->tree(), "cell", Vec3i(0, (1 << 24) + 1, 0));
+             append_attribute<Vec3i>(s.points->tree(), "cell", Vec3i(0, (1 << 24) + 1, 0));
          }},
-        {"position", "points", "P",
-         [](Scene& s) { points::renameAttribute(s.points->tree(), "P", "Q"); }},
+        {"position", "points", "P", [](Scene& s) { rename_attribute(s.points->tree(), "P", "Q"); }},
         {"role", "points", "Cd",
-         [](Scene& s) { points::appendAttribute<float>(s.points->tree(), "Cd", 0.0f); }},
+         [](Scene& s) { append_attribute<float>(s.points->tree(), "Cd", 0.0f); }},
         {"group-name", "points", "no:group",
-         [](Scene& s) { points::appendGroup(s.points->tree(), "no:group"); }},
+         [](Scene& s) { append_group(s.points->tree(), "no:group"); }},
     };
 }
 
@@ -387,7 +379,7 @@ TEST(CheckVdb, ExitStatusAndNames)
                       wrong = (folder / "wrong.vdb").string();
     Scene().write(good);
     Scene scene;
-    points::appendAttribute<float>(scene.points->tree(), "a|b", 0.0f);
+    append_attribute<float>(scene.points->tree(), "a|b", 0.0f);
     scene.write(wrong);
     EXPECT_EQ(run_check_vdb(good, out), command::success);
     EXPECT_EQ(run_check_vdb(wrong + " " + good, out), command::check_failed);

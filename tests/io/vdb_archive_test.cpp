@@ -2,13 +2,13 @@
 #include "io/vdb_archive.h"
 
 #include "support/files.h"
+#include "support/grids.h"
 #include "support/shapes.h"
 #include "write/hand_made.h"
 #include "write/point_grids.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
-#include <openvdb/tools/LevelSetSphere.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ openvdb::GridPtrVec grids_to_write()
     half->setSaveFloatAsHalf(true);
     const auto odd_half = named(grid_of_odd_leaves(), "odd half");
     odd_half->setSaveFloatAsHalf(true);
-    const auto large = openvdb::tools::createLevelSetSphere<FloatGrid>(40.0f, {}, 1.0f);
+    const auto large = test::sphere_level_set(40.0f, 1.0f);
     return {named(file.surface, "surface"),
             named(file.depth, "depth"),
             named(large, "large"),

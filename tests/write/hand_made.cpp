@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "write/hand_made.h"
 
-#include <openvdb/tools/LevelSetSphere.h>
+#include "support/grids.h"
 
 #include <algorithm>
 #include <cstring>
@@ -86,8 +86,7 @@ ShellFile hand_made_file(const HandMade& made, double voxel_size)
 {
     openvdb::initialize();
     ShellFile file;
-    file.surface = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(
-        1.0f, openvdb::Vec3f(0.0f), float(voxel_size), 3.0f);
+    file.surface = test::sphere_level_set(1.0f, float(voxel_size));
     file.depth = shell_depth_grid(made.tets, voxel_size);
     file.stack = one_layer(made.shell, made.split);
     file.tets = made.tets;

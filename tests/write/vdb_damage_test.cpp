@@ -3,12 +3,13 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include "support/files.h"
+#include "support/grids.h"
 #include "support/shapes.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
-#include <openvdb/points/PointAttribute.h>
+#include <openvdb/points/AttributeArray.h>
 #include <openvdb/points/PointDataGrid.h>
 
 #include <cmath>
@@ -227,7 +228,7 @@ TEST_F(VdbDamage, AttributeMissingOrOfAnotherTypeOrStride)
             for (const openvdb::GridBase::Ptr& one : grids)
                 if (one->getName() == "shell_tets") {
                     auto& tree = openvdb::gridPtrCast<PointDataGrid>(one)->tree();
-                    openvdb::points::dropAttribute(tree, "tet");
+                    test::drop_attribute(tree, "tet");
                     append(tree);
                 }
         });
@@ -236,10 +237,10 @@ TEST_F(VdbDamage, AttributeMissingOrOfAnotherTypeOrStride)
     replaced([](auto&) {});
     expect_complaint({"shell_tets", "\"tet\"", "missing"});
     test::write_bytes(path_, whole);
-    replaced([](auto& tree) { openvdb::points::appendAttribute<std::int64_t>(tree, "tet", 0, 4); });
+    replaced([](auto& tree) { test::append_attribute<std::int64_t>(tree, "tet", 0, 4); });
     expect_complaint({"shell_tets", "\"tet\"", "int64", "int32"});
     test::write_bytes(path_, whole);
-    replaced([](auto& tree) { openvdb::points::appendAttribute<std::int32_t>(tree, "tet", 0, 3); });
+    replaced([](auto& tree) { test::append_attribute<std::int32_t>(tree, "tet", 0, 3); });
     expect_complaint({"shell_tets", "\"tet\"", "stride 3"});
 }
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointDataGrid.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+// OpenVDB's templates that tests make grids with, compiled once: each takes half a minute.
+
+namespace vdb_shell::test
+{
+
+/// A level set of a sphere about the origin, with a band of three voxels.
+openvdb::FloatGrid::Ptr sphere_level_set(float radius, float voxel_size);
+
+/// A grid of points with exact positions, in voxels of that size.
+openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,
+                                               double voxel_size);
+
+/// T is one of std::uint8_t, std::int32_t, std::int64_t, float, Vec3s, Vec3i.
+template <typename T>
+void append_attribute(openvdb::points::PointDataTree& tree, const std::string& name, const T& value,
+                      openvdb::Index stride = 1);
+
+void append_group(openvdb::points::PointDataTree& tree, const std::string& name);
+void rename_attribute(openvdb::points::PointDataTree& tree, const std::string& from,
+                      const std::string& to);
+void drop_attribute(openvdb::points::PointDataTree& tree, const std::string& name);
+
+} // namespace vdb_shell::test
