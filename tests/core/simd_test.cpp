@@ -14,6 +14,7 @@
 #include "write/depth_lines.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cmath>
