@@ -2,9 +2,8 @@
 
 // Chooses the origin and the unit in which an object is read. Both are numbers of few binary
 // digits, a multiple of a power of two and a power of two: dividing by the unit and multiplying by
-// it again is exact in doubles, and the few
-// digits of the origin keep differences from it nearly exact. Near the
-// origin nothing moves, so that ordinary files are not changed by the option.
+// it again is exact in doubles, and the few digits of the origin keep differences from it nearly
+// exact. Near the origin nothing moves, so that ordinary files are not changed by the option.
 
 #include "vdb_shell/mesh/placement.h"
 
