@@ -32,8 +32,8 @@ namespace
 namespace fs = std::filesystem;
 
 // The names of the temporary files under way, where a signal handler can find them without
-// allocating. More files at a time than there are slots, or a longer path, are still written as
-// they should be; a signal only leaves their temporaries behind.
+// allocating. Where more files than there are slots are under way, or a path is longer, the file is
+// written all the same; a signal only leaves its temporary behind.
 constexpr std::size_t kMaxTemporaries = 16;
 constexpr std::size_t kMaxPath = 4096;
 struct Slot {

@@ -174,7 +174,7 @@ void BoxTree::fit_nodes()
 {
     std::vector<FloatBox> around(nodes_.size());
     // Each node stands before its children, so going backwards finds the boxes of all children
-    // ready. This is linear and not worth threads next to the splits.
+    // ready. This takes linear time and one thread, since it is little work next to the splits.
     for (std::size_t i = nodes_.size(); i-- > 0;) {
         Node& n = nodes_[i];
         for (unsigned lane = 0; lane < n.children; ++lane) {

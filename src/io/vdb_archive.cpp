@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a .vdb file as OpenVDB's own writer does, byte for byte but for the random UUID, with the
+// leaves compressed on all threads. The layout is that of OpenVDB's io::Archive and
+// io::GridDescriptor (OpenVDB 10.0.1): a header, and for each grid a descriptor with its positions
+// in the file, then metadata, transform, topology and the buffers of the leaves. Parts are made in
+// memory in any order and written in one, so the bytes do not depend on the threads. Trap: what
+// OpenVDB's stream functions need to know they look up on the stream itself, so each stream carries
+// its own settings. tests/io/vdb_archive_test.cpp compares both writers.
+
 #include "io/vdb_archive.h"
 
 #include "core/parallel.h"
@@ -120,6 +129,8 @@ std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetada
     sizes.resizeMask(count);
     sizes.resizeCompressedSize(count);
     constexpr std::size_t kLeavesInPart = 256;
+    // Each part is compressed into a stream of its own; a leaf's bytes do not depend on the leaves
+    // before it.
     std::vector<std::string> parts((count + kLeavesInPart - 1) / kLeavesInPart);
     for_each_index(
         parts.size(),
@@ -158,6 +169,8 @@ public:
         Stream head(settings);
         setGridCompression(head.out, grid);
         GridBytes bytes;
+        // The metadata that only the file has are added to a copy, which shares the tree with the
+        // grid.
         const GridBase::Ptr described = openvdb::ConstPtrCast<GridBase>(grid.copyGrid());
         if (grid.isType<FloatGrid>()) {
             // Writing the topology notes the background, which the buffers need.
@@ -197,6 +210,7 @@ void write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
 {
     openvdb::io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
     descriptor.writeHeader(out);
+    // The grid begins behind its three positions, which are written before it.
     constexpr std::int64_t kPositionsSize = 3 * sizeof(std::int64_t);
     descriptor.setGridPos(std::int64_t(out.tellp()) + kPositionsSize);
     descriptor.setBlockPos(descriptor.getGridPos() +

@@ -100,8 +100,7 @@ EdgeFindings look_at_edges(const std::vector<EdgeUse>& uses, const Indices& comp
             continue; // of a triangle that is listed as degenerate
         const std::uint32_t component = component_of[uses[begin].triangle];
         ++found.edges[component];
-        // Three or more triangles at an edge leave no gap there, so the piece still counts as
-        // closed.
+        // Three or more triangles at an edge leave no gap there, so the piece counts as closed.
         if (end - begin == 1)
             found.closed[component] = 0;
         if (forward != 0)

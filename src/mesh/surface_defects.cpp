@@ -4,9 +4,9 @@
 // triangles; vertices by whether the edges opposite to them form one path or one ring (the link
 // condition of a surface); degenerate triangles and contacts by exact predicates, with no
 // tolerance. A defect is listed once, as what it is: degenerate and duplicate triangles are left
-// out of the contacts, where they would hide what really crosses. Together "no defect" is the
-// embedded oriented manifold that condition 1 of docs/theory.md, "The whole shell", asks of the
-// surface.
+// out of the contacts, where they would hide what really crosses. A surface without any defect is
+// the closed manifold, embedded and oriented, that conditions 1 and 3 of docs/theory.md, "The whole
+// shell", need.
 
 #include "mesh/surface_defects.h"
 

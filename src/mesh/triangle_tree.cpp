@@ -28,7 +28,7 @@ namespace
 {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Below it a range is not worth another thread.
+// With fewer triangles than this a second thread would cost more than it saves.
 constexpr std::size_t kWorthAThread = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
 // triangle seem nearer than its box. One rounding of a float is 6e-8 of what is rounded, and a

@@ -2,11 +2,10 @@
 
 // What the descriptions of options can do: take values of any source, refuse the wrong ones in one
 // wording, and name what would be right. A value that was taken is of the option's kind, within its
-// range and within the type of its field; when one is refused, the field keeps what it had. Both
-// hold for the command line, for JSON and for callers in C++, because all of them go through the
-// same two functions, converted() and allowed(). Texts are read and written in the classic locale,
-// so that a decimal comma of the system changes nothing. Trap: numbers in messages have six digits;
-// files keep all digits by option_json.cpp.
+// range and within the type of its field; when one is refused, the field keeps what it had. The
+// command line, JSON and callers in C++ are all tested by the same function, allowed(). Texts are
+// read and written in the classic locale, so that a decimal comma of the system changes nothing.
+// Trap: numbers in messages have six digits; files keep all digits by option_json.cpp.
 
 #include "vdb_shell/options/option.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Options as JSON: to write what a run used, to set a run up from a file, and to tell other
-// programs what options there are. What to_json() writes, set_from_json() reads to the same values:
-// numbers are written with as many digits as bring the same double back. An unknown key is an
-// error, because a key that is spelled wrong would otherwise be an option that silently keeps its
-// default; only set_known_from_json() passes over such keys, for objects that hold more than these
-// options. Objects keep the order of the descriptions. Trap: entries are set one after the other,
-// so when one is refused those before it are set already.
+// programs what options there are. Numbers are written with as many digits as bring the same double
+// back. An unknown key is an error, because a key that is spelled wrong would otherwise be an
+// option that silently keeps its default; only set_known_from_json() passes over such keys, because
+// one file of options serves all commands. Objects keep the order of the descriptions. Trap:
+// entries are set one after the other, so when one is refused those before it are set already.
 
 #include "options/option_json.h"
 
@@ -138,7 +137,7 @@ ordered_json option_schema(const OptionSection& section, const Option& option)
     json["type"] = type_name(option.kind);
     json["unit"] = name_in_table(option.unit);
     json["range"] = range_json(option.range);
-    // The value that the option has now, which is why the precondition asks for options with their
+    // This is the value that the option has now: hence the precondition that options have their
     // defaults.
     json["default"] = value_json(option.get());
     json["may_be_unset"] = option.may_be_unset;
