@@ -28,7 +28,8 @@ constexpr int kParallel = 512;
 
 } // namespace
 
-/// What the splits move: a box by its middle.
+/// What the splits move: the number of a box with its middle, so that boxes themselves stay in
+/// place.
 struct BoxTree::Item {
     std::array<float, 3> twice_middle;
     int box;
@@ -86,7 +87,8 @@ void BoxTree::build(std::vector<FloatBox> boxes)
     fit_nodes();
 }
 
-/// Where a range of more than kLeaf boxes is split.
+/// Where a range of more than kLeaf boxes is split: by number alone, so the shape of the tree
+/// follows from how many boxes there are.
 int BoxTree::middle_of(int begin, int end)
 {
     return begin + (end - begin) / 2;

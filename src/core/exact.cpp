@@ -273,8 +273,9 @@ bool tets_overlap(const Tet& first, const Tet& second)
     EightCorners corner;
     std::copy(first.begin(), first.end(), corner.begin());
     std::copy(second.begin(), second.end(), corner.begin() + 4);
-    // Of the planes through three corners, faces separate most pairs (docs/theory.md, "A surface
-    // that crosses itself").
+    // Of the planes through three corners those of faces come first, because they separate most
+    // pairs (docs/theory.md, "A surface that crosses itself", proves that the planes through
+    // corners are enough).
     for (std::size_t base = 0; base < 8; base += 4)
         for (std::size_t left_out = 0; left_out < 4; ++left_out)
             if (plane_separates(corner, base + (left_out + 1) % 4, base + (left_out + 2) % 4,

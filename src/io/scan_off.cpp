@@ -3,8 +3,8 @@
 // Scans OFF (Geomview's manual, "OFF files"), in text only. Counts are held against the size of the
 // file before memory is taken by them. Files differ in what follows the coordinates of a vertex and
 // in how they break lines, so the first vertex decides how the others are read (read_vertices()
-// says how). All that the header declares must be there, and nothing after it: a wrong count is the
-// usual sign of a damaged file.
+// says how). All that the header declares must be there, and nothing after it, since a count that
+// does not fit may mean that a part of the surface is missing.
 
 #include "io/file_scan.h"
 

@@ -18,8 +18,8 @@ namespace vdb_shell
 namespace
 {
 
-// The format: Greg Turk, "The PLY Polygon File Format", 1994. "tristrips" are not in it; they come
-// from the Stanford scanning repository, whose larger models have no "face" element.
+// The format is that of Greg Turk, "The PLY Polygon File Format", 1994. "tristrips" come from the
+// Stanford scanning repository, whose larger models have no "face" element.
 
 struct PlyScan {
     const std::string& name;
@@ -46,7 +46,7 @@ void skip_element(PlyScan& ply, const PlyElement& element)
             skip_property(ply, property, {"element", i, 0});
 }
 
-/// Text goes straight to float32. By way of double it would be rounded twice.
+/// Text goes straight to float32, because by way of double it would be rounded twice.
 float coordinate(PlyScan& ply, const PlyProperty& property, const Place& place, int axis)
 {
     const PlyValue value = ply.values.next(property.type, place);
@@ -168,7 +168,7 @@ void read_polygons(PlyScan& ply, const PlyElement& element)
             else
                 read_face(ply, property);
         }
-        // Only now: other properties of the face may follow its corners.
+        // The face is added only now, because other properties of it may follow its corners.
         if (!strips)
             add_face(ply.scan, ply.polygon);
     }

@@ -57,7 +57,8 @@ FileScan scan_binary(const std::string& name, std::string_view bytes, Coordinate
                          " bytes is neither text STL (there is no \"solid\") nor binary STL (whose "
                          "header has 84 bytes)");
     const std::size_t facets = little_endian_32(bytes.data() + 80);
-    // Also more bytes than declared: they may be the facets of a count that was written wrong.
+    // More bytes than declared are refused too: they may be the facets of a count that was written
+    // wrong.
     if (bytes.size() != kHeaderBytes + kFacetBytes * facets)
         refuse(name, "the header declares " + std::to_string(facets) + " facets, which take " +
                          std::to_string(kHeaderBytes + kFacetBytes * facets) +
@@ -120,7 +121,7 @@ void read_facet(const std::string& name, Words& words, Coordinates& coordinates,
 {
     const std::size_t facet = scan.points.size() / 3;
     words.expect("normal", facet);
-    // Only skipped: many writers leave "nan" here for thin facets.
+    // The normal is skipped and not parsed, because many writers leave "nan" here for thin facets.
     for (int axis = 0; axis < 3; ++axis)
         if (words.next().empty())
             words.expect("outer", facet);

@@ -36,7 +36,7 @@ bool names_no_finite_number(std::string_view word)
 {
     if (!word.empty() && (word[0] == '-' || word[0] == '+'))
         word.remove_prefix(1);
-    // Also "infinity" and "nan(0x7fffff)".
+    // Three letters are enough, so "infinity" and "nan(0x7fffff)" are found too.
     const std::string_view start = word.substr(0, 3);
     return equal_ignoring_case(start, "nan") || equal_ignoring_case(start, "inf");
 }

@@ -114,7 +114,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const Placement& pla
 
 void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 {
-    // Must not begin with "solid", by which readers tell text.
+    // The header must not begin with "solid", by which readers tell text.
     std::array<char, 80> header{};
     std::strcpy(header.data(), "vdb_shell");
     out.write(header.data(), header.size());

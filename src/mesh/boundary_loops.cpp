@@ -17,7 +17,7 @@ namespace vdb_shell
 namespace
 {
 
-/// The unused edges around each point, ascending.
+/// The edges that no walk has taken yet, around each point, ascending.
 class OpenEdges
 {
 public:

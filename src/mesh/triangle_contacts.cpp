@@ -19,6 +19,7 @@ namespace vdb_shell
 namespace
 {
 
+/// Whether doubles show it for certain; false tells nothing.
 bool surely_embedded(const std::vector<openvdb::Vec3s>& points, std::size_t apex,
                      const VertexTriangles::Range& rim)
 {

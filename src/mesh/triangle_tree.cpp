@@ -191,7 +191,7 @@ TriangleTree::Block make_block(const Ordered& ordered, std::size_t leaf)
     return block;
 }
 
-/// `leaves` successive leaves to a child.
+/// A node whose children have `leaves` successive leaves each, from `first_leaf` on.
 TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std::size_t leaves,
                              std::size_t children, float slack)
 {

@@ -29,10 +29,11 @@ namespace
 {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Queries that begin with many boxes take longer over these than over the levels above.
+// Picked boxes are all compared in every query of the ball. With more of them than this, queries
+// take longer over these than over the levels above.
 constexpr std::size_t kMostPicked = 48;
 
-/// Children of nodes.
+/// A child, by its node and its place there: the box of a child stands in the node above it.
 struct Place {
     std::uint32_t node, lane;
 };
@@ -138,7 +139,8 @@ struct Search {
     Seed done = TriangleTree::kNoSeed; ///< the block looked into first
     float limit = std::numeric_limits<float>::max();
     Found found{0, kInfinity};
-    // What is picked, and at each of at most 12 levels all but one of the siblings.
+    // Room for what is picked, and at each of at most 12 levels for all siblings of the child that
+    // is looked into. Twelve levels of eight are more leaves than numbers of 32 bits can name.
     std::array<Entry, kMostPicked + 12 * kLanes> stack;
     std::size_t top = 0;
 
@@ -169,7 +171,7 @@ struct Search {
             look_into(seed);
     }
 
-    /// Nearest on top of what is above `bottom`.
+    /// Puts an entry on the stack so that what is above `bottom` stays sorted, the nearest on top.
     HWY_INLINE void push(const Entry& entry, std::size_t bottom)
     {
         std::size_t place = top++;

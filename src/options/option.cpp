@@ -87,7 +87,8 @@ OptionValue converted(OptionKind kind, const OptionValue& value)
     return kind == OptionKind::choice || kind == OptionKind::text ? value : OptionValue();
 }
 
-/// Of a value of the right kind.
+/// Whether a value, which has to be of the right kind already, is one of the choices or within the
+/// range.
 bool allowed(const Option& option, const OptionValue& value)
 {
     if (option.kind == OptionKind::choice)
@@ -106,7 +107,8 @@ bool allowed(const Option& option, const OptionValue& value)
     return true;
 }
 
-/// Unset where the text is no number of that type, or one that the type cannot hold.
+/// The number that the text is, or unset where it is none of that type, or one that the type cannot
+/// hold.
 template <typename Number> OptionValue parsed(const std::string& text)
 {
     std::istringstream in(text);
