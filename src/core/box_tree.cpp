@@ -110,7 +110,8 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
     const std::size_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     const int middle = middle_of(begin, end);
     // Ties are broken by index, so which box goes to which half depends neither on threads nor on
-    // how the library finds a median. The order of all lists of candidates follows from that.
+    // how the library finds a median. Only within a leaf the order is the one that the library's
+    // algorithm leaves.
     std::nth_element(first, items.begin() + middle, last, [axis](const Item& a, const Item& b) {
         const float ca = a.twice_middle[axis], cb = b.twice_middle[axis];
         return ca != cb ? ca < cb : a.box < b.box;

@@ -347,8 +347,8 @@ int crossing_above(const openvdb::Vec3s& point, const openvdb::Vec3s& a, const o
         const Triangle3 triangle(point3(a), point3(b), point3(c));
         on_surface = on_surface || triangle.has_on(point3(point));
     }
-    // A triangle seen edge on has no inside to cross. The lines through it are counted by its
-    // neighbours, as its edges are theirs too.
+    // A triangle seen edge on has no inside that the line could cross. By the half-open rule its
+    // neighbours count the line as if it were not there, because its edges are theirs too.
     if (turn == CGAL::COLLINEAR)
         return 0;
     const bool inside = crosses_ray(p, pa, pb) ^ crosses_ray(p, pb, pc) ^ crosses_ray(p, pc, pa);

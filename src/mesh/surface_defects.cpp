@@ -84,9 +84,8 @@ bool forms_one_fan(const TriangleMesh& mesh, const VertexTriangles::Range& aroun
     for (std::size_t i = 1; i < ends.size(); ++i) {
         if (ends[i].first != ends[i - 1].first)
             continue;
-        // Three triangles at one edge of the vertex: no path or ring passes a point three times.
-        // From here on each point joins two edges at most, so one connected piece is a path or a
-        // ring.
+        // Three triangles at one edge of the vertex, where a point of a path or a ring has two
+        // edges at most. If there is no such point, one connected piece is a path or a ring.
         if (i > 1 && ends[i].first == ends[i - 2].first)
             return false;
         const std::uint32_t a = root_of(ends[i - 1].second), b = root_of(ends[i].second);

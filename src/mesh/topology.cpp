@@ -54,7 +54,7 @@ bool list_rim(const std::vector<openvdb::Vec3I>& triangles, const VertexTriangle
     if (around.size() == 0)
         return false;
     // Each step looks through all triangles of the vertex for the next one. That is quadratic in
-    // their number, which is 6 on average in a closed surface.
+    // their number, which is about 6 on average in a closed surface (Euler's formula).
     std::array<std::uint32_t, 2> side = side_of(*around.begin());
     const std::uint32_t start = side[0];
     for (std::size_t i = 0; i < around.size(); ++i) {

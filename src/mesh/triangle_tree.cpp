@@ -2,11 +2,11 @@
 
 // Builds the tree that finds the nearest triangle: a bounding volume hierarchy of eight children a
 // node and up to eight triangles a leaf, since that many are compared at a time (core/simd.h).
-// Boxes are turned with the surface (the header says why). Invariant: all that can be seen of a
-// triangle in floats is within its boxes, as these are widened by more than the rounding. The
-// number of leaves is a power of two, and items are split evenly among them, so the shape follows
-// from the number of triangles alone, and who is in which leaf from coordinates and indices;
-// threads change neither. Trap: the mesh must not be empty.
+// Boxes are turned with the surface (the header says why). Invariant: as computed in floats, no
+// point is nearer to a triangle than to a box around it, because boxes are widened by more than the
+// rounding. The number of leaves is a power of two, and items are split evenly among them, so the
+// shape follows from the number of triangles alone, and who is in which leaf from coordinates and
+// indices; threads change neither. Trap: the mesh must not be empty.
 
 #include "mesh/triangle_tree.h"
 

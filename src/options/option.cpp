@@ -175,7 +175,8 @@ bool Range::holds(double value) const
 
 std::string Range::text() const
 {
-    // The most common range has the short form, "0 to 1".
+    // People read "0 to 1" as a range that holds both of its ends, so only such a range is written
+    // so.
     if (low && high && !low_excluded && !high_excluded)
         return text_of_number(*low) + " to " + text_of_number(*high);
     std::string text;

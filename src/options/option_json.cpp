@@ -176,8 +176,8 @@ ordered_json to_json(const OptionSections& sections)
             continue;
         }
         for (const Option& option : section.options)
-            // What does not change the result is not written: two runs with the same result have
-            // the same record.
+            // What does not change the result is not written, so runs that differ in nothing else
+            // have the same record.
             if (option.stored && !option.key.empty())
                 (section.key.empty() ? json[option.key] : json[section.key][option.key]) =
                     value_json(option.get());
