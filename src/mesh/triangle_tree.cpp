@@ -32,7 +32,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kWorthAThread = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
 // triangle seem nearer than its box. One rounding of a float is 6e-8 of what is rounded, and a
-// distance takes a handful of them.
+// distance takes a handful of them; what is rounded is as large as the mesh for points that are not
+// many diagonals away from it.
 constexpr float kBoxSlack = 2e-6F;
 
 struct Item {
