@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Files that appear whole or not at all. The data goes into a temporary file in the target's own
+// folder, is flushed with fsync and then renamed over the target. POSIX replaces the old file in
+// one step by a rename, but only within one file system; that is why the temporary does not stand
+// in the system's folder for such files. A reader finds the old file or the new one at any moment,
+// never a part. Files under way are also noted in a table of fixed size, because a signal handler
+// that removes them may neither allocate nor lock. Trap: the folder itself is not flushed, so a
+// power failure right after the rename may bring the old file back.
+
 #include "vdb_shell/core/atomic_file.h"
 
 #include "vdb_shell/core/error.h"
@@ -22,7 +31,9 @@ namespace
 
 namespace fs = std::filesystem;
 
-// The temporary files under way, by name, where a signal handler can find them without allocating.
+// The names of the temporary files under way, where a signal handler can find them without
+// allocating. Where more files than there are slots are under way, or a path is longer, the file is
+// written all the same; a signal only leaves its temporary behind.
 constexpr std::size_t kMaxTemporaries = 16;
 constexpr std::size_t kMaxPath = 4096;
 struct Slot {
@@ -37,6 +48,8 @@ public:
     explicit Temporary(const fs::path& target)
     {
         static std::atomic<unsigned> counter{0};
+        // Process and counter are in the name, so that two runs, or two threads, that write the
+        // same target do not write into each other's temporary.
         path_ = target.parent_path() /
                 ("." + target.stem().string() + ".tmp" + std::to_string(::getpid()) + "-" +
                  std::to_string(counter++) + target.extension().string());
@@ -46,6 +59,7 @@ public:
             const std::string name = path_.string();
             if (name.size() + 1 < kMaxPath) {
                 std::memcpy(slot.path.data(), name.c_str(), name.size() + 1);
+                // Only after the whole name is there, so a handler never sees half of one.
                 slot.ready = true;
             }
             slot_ = &slot;
@@ -58,6 +72,9 @@ public:
         fs::remove(path_, ignored); // gone already where the rename succeeded
         if (!slot_)
             return;
+        // First not ready, then not taken: in the other order another thread could take the slot
+        // and have its own mark cleared here. The file is removed before either, so there is no
+        // moment in which a signal would leave it behind.
         slot_->ready = false;
         slot_->taken = false;
     }
@@ -80,6 +97,7 @@ void flush_to_disk(const fs::path& file, const fs::path& target)
     const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     if (handle < 0)
         fail(target, std::strerror(errno));
+    // A descriptor of its own is enough: fsync concerns the file, whoever wrote the data.
     const int status = ::fsync(handle);
     const int error = errno;
     ::close(handle);
@@ -97,6 +115,8 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     try {
         write(temporary.path());
     } catch (const Error&) {
+        // Errors of this project name the file and the cause already; what a library throws seldom
+        // does.
         throw;
     } catch (const std::exception& error) {
         fail(path, error.what());
@@ -115,6 +135,7 @@ void write_stream_atomically(const fs::path& path, const std::function<void(std:
         if (!out)
             fail(path, std::strerror(errno));
         write(out);
+        // Buffered data may get to the file system only here, so a full disk may show only now.
         out.close();
         if (!out)
             fail(path, "the disk is full or the file system refused the data");
@@ -131,6 +152,8 @@ void require_writable(const fs::path& path)
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     if (!fs::is_directory(folder, error))
         fail(path, "its folder does not exist");
+    // A rename needs the permission of the folder only, whatever that of the file is. This is an
+    // early test, to save the user a long run; the write itself is what decides.
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
         fail(path, std::strerror(errno));
 }

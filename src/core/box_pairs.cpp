@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// All pairs of boxes with a common point: the candidates of every test for contacts. It takes
+// closed boxes in float32 and leaves the pairs i < j, sorted, each once. Nothing is rounded, so no
+// pair is missed, however the boxes touch. The result is the same for any number of threads: each
+// part of the tree's groups fills a list of its own, and a bucket sort puts the lists into one
+// order that does not depend on them. Traps: `keep` is called from several threads at a time and in
+// no particular order; many boxes in one place give quadratically many pairs.
+
 #include "core/box_pairs.h"
 
 #include "core/bucket_sort.h"
@@ -13,6 +21,7 @@ namespace
 
 using Pair = std::array<std::uint32_t, 2>;
 
+// Groups that one thread takes at a time: they share the memory of one list of nearby boxes.
 constexpr std::size_t kGroupsInPart = 16;
 
 } // namespace
@@ -52,11 +61,15 @@ std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const Ke
                     [&](int i, int j) {
                         const auto low = static_cast<std::uint32_t>(i),
                                    high = static_cast<std::uint32_t>(j);
+                        // Each pair is found from both of its boxes, and once is enough. What
+                        // `keep` rejects is dropped here, before it takes memory.
                         if (low < high && keep(low, high))
                             parts[part].push_back({low, high});
                     });
         },
         1);
+    // The first boxes are numbers from 0 without gaps, as a bucket sort wants. The second tells all
+    // pairs of a bucket apart, so their order is unique.
     return bucket_sort<Pair>(
         parts, boxes.size(), [](const Pair& pair) { return pair[0]; },
         [](const Pair& x, const Pair& y) { return x[1] < y[1]; });

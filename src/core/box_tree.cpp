@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// A bounding volume hierarchy over axis-parallel boxes, split at the median of the boxes' middles
+// along the longest extent. Two levels of halves make one node, so a node has up to four children,
+// whose boxes are compared by one group of vector instructions. Invariant: the box of a node holds
+// all boxes below it exactly, for least and greatest of floats are not rounded; so a query never
+// misses a box, whatever the shape of the tree. Building takes O(n log n). Trap: refit() keeps the
+// shape, so answers stay right but become slower when boxes move far from each other.
+
 #include "core/box_tree.h"
 
 #include "core/parallel.h"
@@ -20,7 +28,8 @@ constexpr int kParallel = 512;
 
 } // namespace
 
-/// What the splits move: a box by its middle.
+/// What the splits move: the number of a box with its middle, so that boxes themselves stay in
+/// place.
 struct BoxTree::Item {
     std::array<float, 3> twice_middle;
     int box;
@@ -28,11 +37,17 @@ struct BoxTree::Item {
 
 bool FloatBox::meets_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, double limit) const
 {
+    // The test of slabs (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986). A difference and a
+    // quotient of doubles have a relative error of about 2e-16 together, so the factor is far above
+    // what can turn a hit into a miss; the absolute term serves rays that begin on the box, where
+    // both ends are about 0.
     constexpr double kAboveRounding = 1 + 1e-9, kLeast = 1e-300;
     double from = 0, to = limit;
     for (int k = 0; k < 3; ++k) {
         const auto low = double(lo[k]), high = double(hi[k]);
         if (d[k] == 0) {
+            // A ray along this slab stays in it or out of it. Dividing by 0 would give no number
+            // where it runs in the slab's own boundary.
             if (p[k] < low || p[k] > high)
                 return false;
             continue;
@@ -55,6 +70,7 @@ void BoxTree::build(std::vector<FloatBox> boxes)
     for_each_index(
         count,
         [&](std::size_t i) {
+            // Twice the middle is in the same order as the middle, without halving.
             const FourFloats sum = boxes[i].lo + boxes[i].hi;
             items[i] = {{sum[0], sum[1], sum[2]}, static_cast<int>(i)};
         },
@@ -71,7 +87,8 @@ void BoxTree::build(std::vector<FloatBox> boxes)
     fit_nodes();
 }
 
-/// Where a range of more than kLeaf boxes is split.
+/// Where a range of more than kLeaf boxes is split: by number alone, so the shape of the tree
+/// follows from how many boxes there are.
 int BoxTree::middle_of(int begin, int end)
 {
     return begin + (end - begin) / 2;
@@ -92,8 +109,9 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
     const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
     const std::size_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     const int middle = middle_of(begin, end);
-    // Ties by index: the tree, and with it the order of all candidate lists, is the same
-    // everywhere.
+    // Ties are broken by index, so which box goes to which half depends neither on threads nor on
+    // how the library finds a median. Only within a leaf the order is the one that the library's
+    // algorithm leaves.
     std::nth_element(first, items.begin() + middle, last, [axis](const Item& a, const Item& b) {
         const float ca = a.twice_middle[axis], cb = b.twice_middle[axis];
         return ca != cb ? ca < cb : a.box < b.box;
@@ -103,11 +121,14 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
         split(items, middle, end);
         return;
     }
+    // The halves are disjoint ranges of the items, so both can be split at once.
     tbb::parallel_invoke([&] { split(items, begin, middle); }, [&] { split(items, middle, end); });
 }
 
 int BoxTree::add_node(int begin, int end)
 {
+    // Nodes are named by number throughout: the vector moves its nodes when a child is added, and a
+    // reference would then point to freed memory.
     const auto id = nodes_.size();
     nodes_.push_back({FourBoxes::none(), {}, 0, end - begin <= kLeaf});
     unsigned lane = 0;
@@ -118,10 +139,14 @@ int BoxTree::add_node(int begin, int end)
         return static_cast<int>(id);
     }
     const auto add = [&](int from, int to) {
+        // This has to be a statement of its own: adding the child may move the node whose entry is
+        // set next.
         const int child = add_node(from, to);
         nodes_[id].child[lane++] = child;
     };
     const int middle = middle_of(begin, end);
+    // The ranges are those that split() made, by the same rule, or else boxes that lie far apart
+    // would come into one node. A half that is small enough for a leaf becomes a child as it is.
     for (const auto& [from, to] : {std::pair(begin, middle), std::pair(middle, end)}) {
         if (to - from <= kLeaf) {
             add(from, to);
@@ -151,6 +176,8 @@ void BoxTree::refit(const std::vector<FloatBox>& boxes, const std::vector<std::u
 void BoxTree::fit_nodes()
 {
     std::vector<FloatBox> around(nodes_.size());
+    // Each node stands before its children, so going backwards finds the boxes of all children
+    // ready. This takes linear time and one thread, since it is little work next to the splits.
     for (std::size_t i = nodes_.size(); i-- > 0;) {
         Node& n = nodes_[i];
         for (unsigned lane = 0; lane < n.children; ++lane) {
@@ -172,6 +199,8 @@ void BoxTree::Near::add(const FloatBox& box, int item)
 {
     const std::size_t lane = item_.size() % kWide;
     if (lane == 0)
+        // Places that are not used keep a box that overlaps nothing, so a query need not know how
+        // many of the last block are used.
         block_.push_back(FourBoxes::none());
     block_.back().set(lane, box);
     item_.push_back(item);

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Signs and contacts, decided exactly on the float32 coordinates themselves. A float32 is a double
+// without rounding, so CGAL's kernel gets exactly what is stored. Signs come from a filter in
+// doubles where that is certain (Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast
+// Robust Geometric Predicates", 1997), else from CGAL's filtered predicates, which turn to exact
+// numbers in the end. No intersection is ever constructed: constructions of this kernel are
+// rounded, only its predicates are exact. Trap: CGAL's tests of intersection want triangles and
+// segments that are not degenerate; callers, or the functions below, see to that.
+
 #include "core/exact.h"
 
 #include "core/orient3d_filter.h"
@@ -112,6 +121,8 @@ bool edge_separates(const std::array<Point, 3>& s, const openvdb::Vec3I& s_id,
     return false;
 }
 
+// Seen along this axis a triangle appears as large as along any, so it is least likely to look
+// flat.
 int largest_axis(const openvdb::Vec3d& n)
 {
     const double x = std::abs(n[0]), y = std::abs(n[1]), z = std::abs(n[2]);
@@ -124,6 +135,9 @@ bool apart_in_projection(const std::vector<openvdb::Vec3s>& points, const openvd
                          const openvdb::Vec3I& second)
 {
     const openvdb::Vec3d a(points[first[0]]), b(points[first[1]]), c(points[first[2]]);
+    // The normal is rounded, which does no harm: any axis would be right, since a line that
+    // separates what is seen is a plane, along the axis, that separates in space. In that plane `s`
+    // has its edge only, and of `t` there are only corners that both share.
     const int axis = largest_axis((b - a).cross(c - a));
     const auto seen = [&](const openvdb::Vec3I& triangle) {
         std::array<Point, 3> corners;
@@ -156,6 +170,8 @@ bool plane_separates(const std::vector<openvdb::Vec3s>& points, const openvdb::V
             continue;
         const int sign =
             orient3d(points[face[0]], points[face[1]], points[face[2]], points[other[k]]);
+        // Only strictly on one side: a corner in the plane could lie in the triangle itself. A
+        // degenerate face gives zeros only and is never said to separate.
         if (sign == 0 || sign == -side)
             return false;
         side = sign;
@@ -168,6 +184,8 @@ bool plane_separates(const std::vector<openvdb::Vec3s>& points, const openvdb::V
 bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
                      const openvdb::Vec3I& second)
 {
+    // Quick tests come first. Each says "apart" only where it is certain, so their order changes
+    // the time and not the answer.
     if (apart_in_projection(points, first, second) || plane_separates(points, first, second) ||
         plane_separates(points, second, first))
         return false;
@@ -178,11 +196,14 @@ bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::V
     case 0:
         return CGAL::do_intersect(Triangle3(p(0), p(1), p(2)), Triangle3(q(0), q(1), q(2)));
     case 1:
-        // The common part is convex and holds the shared corner; if it holds more, it reaches the
-        // opposite edge of one of the two.
+        // The common part is convex and holds the shared corner. If it holds another point, the ray
+        // from the corner through that point lies in both triangles until it leaves one of them,
+        // and it leaves that one through the edge opposite to the corner.
         return CGAL::do_intersect(Segment(p(1), p(2)), Triangle3(q(0), q(1), q(2))) ||
                CGAL::do_intersect(Segment(q(1), q(2)), Triangle3(p(0), p(1), p(2)));
     case 2:
+        // Triangles with a common edge lie in two half-planes that begin at it. These meet in the
+        // edge's line only, unless they are the same half-plane.
         return CGAL::orientation(p(0), p(1), p(2), q(2)) == CGAL::COPLANAR &&
                CGAL::coplanar_orientation(p(0), p(1), p(2), q(2)) == CGAL::POSITIVE;
     default:
@@ -234,6 +255,8 @@ bool plane_separates(const EightCorners& corner, std::size_t i, std::size_t j, s
         if (p == corner[i] || p == corner[j] || p == corner[k])
             continue;
         const int sign = orient3d(corner[i], corner[j], corner[k], p);
+        // A side that both tets have corners on, or one tet on both sides, rules the plane out.
+        // Corners in the plane are allowed: it is the interiors that must be disjoint.
         int& own = side[x / 4];
         if (sign * own < 0 || sign * side[1 - x / 4] > 0)
             return false;
@@ -250,13 +273,16 @@ bool tets_overlap(const Tet& first, const Tet& second)
     EightCorners corner;
     std::copy(first.begin(), first.end(), corner.begin());
     std::copy(second.begin(), second.end(), corner.begin() + 4);
-    // Of the planes through three corners, faces separate most pairs (docs/theory.md, "A surface
-    // that crosses itself").
+    // Of the planes through three corners those of faces come first, because they separate most
+    // pairs (docs/theory.md, "A surface that crosses itself", proves that the planes through
+    // corners are enough).
     for (std::size_t base = 0; base < 8; base += 4)
         for (std::size_t left_out = 0; left_out < 4; ++left_out)
             if (plane_separates(corner, base + (left_out + 1) % 4, base + (left_out + 2) % 4,
                                 base + (left_out + 3) % 4))
                 return false;
+    // The 48 planes through corners of both tets, which together with the 8 faces are all 56. They
+    // are needed: two tets may cross like two knives, where no face separates.
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = i + 1; j < 8; ++j)
             for (std::size_t k = std::max<std::size_t>(j + 1, 4); k < 8; ++k)
@@ -273,7 +299,8 @@ bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb
 
 bool longer_than(const openvdb::Vec3s& from, const openvdb::Vec3s& to, double length)
 {
-    // Double arithmetic is off by a few units in the last place at most; only a tie needs more.
+    // Double arithmetic is off by a few units in the last place, of about 1e-16 each. Only lengths
+    // that are nearly the same need more.
     constexpr double kSlack = 1e-14;
     const double measured = (openvdb::Vec3d(to) - openvdb::Vec3d(from)).length();
     if (measured > length)
@@ -284,6 +311,7 @@ bool longer_than(const openvdb::Vec3s& from, const openvdb::Vec3s& to, double le
     for (int axis = 0; axis < 3; ++axis) {
         const CGAL::Exact_rational extent =
             CGAL::Exact_rational(to[axis]) - CGAL::Exact_rational(from[axis]);
+        // Squares are compared, because a root is no rational number.
         squared += extent * extent;
     }
     return squared > CGAL::Exact_rational(length) * CGAL::Exact_rational(length);
@@ -300,6 +328,9 @@ bool crosses_ray(const Point2& p, const Point2& a, const Point2& b)
     const bool a_above = a.y() > p.y(), b_above = b.y() > p.y();
     if (a_above == b_above)
         return false;
+    // Both triangles at an edge get the same answer, also where the point is on the edge's line:
+    // turned round, the edge has the other orientation and the other test. So a line through the
+    // edge is counted for exactly one of two triangles that lie on either side of it.
     const CGAL::Orientation side = CGAL::orientation(a, b, p);
     return b_above ? side == CGAL::LEFT_TURN : side == CGAL::RIGHT_TURN;
 }
@@ -316,6 +347,8 @@ int crossing_above(const openvdb::Vec3s& point, const openvdb::Vec3s& a, const o
         const Triangle3 triangle(point3(a), point3(b), point3(c));
         on_surface = on_surface || triangle.has_on(point3(point));
     }
+    // A triangle seen edge on has no inside that the line could cross. By the half-open rule its
+    // neighbours count the line as if it were not there, because its edges are theirs too.
     if (turn == CGAL::COLLINEAR)
         return 0;
     const bool inside = crosses_ray(p, pa, pb) ^ crosses_ray(p, pb, pc) ^ crosses_ray(p, pc, pa);

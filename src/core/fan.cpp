@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Shows quickly that the triangles around a vertex meet in common corners and edges only
+// (docs/theory.md, "Fans", which has the proof). It takes the spokes of a closed fan in doubles; a
+// yes is certain, a no tells nothing, and the caller then tests pairs exactly. All bounds are
+// multiples of the rounding of the very expressions below, in the manner of Shewchuk (1997), so the
+// operations must not be reordered or contracted. Traps: this source is compiled once for each kind
+// of processor (core/simd.h), and answers are bits of 32-bit words, so a fan has at most Fan::kMost
+// triangles.
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -40,6 +49,7 @@ struct Areas {
     std::array<double, 3> sum;
 };
 
+/// The lanes in one fixed order, so that all processors get the same bits.
 HWY_INLINE double sum_in_order(Doubles x)
 {
     alignas(kLanesAlignment) double lane[kDoubleLanes];
@@ -51,6 +61,8 @@ HWY_INLINE void find_areas(const Fan::Spokes& spokes, std::size_t blocks, Areas&
 {
     DoublePoint sum{Doubles(0.0), Doubles(0.0), Doubles(0.0)};
     for (std::size_t block = 0; block < blocks; ++block) {
+        // In the lanes behind the last triangle both are the first spoke. Both products are then
+        // the same number and the area is exactly 0, so that the sum needs no mask.
         const DoublePoint u = load(spokes, block * kDoubleLanes),
                           w = load(spokes, block * kDoubleLanes + 1);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -68,7 +80,9 @@ HWY_INLINE void find_areas(const Fan::Spokes& spokes, std::size_t blocks, Areas&
 /// A bit for each triangle that surely turns left, seen against `along`.
 HWY_INLINE std::uint32_t turning_left(const Areas& areas, std::size_t blocks)
 {
-    // Beyond the error of a determinant, so much that below() may be off in its last bits.
+    // Three times the error bound of the determinant. The margin is there for below(), whose signs
+    // are rounded: they are right for spokes that differ from the real ones by a few roundings, and
+    // a change so small cannot bring a determinant of this size to 0.
     constexpr double kError = 3 * exact::kOrientError;
     std::uint32_t bits = 0;
     for (std::size_t block = 0; block < blocks; ++block) {
@@ -82,7 +96,9 @@ HWY_INLINE std::uint32_t turning_left(const Areas& areas, std::size_t blocks)
     return bits;
 }
 
-/// A bit for each spoke that lies below a line through the apex, seen along `along`.
+/// A bit for each spoke that lies below a line through the apex, seen along `along`. The vector
+/// across the line is (along[k], -along[j]) on the axes j and k, which is exactly square to `along`
+/// without any rounding. The largest axis is one of them, so that it is not nearly zero.
 HWY_INLINE std::uint32_t below(const Fan::Spokes& spokes, std::size_t blocks,
                                const std::array<double, 3>& along)
 {
@@ -105,7 +121,9 @@ bool side_by_side(const Fan::Spokes& spokes, std::size_t count)
     find_areas(spokes, blocks, areas);
     if ((turning_left(areas, blocks) & all) != all)
         return false;
-    // Each time round, the spokes come once from below the line to above it.
+    // Each turn around the apex, the spokes come once from below the line to above it. So exactly
+    // one such step means exactly one turn, and the sectors have no inside in common. The bits of
+    // `before` are those of the spoke before, in a ring.
     const std::uint32_t now = below(spokes, blocks, areas.sum) & all;
     const std::uint32_t before = (now << 1 | now >> (count - 1)) & all;
     const std::uint32_t risen = before & ~now;
@@ -115,7 +133,8 @@ bool side_by_side(const Fan::Spokes& spokes, std::size_t count)
 HWY_INLINE std::uint32_t surely_above(const DoublePoint& across, const DoublePoint& arm,
                                       double sign)
 {
-    // One rounding of each difference, one of each product, two of sums.
+    // One rounding of each difference, one of each product, two of sums: four times 1.1e-16. The
+    // vector `across` counts as given, with whatever rounding it has.
     constexpr double kError = 6e-16;
     Doubles value(0.0), size(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -125,8 +144,11 @@ HWY_INLINE std::uint32_t surely_above(const DoublePoint& across, const DoublePoi
     return bits_of(certain_margin(sign * value, size, kError) > 0.0);
 }
 
-/// Across the plane through the apex that halves the angle between two middles; whatever its
-/// rounding, it is as good as any other if it has the two on its two sides.
+/// Takes the plane through the apex that halves the angle between the middles of two triangles. If
+/// both spokes of one triangle are strictly above it and both of the other strictly below, the two
+/// share the apex only. Any plane that does so proves it, so the rounding of the plane itself does
+/// not matter. Neighbours, and triangle i itself, have a spoke in common with triangle i, which
+/// cannot be on both sides; their bits stay unset.
 std::uint32_t apart_from(const Fan::Spokes& spokes, std::size_t count, std::size_t i)
 {
     std::array<DoublePoint, 2> own;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The only place where the coordinates of files become float32. Each is rounded once: a text goes
+// to the nearest float straight from its decimals, and where the object is moved, origin and unit
+// are applied in doubles before the one rounding. So the mesh does not depend on the way that a
+// coordinate takes, and the largest rounding can be reported. Whoever chooses an origin has to see
+// all coordinates before any is rounded; that is the first look, which has no limit of 1e18 (that
+// of float32 remains).
+
 #include "io/coordinates.h"
 
 #include "vdb_shell/mesh/check_mesh.h"
@@ -25,6 +33,7 @@ std::string digits_of(double value)
 /// is measured against. Precondition: parse_coordinate took the word.
 double exact_value(std::string_view word)
 {
+    // std::from_chars takes no plus sign.
     if (word[0] == '+')
         word.remove_prefix(1);
     double value = 0;
@@ -77,13 +86,15 @@ float Coordinates::placed(const std::string& name, const Place& place, double ex
 float Coordinates::from_text(const std::string& name, const Place& place, std::string_view word,
                              int axis)
 {
-    // Straight from the decimals: by way of double it would be rounded twice.
+    // Straight from the decimals: by way of double it would be rounded twice, which can end at the
+    // wrong one of two neighbours where the double lies just halfway between them.
     const float nearest = parse_coordinate(name, place, word);
     const double exact = exact_value(word);
     see(exact, axis);
     if (placement_.moves())
         return placed(name, place, exact, axis);
     require_limit(name, place, exact, nearest);
+    // The double is itself rounded, but 2^29 times finer than the float.
     largest_rounding_ = std::max(largest_rounding_, std::abs(exact - double(nearest)));
     return nearest;
 }

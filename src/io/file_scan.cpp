@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// What the scans of all formats do with a face: count it, remove corners that repeat the one
+// before, and keep it or note it as skipped. Guarantee: each face of the file is in exactly one of
+// the two lists, so the counts of the report add up and nothing gets lost. A face in which every
+// corner comes more than once is skipped: from whichever corner a fan began, one of its triangles
+// would have that corner twice. Nothing here looks at positions; mesh_of_scan.cpp calls
+// tidy_polygon() again when equal positions have been merged.
+
 #include "io/file_scan.h"
 
 #include <algorithm>
@@ -47,6 +55,7 @@ void add_face(FileScan& scan, Polygon& polygon)
 void require_corner(const std::string& name, const Place& face, std::int64_t index,
                     std::size_t vertices, const std::string& shown)
 {
+    // Signed, so that what the file says can be compared before it is narrowed.
     if (index < 0 || static_cast<std::uint64_t>(index) >= vertices)
         refuse(name, face.text() + ": the vertex index " + shown +
                          " is out of range, the file has " + std::to_string(vertices) +

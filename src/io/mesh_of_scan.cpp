@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The last steps of all readers: merge vertices of equal position, cut polygons into triangles, and
+// drop points that nothing uses. It takes a scan whose corners are all in range. It leaves
+// triangles of three different points each, points in the order of the file, and a report in which
+// polygons kept and faces skipped add up to the faces of the file. The order matters: merging can
+// make corners of a polygon equal, so triangles are cut after it, and only then is it known which
+// points are used.
+
 #include "io/file_scan.h"
 #include "io/triangulate.h"
 #include "mesh/equal_points.h"
@@ -14,6 +22,7 @@ namespace
 /// are.
 std::size_t weld(FileScan& scan)
 {
+    // Corners go to the first of equal points, so the order of the points stays that of the file.
     const std::vector<std::uint32_t> first = first_equal_point(scan.points);
     for (std::uint32_t& corner : scan.corners)
         corner = first[corner];
@@ -35,6 +44,8 @@ void append_faces(const FileScan& scan, ReadResult& result)
     // A polygon of n corners makes n - 2 triangles.
     result.mesh.triangles.reserve(scan.corners.size() - 2 * scan.polygon_sizes.size());
     for (const std::uint32_t size : scan.polygon_sizes) {
+        // Both lists are ascending and together hold every face once. Faces that the scan left out
+        // are passed before the next polygon, so `file_face` is the number that the file gives it.
         for (; skipped_before != scan.skipped_faces.end() && *skipped_before == file_face;
              ++skipped_before)
             skipped.push_back(file_face++);
@@ -55,7 +66,7 @@ void append_faces(const FileScan& scan, ReadResult& result)
 /// Copies the points that triangles use to the mesh, in order; returns how many those are.
 std::size_t keep_used_points(const std::vector<openvdb::Vec3s>& points, TriangleMesh& mesh)
 {
-    // Points that nothing uses would be isolated vertices, which every stage would have to expect.
+    // An index would have to be near 2^32 to be taken for one of these marks.
     constexpr std::uint32_t kUnused = UINT32_MAX, kUsed = UINT32_MAX - 1;
     std::vector<std::uint32_t> new_index(points.size(), kUnused);
     for (const openvdb::Vec3I& t : mesh.triangles)

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The header of a PLY file, and its data value by value (Greg Turk, "The PLY Polygon File Format",
+// 1994). A header is taken only if it is complete and says how to read a surface; data are read in
+// the order and the types that it declares. No length in the file is believed before the bytes for
+// it are there, since memory is taken by it. Trap: binary values are decoded as they lie in memory,
+// for which the machine is taken to be little-endian.
+
 #include "io/ply_values.h"
 
 #include <algorithm>
@@ -51,6 +58,7 @@ public:
     PlyHeader parse()
     {
         std::string_view line;
+        // Line breaks of all three kinds are taken here, since binary files come from any system.
         if (!lines_.next(line) || cut_word(line) != "ply")
             refuse(name_, "the first line is not \"ply\"");
         while (true) {
@@ -72,6 +80,7 @@ public:
             refuse(name_, "the header has no format line");
         // Binary data begins right behind the line break of end_header.
         header_.bytes = bytes_.size() - lines_.rest().size();
+        // Text data count on from here, so that messages name lines of the file.
         header_.lines = lines_.number();
         require_mesh();
         return std::move(header_);
@@ -107,6 +116,8 @@ private:
         if (count < 0 || count > INT32_MAX)
             complain("the number of \"" + element.name + "\" elements, " + std::to_string(count) +
                      ", is beyond the limit of " + std::to_string(INT32_MAX));
+        // Whether so many fit into the file is tested where their data begin (scan_ply.cpp), since
+        // types are not known yet.
         element.count = static_cast<std::size_t>(count);
         header_.elements.push_back(std::move(element));
     }
@@ -141,6 +152,8 @@ private:
         return std::count_if(element.properties.begin(), element.properties.end(), wanted);
     }
 
+    // With two properties of one name it would be chance which of them is the coordinate, so both
+    // none and two are refused.
     void require_vertices(const PlyElement& element) const
     {
         for (const char* const axis : {"x", "y", "z"})
@@ -265,6 +278,8 @@ PlyValue PlyValues::next(PlyType type, const Place& place)
     PlyValue value;
     if (encoding_ == PlyEncoding::text) {
         value.word = cut_word(line_);
+        // Values are taken wherever the lines break, so an element that runs over several lines is
+        // read too.
         while (value.word.empty() && lines_.next(line_))
             value.word = cut_word(line_);
         if (value.word.empty())
@@ -294,6 +309,7 @@ std::size_t PlyValues::list_size(const PlyProperty& list, const Place& place)
     // A damaged length must not be believed: memory for the list is taken by it.
     const double most =
         static_cast<double>(bytes_left()) / static_cast<double>(text ? 1 : size_of(list.type));
+    // Also for lengths that are stored as floats and are not numbers.
     if (!(size >= 0 && size <= most))
         refuse(name_, at.text() + ": a list \"" + list.name + "\" of " + std::to_string(size) +
                           " values, where the rest of the file can hold " +

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The way into a mesh for readers outside this library, which parse a format by themselves.
+// Polygons take the steps of the built-in formats, with the same tests, the same single rounding
+// and the same report. Points come in doubles, because an origin has to be subtracted before
+// rounding. Where an origin is wanted the points are gone through twice, and what the first time
+// makes is thrown away: only the box of it counts.
+
 #include "vdb_shell/io/polygon_soup.h"
 
 #include "io/file_scan.h"
@@ -23,7 +30,8 @@ std::vector<openvdb::Vec3s> rounded_points(const PolygonSoup& soup, const std::s
     return points;
 }
 
-/// Where the options ask for it, the points are looked through once for the box that they fill.
+/// An origin or a unit is chosen by the box of all points, so the points are gone through once
+/// before any of them is rounded for the mesh.
 Coordinates placed_coordinates(const PolygonSoup& soup, const std::string& name,
                                const ReadOptions& options)
 {

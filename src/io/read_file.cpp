@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The bytes of a file as a whole, and the wording of all refusals. Files are read whole because the
+// scans work on views into the bytes, without copying words. Kinds of file are told apart before
+// anything is opened: a pipe would wait for a writer, and a folder can be opened on some systems.
+// What was read is held against the size, so a file that cannot be read to its end is refused.
+
 #include "vdb_shell/io/read_file.h"
 
 #include "vdb_shell/core/error.h"
@@ -52,6 +58,7 @@ std::string quoted(std::string_view word)
     constexpr std::size_t kLongest = 40;
     std::string text(word.substr(0, kLongest));
     std::replace_if(
+        // Messages go to terminals, where control characters of a damaged file could do anything.
         text.begin(), text.end(), [](unsigned char c) { return !std::isprint(c); }, '?');
     return "\"" + text + (word.size() > kLongest ? "..." : "") + "\"";
 }

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads a mesh file: chooses the scan by the extension, reads the bytes, and hands the scan to the
+// last steps of all formats. With an origin or a unit to be chosen the bytes are scanned twice,
+// since the choice needs all coordinates before one of them is rounded; the first time every test
+// is made too, but for the limit on size. The extension decides, and not the first bytes, because
+// OBJ has no mark to be known by.
+
 #include "vdb_shell/io/read_mesh.h"
 
 #include "io/coordinates.h"
@@ -39,6 +46,7 @@ Scan scan_for(const fs::path& path)
 ReadResult read_mesh(const fs::path& path, const ReadOptions& options)
 {
     const std::string name = path.string();
+    // Before the file is read, so a wrong name costs no time.
     const Scan scan = scan_for(path);
     std::string bytes = read_whole_file(path);
     Coordinates coordinates;

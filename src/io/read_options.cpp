@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The options of reading, described once for the command, files and Houdini (docs/options.md). Both
+// ways of moving the object are off unless wanted, so that the coordinates of ordinary files stay
+// as they are.
+
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/options/option.h"
 

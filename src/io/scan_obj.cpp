@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Scans OBJ ("Object Files (.obj)", appendix B1 of the Advanced Visualizer manual). Only vertices
+// and faces are read. What else the format has is passed over, except what would be a part of the
+// surface: that is refused, because a surface with a hole where a line was not understood would
+// look like a sound one. Faces may name vertices that come later, so indices above all vertices so
+// far are noted and tested at the end. Trap: negative indices count back from where the face stands
+// and can only name what came before.
+
 #include "io/file_scan.h"
 
 #include <algorithm>
@@ -9,8 +17,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-// The format: "Object Files (.obj)", appendix B1 of the Advanced Visualizer manual.
 
 /// A face that names a vertex before the file has it.
 struct EarlyFace {
@@ -23,7 +29,7 @@ struct ObjScan {
     Coordinates& coordinates;
     FileScan scan;
     std::vector<EarlyFace> early_faces;
-    Polygon polygon; ///< of the face in hand; kept for its memory
+    Polygon polygon; ///< of the current face; a member so that its memory is used again
 };
 
 /// What follows the third coordinate is passed over: a weight of rational curves, or a colour.
@@ -55,8 +61,10 @@ void read_face(ObjScan& obj, std::string_view rest, std::size_t line)
             break;
         const std::string_view vertex = word.substr(0, word.find('/'));
         const std::int64_t given = parse_integer(obj.name, face, vertex);
+        // Indices count from 1. A given 0 becomes -1 here and is refused like all that is out of
+        // range.
         const std::int64_t index = given < 0 ? vertices + given : given - 1;
-        // An index above all vertices so far may name one that is still to come.
+        // An index above all vertices so far may name one that comes later.
         if (index < 0 || index > INT32_MAX)
             require_corner(obj.name, face, -1, obj.scan.file_vertices, std::to_string(given));
         obj.polygon.push_back(static_cast<std::uint32_t>(index));
@@ -138,11 +146,14 @@ FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& 
     Lines lines(without_byte_order_mark(bytes));
     std::string joined;
     for (std::string_view line; lines.next(line);) {
+        // A statement over several lines is named by its first.
         const std::size_t number = lines.number();
         if (cut_continuation(line)) {
             joined = line;
             for (bool more = true; more && lines.next(line);) {
                 more = cut_continuation(line);
+                // The backslash stands for a blank, not for nothing: numbers on both sides stay
+                // apart.
                 (joined += ' ') += line;
             }
             line = joined;

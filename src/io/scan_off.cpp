@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Scans OFF (Geomview's manual, "OFF files"), in text only. Counts are held against the size of the
+// file before memory is taken by them. Files differ in what follows the coordinates of a vertex and
+// in how they break lines, so the first vertex decides how the others are read (read_vertices()
+// says how). All that the header declares must be there, and nothing after it, since a count that
+// does not fit may mean that a part of the surface is missing.
+
 #include "io/file_scan.h"
 
 #include <algorithm>
@@ -9,11 +16,10 @@ namespace vdb_shell
 namespace
 {
 
-// The format: Geomview's manual, "OFF files". Values may stand in any number of lines, except that
-// the colour of a face ends where its line does. The manual lets a vertex have a normal, a colour
-// and texture coordinates of fixed numbers, but programs write three or four numbers for a colour,
-// and write colours without saying so in the keyword. So the rest of a vertex's line is passed over
-// as well, in the same way.
+// Values may stand in any number of lines, except that the colour of a face ends where its line
+// does. The manual lets a vertex have a normal, a colour and texture coordinates of fixed numbers,
+// but programs write three or four numbers for a colour, and write colours without saying so in the
+// keyword. So the rest of a vertex's line is passed over as well, in the same way.
 
 /// The words of the file, without comments, and the line that each stands in.
 class OffWords
@@ -99,7 +105,7 @@ std::array<std::size_t, 2> read_counts(OffWords& words, std::size_t file_size)
 void read_vertices(OffWords& words, Coordinates& coordinates, FileScan& scan)
 {
     // Where the first vertex is spread over lines, lines mean nothing and vertices have nothing but
-    // coordinates. Elsewhere a vertex has a line of its own, and one that lacks a number can be
+    // coordinates. Elsewhere a vertex has a line of its own, and one with too few numbers can be
     // named.
     const bool spread = words.find() && !words.has_in_line(3);
     scan.points.reserve(scan.file_vertices);

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Scans PLY, in text and binary: elements and properties in any order, as the header declares them.
+// What is not part of the surface is stepped over value by value, since lists have no fixed size.
+// Faces may stand before the vertices that they name, so their corners are tested against the
+// number that the header declares; that many vertices are then read or the file is refused. Text
+// coordinates go to float32 directly, binary ones from their exact double.
+
 #include "io/file_scan.h"
 #include "io/ply_values.h"
 
@@ -11,8 +18,8 @@ namespace vdb_shell
 namespace
 {
 
-// The format: Greg Turk, "The PLY Polygon File Format", 1994. "tristrips" come from the Stanford
-// scanning repository, whose larger models have no "face" element.
+// The format is that of Greg Turk, "The PLY Polygon File Format", 1994. "tristrips" come from the
+// Stanford scanning repository, whose larger models have no "face" element.
 
 struct PlyScan {
     const std::string& name;
@@ -21,7 +28,7 @@ struct PlyScan {
     PlyValues values;
     FileScan scan;
     std::size_t strips = 0; ///< so far, counted over all restarts
-    Polygon polygon;        ///< of the face in hand; kept for its memory
+    Polygon polygon;        ///< of the current face; a member so that its memory is used again
 };
 
 /// Values that are not wanted are stepped over one by one: only then is it known where the next
@@ -39,7 +46,7 @@ void skip_element(PlyScan& ply, const PlyElement& element)
             skip_property(ply, property, {"element", i, 0});
 }
 
-/// Text goes straight to float32. By way of double it would be rounded twice.
+/// Text goes straight to float32, because by way of double it would be rounded twice.
 float coordinate(PlyScan& ply, const PlyProperty& property, const Place& place, int axis)
 {
     const PlyValue value = ply.values.next(property.type, place);
@@ -78,6 +85,7 @@ std::int64_t whole_number(const PlyScan& ply, const PlyValue& value, const Place
     if (ply.header.is_text())
         return parse_integer(ply.name, place, value.word);
     // The corners may be stored as floats.
+    // A double holds whole numbers exactly far beyond 1e15, and an index needs less than that.
     if (value.number != std::floor(value.number) || std::abs(value.number) > 1e15)
         refuse(ply.name, place.text() + ": the vertex index " + std::to_string(value.number) +
                              " is not a whole number");
@@ -160,7 +168,7 @@ void read_polygons(PlyScan& ply, const PlyElement& element)
             else
                 read_face(ply, property);
         }
-        // Only now: other properties of the face may follow its corners.
+        // The face is added only now, because other properties of it may follow its corners.
         if (!strips)
             add_face(ply.scan, ply.polygon);
     }
@@ -170,6 +178,8 @@ void read_polygons(PlyScan& ply, const PlyElement& element)
 void require_element(const PlyScan& ply, const PlyElement& element)
 {
     const std::size_t least = element.least_size(ply.header.is_text());
+    // One more than fits, because the last value of a text needs no blank behind it. This only
+    // bounds the memory; that all values are there is tested at each of them.
     if (least > 0 && element.count > ply.values.bytes_left() / least + 1)
         refuse(ply.name, "the header declares " + std::to_string(element.count) + " \"" +
                              element.name + "\" elements of at least " + std::to_string(least) +

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Scans STL, text and binary. The format has no vertices, only three corners a facet, so equal
+// positions are merged here whatever the options say; otherwise no two facets would have a common
+// edge. A binary file is known by its size, which the number of facets in its header determines
+// exactly; its header may begin with "solid" as well, the word by which text is known. Normals are
+// passed over, because the order of the corners says the same.
+
 #include "io/file_scan.h"
 #include "mesh/equal_points.h"
 
@@ -11,13 +18,11 @@ namespace vdb_shell
 namespace
 {
 
-// STL knows no vertices, only three corners a facet, so equal positions are merged here whatever
-// the options say.
-
 constexpr std::size_t kHeaderBytes = 84, kFacetBytes = 50;
 
 std::uint32_t little_endian_32(const char* bytes)
 {
+    // Byte by byte, so that the machine's own byte order does not matter.
     std::uint32_t value = 0;
     for (int i = 3; i >= 0; --i)
         value = value << 8 | static_cast<unsigned char>(bytes[i]);
@@ -33,6 +38,7 @@ void merge_corners(FileScan& scan)
     for (std::size_t i = 0; i < vertex.size(); ++i) {
         // An equal point stands before this one, and its number is known.
         vertex[i] = vertex[i] == i ? kept : vertex[vertex[i]];
+        // Points only move forward in the list, to places that were read already.
         if (vertex[i] == kept)
             scan.points[kept++] = scan.points[i];
     }
@@ -51,7 +57,8 @@ FileScan scan_binary(const std::string& name, std::string_view bytes, Coordinate
                          " bytes is neither text STL (there is no \"solid\") nor binary STL (whose "
                          "header has 84 bytes)");
     const std::size_t facets = little_endian_32(bytes.data() + 80);
-    // Also more bytes than declared: they may be the facets of a count that was written wrong.
+    // More bytes than declared are refused too: they may be the facets of a count that was written
+    // wrong.
     if (bytes.size() != kHeaderBytes + kFacetBytes * facets)
         refuse(name, "the header declares " + std::to_string(facets) + " facets, which take " +
                          std::to_string(kHeaderBytes + kFacetBytes * facets) +
@@ -114,7 +121,7 @@ void read_facet(const std::string& name, Words& words, Coordinates& coordinates,
 {
     const std::size_t facet = scan.points.size() / 3;
     words.expect("normal", facet);
-    // Only skipped: many writers leave "nan" here for thin facets.
+    // The normal is skipped and not parsed, because many writers leave "nan" here for thin facets.
     for (int axis = 0; axis < 3; ++axis)
         if (words.next().empty())
             words.expect("outer", facet);

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Numbers, words and lines of text files, the same for all formats. Numbers are parsed by
+// std::from_chars: it does not look at the locale, it rounds correctly, and it takes all of a word
+// or tells where it stopped. It also takes "nan" and "inf", has one error for too large and too
+// small, and takes no plus sign; each of these is seen to below. A number too small for float32 is
+// 0; one too large is refused, because infinity would spread through all that is computed from it.
+// Words are views into the file's bytes, nothing is copied.
+
 #include "io/scan_text.h"
 
 #include <algorithm>
@@ -28,7 +36,7 @@ bool names_no_finite_number(std::string_view word)
 {
     if (!word.empty() && (word[0] == '-' || word[0] == '+'))
         word.remove_prefix(1);
-    // Also "infinity" and "nan(0x7fffff)".
+    // Three letters are enough, so "infinity" and "nan(0x7fffff)" are found too.
     const std::string_view start = word.substr(0, 3);
     return equal_ignoring_case(start, "nan") || equal_ignoring_case(start, "inf");
 }
@@ -38,6 +46,7 @@ bool is_tiny(std::string_view digits)
 {
     double value = 0;
     const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    // If the number is beyond a double too, the sign of its exponent tells on which side.
     if (parsed.ec == std::errc())
         return std::abs(value) < 1.0;
     return digits.find("e-") != digits.npos || digits.find("E-") != digits.npos;
@@ -67,6 +76,7 @@ float parse_coordinate(const std::string& name, const Place& place, std::string_
     if (parsed.ec == std::errc::result_out_of_range) {
         if (!is_tiny(digits))
             refuse_infinite(name, place, quoted(word));
+        // The sign stays, as correct rounding has it.
         return digits[0] == '-' ? -0.0F : 0.0F;
     }
     return value;
@@ -74,7 +84,9 @@ float parse_coordinate(const std::string& name, const Place& place, std::string_
 
 float checked_coordinate(const std::string& name, const Place& place, double value)
 {
-    // The first double that rounds to infinity.
+    // The first double that rounds to infinity: halfway between the largest float and the next
+    // power of two, where a tie goes to the even neighbour, which is that power. Written so that
+    // the test also refuses what is not a number.
     constexpr double kLimit = 0x1.ffffffp127;
     if (!(std::abs(value) < kLimit))
         refuse_infinite(name, place, std::to_string(value));

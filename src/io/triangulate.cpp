@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Cuts a polygon into triangles. A convex polygon becomes a fan, any other is cut ear by ear
+// (Meisters, "Polygons Have Ears", 1975: each simple polygon of more than three corners has two),
+// seen along the largest axis of its normal. Signs are computed in doubles and rounded, which is
+// enough: whatever they say, there are n - 2 triangles of three different corners each, and every
+// side of the polygon is in exactly one of them, so neighbours fit together. A wrong sign only
+// decides which of these surfaces the polygon becomes. Cutting takes O(n^3) at worst, hence the
+// limit.
+
 #include "io/triangulate.h"
 
 #include "io/file_scan.h"
@@ -13,7 +22,9 @@ namespace
 
 using Vec2d = openvdb::Vec2d;
 
-/// Twice the vector area, which is normal to a planar polygon also where corners are reflex.
+/// Twice the vector area, which is normal to a planar polygon also where corners are reflex
+/// (Newell's normal). It is summed over the triangles of a fan about the first corner, so that the
+/// distance from the origin loses no digits.
 openvdb::Vec3d newell_normal(const std::vector<openvdb::Vec3s>& points, const Polygon& polygon)
 {
     openvdb::Vec3d normal(0.0);
@@ -24,7 +35,8 @@ openvdb::Vec3d newell_normal(const std::vector<openvdb::Vec3s>& points, const Po
     return normal;
 }
 
-/// The corners with the normal's largest axis left out, so that the polygon runs anticlockwise.
+/// The corners with the normal's largest axis left out, in the order of axes in which the polygon
+/// runs anticlockwise. For a planar polygon this is an affine map, which turns no triangle over.
 std::vector<Vec2d> flattened(const std::vector<openvdb::Vec3s>& points, const Polygon& polygon)
 {
     const openvdb::Vec3d normal = newell_normal(points, polygon);
@@ -49,6 +61,7 @@ bool is_convex(const std::vector<Vec2d>& flat)
 {
     const std::size_t n = flat.size();
     for (std::size_t k = 1; k + 1 < n; ++k)
+        // These are the triangles of the fan itself, so none of them may be flat either.
         if (doubled_area(flat[0], flat[k], flat[k + 1]) <= 0)
             return false;
     for (std::size_t k = 0; k < n; ++k)
@@ -72,6 +85,8 @@ bool is_ear(const std::vector<Vec2d>& flat, const Polygon& polygon,
         if (corner == polygon[before] || corner == polygon[at] || corner == polygon[after])
             continue;
         const Vec2d& p = flat[other];
+        // Corners on the ear's boundary stand in the way too: if it were cut off past them, they
+        // would be left on one line, where there is no ear.
         if (doubled_area(a, b, p) >= 0 && doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0)
             return false;
     }

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a .vdb file as OpenVDB's own writer does, byte for byte but for the random UUID, with the
+// leaves compressed on all threads. The layout is that of OpenVDB's io::Archive and
+// io::GridDescriptor (OpenVDB 10.0.1): a header, and for each grid a descriptor with its positions
+// in the file, then metadata, transform, topology and the buffers of the leaves. Parts are made in
+// memory in any order and written in one, so the bytes do not depend on the threads. Trap: what
+// OpenVDB's stream functions need to know they look up on the stream itself, so each stream carries
+// its own settings. tests/io/vdb_archive_test.cpp compares both writers.
+
 #include "io/vdb_archive.h"
 
 #include "core/parallel.h"
@@ -74,8 +83,8 @@ std::int64_t size_before_values(std::int8_t flag)
     return size;
 }
 
-/// What LeafNode::writeBuffers writes; that one sorts out active values voxel by voxel even where
-/// all are active, as in most leaves of a fat solid.
+/// Writes what LeafNode::writeBuffers() writes, which sorts out active values voxel by voxel even
+/// where all are active, as they are in most leaves of a solid.
 void write_leaf(std::ostream& out, const Leaf& leaf, const StreamMetadata& settings)
 {
     if (!leaf.isDense() || settings.halfFloat()) {
@@ -103,7 +112,8 @@ std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
         const std::size_t start = starts[i - begin], next = starts[i - begin + 1];
         const auto flag = std::int8_t(bytes[start + sizeof(Leaf::NodeMaskType)]);
         sizes.setMask(i, flag);
-        // No values as half floats take no bytes; OpenVDB counts those of their size all the same.
+        // A leaf of half floats without values takes no bytes; OpenVDB counts those of the size all
+        // the same.
         constexpr std::int64_t kSizeBytes = sizeof(std::int64_t);
         sizes.setCompressedSize(
             i, std::max(std::int64_t(next - start) - size_before_values(flag), kSizeBytes));
@@ -120,6 +130,8 @@ std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetada
     sizes.resizeMask(count);
     sizes.resizeCompressedSize(count);
     constexpr std::size_t kLeavesInPart = 256;
+    // Each part is compressed into a stream of its own; a leaf's bytes do not depend on the leaves
+    // before it.
     std::vector<std::string> parts((count + kLeavesInPart - 1) / kLeavesInPart);
     for_each_index(
         parts.size(),
@@ -158,6 +170,8 @@ public:
         Stream head(settings);
         setGridCompression(head.out, grid);
         GridBytes bytes;
+        // The metadata that only the file has are added to a copy, which shares the tree with the
+        // grid.
         const GridBase::Ptr described = openvdb::ConstPtrCast<GridBase>(grid.copyGrid());
         if (grid.isType<FloatGrid>()) {
             // Writing the topology notes the background, which the buffers need.
@@ -197,6 +211,7 @@ void write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
 {
     openvdb::io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
     descriptor.writeHeader(out);
+    // The grid begins behind its three positions, which are written before it.
     constexpr std::int64_t kPositionsSize = 3 * sizeof(std::int64_t);
     descriptor.setGridPos(std::int64_t(out.tellp()) + kPositionsSize);
     descriptor.setBlockPos(descriptor.getGridPos() +
@@ -220,15 +235,17 @@ void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec gr
     std::mutex writing;
     std::vector<std::optional<GridBytes>> ready(grids.size());
     std::size_t written = 0;
-    // The last first: it is the tets' where there are points, which one thread writes the longest;
-    // the others are on their way to the disk, and gone, when that one is done.
+    // The last grid is begun first. Where there are points it is that of the tets, which takes the
+    // longest, as one thread writes it; the other grids are on their way to the disk, and their
+    // memory is free, when that one is done.
     for_each_index(
         grids.size(),
         [&](std::size_t i) {
             const std::size_t last = grids.size() - 1 - i;
             GridBytes bytes = archive.bytes_of(*grids[last]);
-            // Freed behind the lock: OpenVDB frees on all threads, and one that waits for the
-            // others may take up the next grid here meanwhile.
+            // Grids that are written are freed after the lock is: OpenVDB frees on all threads, and
+            // a thread that waits for the others may take up the next grid here meanwhile, which
+            // needs the lock.
             openvdb::GridPtrVec done;
             const std::lock_guard<std::mutex> lock(writing);
             ready[last] = std::move(bytes);

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Walks the outer form of a .vdb file, header, metadata and the table of grids, before OpenVDB gets
+// to read it, because OpenVDB does not notice a file that ends too early. No length is believed:
+// each is held against what is left of the file, so no memory is taken by a damaged number, and
+// each turn of a loop reads at least some bytes, so that a wrong count ends at the end of the file.
+// Grids are skipped, not read; the time does not depend on their size. Numbers are in the byte
+// order of the machine, as OpenVDB writes them. Trap: what is inside a grid may still be damaged.
+
 #include "vdb_shell/io/vdb_header.h"
 
 #include "vdb_shell/core/error.h"
@@ -81,6 +89,7 @@ public:
 private:
     void need(std::uint64_t bytes, const char* what) const
     {
+        // Written as a difference, which cannot overflow: the place is never beyond the end.
         if (bytes > size_ - at_)
             fail(std::string("the file is truncated or damaged: ") + what + " at byte " +
                  std::to_string(at_) + " needs " + std::to_string(bytes) + " bytes, the file has " +
@@ -117,6 +126,8 @@ void walk_grids(Walk& walk)
         const auto grid = walk.number<std::int64_t>("a grid's position");
         const auto blocks = walk.number<std::int64_t>("a grid's block position");
         const auto end = walk.number<std::int64_t>("a grid's end");
+        // Grids stand one after the other behind their descriptors, so each position must be at or
+        // behind the one before; that also keeps the walk from running in a circle.
         const bool ordered = grid >= std::int64_t(walk.at()) && blocks >= grid && end >= blocks;
         if (!ordered || std::uint64_t(end) > walk.size())
             walk.fail("the file is truncated or damaged: grid \"" + name +

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a mesh so that reading it gives the same float32 bit for bit: the shortest decimals that
+// do so, or the bits themselves. An object that was read about an origin is put back in doubles,
+// where it stood. Nothing depends on the locale or on the machine's byte order: numbers are made by
+// std::to_chars and std::to_string, since streams may put separators into large integers, and bits
+// are written byte by byte. The file appears whole or not at all (core/atomic_file.cpp).
+
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/read_mesh.h"
@@ -107,7 +114,7 @@ void write_ply(std::ostream& out, const TriangleMesh& mesh, const Placement& pla
 
 void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 {
-    // Must not begin with "solid", by which readers tell text.
+    // The header must not begin with "solid", by which readers tell text.
     std::array<char, 80> header{};
     std::strcpy(header.data(), "vdb_shell");
     out.write(header.data(), header.size());
@@ -116,9 +123,11 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
         const openvdb::Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
         openvdb::Vec3d normal = (b - a).cross(c - a);
         normal.normalize(); // leaves zero as it is
+        // A facet has the same order of corners as the mesh, so its normal points outward too.
         put_bits(out, openvdb::Vec3s(normal));
         for (int corner = 0; corner < 3; ++corner)
             put_bits(out, mesh.points[t[corner]]);
+        // The attribute bytes, which have no meaning that programs agree on.
         out.put(0).put(0);
     }
 }
@@ -139,6 +148,7 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
     if (!write)
         throw InvalidOption(path.string() + ": the extension \"" + extension +
                             "\" is none of the mesh formats .obj, .ply, .off, .stl");
+    // Before the file is opened, so that what stands there stays.
     if (extension == ".stl" && placement.moves())
         throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
                                             "object stands; write .obj, .off or .ply");

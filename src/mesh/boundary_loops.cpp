@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Parts the boundary edges of any surface, however bad, into walks. Each edge is in exactly one
+// walk, and a closed walk passes no point twice, so that it can be the rim of one hole. The idea is
+// the one by which a graph of even degrees falls into cycles: go on along unused edges, and cut a
+// loop off as soon as a point comes again. The result depends on the edges only, since the smallest
+// neighbour is always the next. Trap: a point is looked for along the whole path, so one loop of n
+// edges takes a time that grows with the square of n.
+
 #include "mesh/boundary_loops.h"
 
 #include <algorithm>
@@ -9,7 +17,7 @@ namespace vdb_shell
 namespace
 {
 
-/// The unused edges around each point, ascending.
+/// The edges that no walk has taken yet, around each point, ascending.
 class OpenEdges
 {
 public:
@@ -55,6 +63,7 @@ void walk_from(std::uint32_t start, OpenEdges& open, std::vector<BoundaryWalk>& 
             path.push_back(next);
             continue;
         }
+        // The point where the loop closes stays on the path, because the walk goes on from it.
         walks.push_back({{seen, path.end()}, true});
         path.erase(seen + 1, path.end());
     }
@@ -68,7 +77,9 @@ std::vector<BoundaryWalk> boundary_walks(const std::vector<Edge>& boundary_edges
 {
     OpenEdges open(boundary_edges);
     std::vector<BoundaryWalk> walks;
-    // Walks that cannot close start where they have to: at points of an odd number of edges.
+    // Each closed loop takes two edges at each of its points. So a point with an odd number of
+    // edges is the end of a walk that cannot close, and such walks start there first. After them
+    // all numbers are even, and every walk that starts comes back.
     for (const bool odd_only : {true, false})
         for (const Edge& edge : boundary_edges)
             for (const std::uint32_t point : edge)

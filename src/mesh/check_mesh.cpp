@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The check of a surface before anything is built on it. It takes any mesh whose indices and
+// coordinates can be worked with, and says which of the conditions of a closed, oriented, embedded
+// manifold fail, and where; the decisions are exact and without tolerance (core/exact.h). A bad
+// surface is a result and no exception, because people want to see all that is wrong at once;
+// mesh/require_usable.cpp is what refuses. All lists are in ascending order, whatever the number of
+// threads.
+
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include "mesh/components.h"
@@ -22,6 +30,8 @@ crossing_components(const std::vector<TrianglePair>& pairs,
 {
     std::vector<std::array<std::uint32_t, 2>> crossing;
     for (const TrianglePair& pair : pairs) {
+        // These are references into the vector, which stays; minmax of two temporaries would leave
+        // them without an object.
         const auto [low, high] = std::minmax(component_of[pair[0]], component_of[pair[1]]);
         if (low != high)
             crossing.push_back({low, high});
@@ -43,6 +53,7 @@ void require_well_formed(const TriangleMesh& mesh, const std::string& caller)
 {
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
         if (!mesh.points[v].isFinite())
+            // Finite first: what is not a number would pass the comparison with the limit below.
             throw InvalidOption(caller + ": point " + std::to_string(v) + " is " +
                                 mesh.points[v].str() + ", which is not finite");
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
@@ -78,6 +89,7 @@ MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
     check.components =
         describe_components(mesh, sorted_uses, component_of,
                             crossing_components(defects.self_intersections, component_of));
+    // In the order of the components, so the sum has the same bits every time.
     for (const Component& component : check.components)
         check.volume += component.volume;
     return check;
@@ -94,6 +106,8 @@ TriangleMesh turn_outward(TriangleMesh mesh, const MeshCheck& check)
 {
     if (check.inside_out_components() == 0)
         return mesh;
+    // The numbers of components follow from the triangles alone, so they are those of the check.
+    // Turning triangles round does not change which of them share an edge.
     const std::vector<std::uint32_t> component =
         component_of_triangles(sorted_edge_uses(mesh.triangles), mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Parts a surface into pieces that are connected by edges, and says of each how large it is,
+// whether it is closed, how many others enclose it and whether it is inside out. A cavity is a
+// closed piece within an odd number of others, and has to be oriented the other way round
+// (docs/theory.md, "Remarks"). Whether a piece encloses a point is decided by the parity of exact
+// crossings of an upward ray; the winding number would need the orientation, which is what is to be
+// found out. Volumes are sums in doubles, whose sign is no proof. Each component is compared with
+// each closed other, so many components that lie within each other's boxes take quadratic time.
+
 #include "mesh/components.h"
 
 #include "core/box_pairs.h"
@@ -15,6 +24,8 @@ namespace
 
 using Indices = std::vector<std::uint32_t>;
 
+/// The root of a set of triangles (union-find). Paths are halved on the way, so that later searches
+/// are short.
 std::uint32_t root_of(Indices& parent, std::uint32_t i)
 {
     while (parent[i] != i)
@@ -27,6 +38,7 @@ std::vector<Indices> triangles_by_component(const Indices& component_of)
 {
     std::vector<Indices> result;
     for (std::uint32_t t = 0; t < component_of.size(); ++t) {
+        // Components are numbered by their first triangles, so a new number is always the next one.
         if (component_of[t] == result.size())
             result.emplace_back();
         result[component_of[t]].push_back(t);
@@ -34,7 +46,9 @@ std::vector<Indices> triangles_by_component(const Indices& component_of)
     return result;
 }
 
-/// Relative to a point of the component, so that a small one far from the origin keeps its sign.
+/// One sixth of the sum of determinants (the divergence theorem). Points are taken relative to one
+/// of the component's own: far from the origin, the determinants would be large, of both signs, and
+/// cancel to little more than rounding.
 double volume_of(const TriangleMesh& mesh, const Indices& triangles)
 {
     const openvdb::Vec3d origin(mesh.points[mesh.triangles[triangles.front()][0]]);
@@ -49,6 +63,8 @@ double volume_of(const TriangleMesh& mesh, const Indices& triangles)
     return six_volumes / 6.0;
 }
 
+/// Components may have a common point, which counts for each of them: Euler's number is that of a
+/// surface by itself.
 /// How many points each component has.
 std::vector<int> count_points(const TriangleMesh& mesh, const std::vector<Indices>& triangles)
 {
@@ -84,6 +100,7 @@ EdgeFindings look_at_edges(const std::vector<EdgeUse>& uses, const Indices& comp
             continue; // of a triangle that is listed as degenerate
         const std::uint32_t component = component_of[uses[begin].triangle];
         ++found.edges[component];
+        // Three or more triangles at an edge leave no gap there, so the piece counts as closed.
         if (end - begin == 1)
             found.closed[component] = 0;
         if (forward != 0)
@@ -113,6 +130,8 @@ bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, cons
     bool inside = false;
     for (const std::uint32_t t : piece.triangles) {
         const FloatBox& box = boxes[t];
+        // Only triangles that the upward ray through the point can meet: those whose boxes hold x
+        // and y and do not end below it.
         if (point[0] < box.lo[0] || point[0] > box.hi[0] || point[1] < box.lo[1] ||
             point[1] > box.hi[1] || point[2] > box.hi[2])
             continue;
@@ -123,8 +142,10 @@ bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, cons
     return inside;
 }
 
-/// Two pieces that do not cross have one answer for every corner, but for those on the surface.
-/// Where they cross or touch, the corners are asked in turn, at most kMostAsked triangles of them.
+/// Two pieces that neither cross nor touch have one answer for every corner, so the first corner
+/// decides; corners on the other surface, which both can have by index, decide nothing. Where the
+/// pieces cross or touch, the corners of at most kMostAsked triangles, spread over the piece, are
+/// tested, and all of them have to be inside.
 bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, const Piece& outer,
               const Piece& inner, bool crossing)
 {
@@ -154,6 +175,8 @@ Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::siz
     Indices parent(triangle_count);
     std::iota(parent.begin(), parent.end(), 0U);
     for (std::size_t i = 1; i < sorted_uses.size(); ++i) {
+        // Uses of one edge stand together, so joining each with the one before it joins all of
+        // them.
         const auto& edge = sorted_uses[i].edge;
         if (edge != sorted_uses[i - 1].edge || edge[0] == edge[1])
             continue;
@@ -189,6 +212,7 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
         component.volume = volume_of(mesh, triangles[c]);
         component.closed = found.closed[c] != 0;
         component.euler = points[c] - found.edges[c] + static_cast<int>(triangles[c].size());
+        // Before the list is moved away in the next line.
         const FloatBox box = box_of(boxes, triangles[c]);
         pieces[c] = {std::move(triangles[c]), box, component.closed};
     });
@@ -202,6 +226,7 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
         [&](std::size_t c) {
             int& depth = components[c].nesting_depth;
             for (std::size_t other = 0; other < count; ++other)
+                // An open piece has no inside.
                 if (other != c && pieces[other].closed)
                     depth += encloses(mesh, boxes, pieces[other], pieces[c], cross(c, other));
             const bool outer = depth % 2 == 0;

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The components of a surface as JSON, the same in every report. Programs read the reports by these
+// keys, so a key must not be renamed.
+
 #include "mesh/components_json.h"
 
 namespace vdb_shell

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Finds points of exactly equal position by sorting, in O(n log n). There is no tolerance: "nearer
+// than a tolerance" does not carry over from one pair to the next, so the result would depend on
+// the order of the points. The index is part of the key, which makes the order unique and puts the
+// first of equal points in front. Trap: a coordinate that is not a number would make the order
+// contradict itself, which is why callers refuse such points before.
+
 #include "mesh/equal_points.h"
 
 #include <algorithm>

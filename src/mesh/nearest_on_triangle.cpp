@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The nearest point of one triangle, in doubles and rounded: good for measuring, no proof. If the
+// foot of the perpendicular is beyond no side, it is the nearest; else the nearest point lies on a
+// side, and the nearest of the three is taken. Ties go to the side with the smaller number, so the
+// answer does not depend on anything else. Triangles without area, and sides without length, have
+// an answer as well.
+
 #include "mesh/nearest_on_triangle.h"
 
 namespace vdb_shell
@@ -27,6 +34,9 @@ NearestOnTriangle nearest_on_triangle(const std::array<Vec3d, 3>& c, const Vec3d
 {
     const Vec3d n = (c[1] - c[0]).cross(c[2] - c[0]);
     const double squared = n.lengthSqr();
+    // A triangle without a normal has no face to project into. Written so that it also holds for
+    // what is not a number. A cross product of a side and the normal points outward in the plane,
+    // because corners run counter-clockwise around the normal.
     bool beyond_any = !(squared > 0);
     for (std::size_t k = 0; k < 3; ++k)
         beyond_any = beyond_any || (c[(k + 1) % 3] - c[k]).cross(n).dot(p - c[k]) > 0;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Normals at vertices, weighted by the angles of the triangles (Baerentzen and Aanaes, "Signed
+// Distance Computation Using the Angle Weighted Pseudonormal", 2005). With these weights the normal
+// does not depend on how a flat face is cut into triangles, and its scalar product with the way
+// from the nearest vertex to a point has the right sign. It does not guarantee that the vertex's
+// triangles are all seen from it: visibility_of() says whether they are. Each vertex sums over its
+// triangles in ascending order, so threads change no bit.
+
 #include "vdb_shell/mesh/normals.h"
 
 #include "core/parallel.h"
@@ -44,6 +52,7 @@ double angle_at(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t ve
     const Vec3d p = corner(mesh, triangle, i);
     const Vec3d u = corner(mesh, triangle, (i + 1) % 3) - p;
     const Vec3d v = corner(mesh, triangle, (i + 2) % 3) - p;
+    // Not the arc cosine, which loses half of the digits near 0 and near a straight angle.
     return std::atan2(u.cross(v).length(), u.dot(v));
 }
 
@@ -84,10 +93,12 @@ std::vector<double> visibility_of(const TriangleMesh& mesh, const std::vector<Ve
     const std::vector<Vec3d> normals = triangle_normals(mesh);
     std::vector<double> result(outward.size());
     for_each_index(result.size(), [&](std::size_t v) {
+        // No direction has the visibility 0, which the vector holds already.
         if (outward[v].lengthSqr() == 0)
             return;
         double least = 1;
         for (const std::uint32_t t : vertex_triangles.around(v))
+            // A triangle without area cannot be seen from any side and would make the vertex blind.
             if (normals[t].lengthSqr() > 0)
                 least = std::min(least, outward[v].dot(normals[t]));
         result[v] = least;

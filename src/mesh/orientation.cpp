@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Says which triangles have to be turned round so that neighbours agree. It goes from triangle to
+// triangle over edges of exactly two triangles, each time with the only choice that agrees; if it
+// comes to a triangle again and needs the other choice, the piece is one-sided like a Moebius
+// strip, and none of it is turned. At edges of three or more triangles nobody knows which two
+// belong together, so pieces end there. It takes linear time, in one thread and in the order of the
+// triangles, so that the numbers of pieces are unique.
+
 #include "mesh/orientation.h"
 
 #include <array>
@@ -24,6 +32,7 @@ std::vector<std::array<Neighbour, 3>> neighbours_of(const std::vector<EdgeUse>& 
             ++end;
         if (end - begin != 2 || uses[begin].edge[0] == uses[begin].edge[1])
             continue;
+        // Two triangles agree when they run through their common edge in opposite ways.
         const EdgeUse &a = uses[begin], &b = uses[begin + 1];
         neighbours[a.triangle][a.side] = {b.triangle, a.forward == b.forward};
         neighbours[b.triangle][b.side] = {a.triangle, a.forward == b.forward};
@@ -66,6 +75,8 @@ Orientation consistent_orientation(const std::vector<EdgeUse>& sorted_uses,
             }
         }
         result.one_sided.push_back(contradiction);
+        // Both choices agree within the piece. The smaller one changes less of what the user made,
+        // and the rest of the surface was probably meant as it is.
         const bool swap = 2 * turned > piece.size();
         for (const std::uint32_t t : piece)
             result.turn[t] = static_cast<char>(!contradiction && (result.turn[t] != 0) != swap);

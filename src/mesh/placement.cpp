@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Chooses the origin and the unit in which an object is read. Both are numbers of few binary
+// digits, a multiple of a power of two and a power of two: dividing by the unit and multiplying by
+// it again is exact in doubles, and the few digits of the origin keep differences from it nearly
+// exact. Near the origin nothing moves, so that ordinary files are not changed by the option.
+
 #include "vdb_shell/mesh/placement.h"
 
 #include <algorithm>
@@ -12,8 +18,11 @@ Placement placement_for(const Bounds& box, bool recentre, bool rescale)
     Placement placement;
     const openvdb::Vec3d size = box.high - box.low;
     const double longest = std::max({size[0], size[1], size[2]});
+    // Also for no points at all, whose box runs from plus to minus infinity.
     if (!(longest > 0) || !std::isfinite(longest))
         return placement;
+    // Directly below a power of two the logarithm may round up to it. The unit is then twice what
+    // it should be, which does no harm.
     const double unit = std::exp2(std::floor(std::log2(longest)));
     if (recentre) {
         const double step = 2 * unit;

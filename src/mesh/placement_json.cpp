@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// A placement for files and for people. Readers put an object back where it was by these two
+// numbers, so JSON and text give all digits of the doubles: 17 always suffice. The classic locale
+// keeps the decimal point, whatever the program around this library has set.
+
 #include "mesh/placement_json.h"
 
 #include <locale>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Refuses a surface of which no shell can be made, in one message: how many of each defect, the
+// first of them by index, and which option helps. The order of the findings is fixed, so that
+// messages can be compared. Two kinds of defect can be accepted or mended by the check's own
+// options (components that are inside out, and crossings); all the others need a repair first, and
+// then only that is advised, because the option alone would lead to the next refusal.
+
 #include "vdb_shell/core/error.h"
 
 #include "vdb_shell/mesh/check_mesh.h"
@@ -34,6 +41,7 @@ void add_finding(std::string& findings, const Defect<Element>& defect, const cha
         findings += ", ...";
 }
 
+/// In the form of the other defects, so that the message names them alike.
 /// The inside-out components by index.
 Defect<std::uint32_t> inside_out(const MeshCheck& check)
 {
@@ -79,6 +87,7 @@ void require_usable(const MeshCheck& check, const CheckOptions& options, const s
                 "triangles of zero area");
     add_finding(findings, check.duplicate_triangles, "triangle that repeats an earlier one",
                 "triangles that repeat an earlier one");
+    // Everything up to here is accepted by no option.
     const bool beyond_help = !findings.empty();
     std::string help;
     if (!options.turn_inside_out) {

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Finds every defect of a surface, each list complete and ascending. Edges are counted by their
+// triangles; vertices by whether the edges opposite to them form one path or one ring (the link
+// condition of a surface); degenerate triangles and contacts by exact predicates, with no
+// tolerance. A defect is listed once, as what it is: degenerate and duplicate triangles are left
+// out of the contacts, where they would hide what really crosses. A surface without any defect is
+// the closed manifold, embedded and oriented, that conditions 1 and 3 of docs/theory.md, "The whole
+// shell", need.
+
 #include "mesh/surface_defects.h"
 
 #include "core/box_pairs.h"
@@ -17,6 +26,8 @@ namespace vdb_shell
 namespace
 {
 
+/// The indices whose flag is set. Flags are bytes, not vector<bool>, whose bits share words that
+/// several threads would write at once.
 template <typename Flags> std::vector<std::uint32_t> raised(const Flags& flags)
 {
     std::vector<std::uint32_t> indices;
@@ -53,6 +64,7 @@ bool forms_one_fan(const TriangleMesh& mesh, const VertexTriangles::Range& aroun
     std::uint32_t edges = 0;
     for (const std::uint32_t t : around) {
         const openvdb::Vec3I& corner = mesh.triangles[t];
+        // Such a triangle has no edge opposite to the vertex, and is listed as degenerate.
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
             continue;
         for (int k = 0; k < 3; ++k)
@@ -72,6 +84,8 @@ bool forms_one_fan(const TriangleMesh& mesh, const VertexTriangles::Range& aroun
     for (std::size_t i = 1; i < ends.size(); ++i) {
         if (ends[i].first != ends[i - 1].first)
             continue;
+        // Three triangles at one edge of the vertex, where a point of a path or a ring has two
+        // edges at most. If there is no such point, one connected piece is a path or a ring.
         if (i > 1 && ends[i].first == ends[i - 2].first)
             return false;
         const std::uint32_t a = root_of(ends[i - 1].second), b = root_of(ends[i].second);
@@ -120,6 +134,8 @@ std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
         std::array{std::move(entries)}, mesh.points.size(),
         [](const Entry& entry) { return entry.first[0]; }, std::less<>());
     std::vector<char> duplicate(mesh.triangles.size());
+    // The triangle's index is the second part of an entry, so the first of equal triangles stands
+    // in front and is not counted.
     for (std::size_t i = 1; i < sorted.size(); ++i)
         duplicate[sorted[i].second] = sorted[i].first == sorted[i - 1].first;
     return raised(duplicate);
@@ -130,7 +146,9 @@ std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
 {
     const TriangleContacts contacts(mesh.points, mesh.triangles);
     const auto touch = [&](std::uint32_t first, std::uint32_t second) {
-        // Degenerate and duplicate triangles are listed as what they are.
+        // Degenerate and duplicate triangles are listed as what they are. The test for contacts
+        // must not get degenerate ones in any case, so the order of these conditions matters; the
+        // comparison of corners comes last, since hardly any pair gets that far.
         return !degenerate[first] && !degenerate[second] && contacts.touch(first, second) &&
                sorted_corners(mesh.triangles[first]) != sorted_corners(mesh.triangles[second]);
     };

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Which triangles are around a vertex, in which order they turn round it, and which of them share
+// an edge. Lists of all vertices stand in one array, with the start of each (compressed rows),
+// filled by counting: linear time and no list to allocate for each vertex. All orders follow from
+// the indices alone. Traps: starts are 32 bits wide, so the corners of all triangles have to be
+// fewer than 2^32; a triangle that names a vertex twice stands in its list twice.
+
 #include "mesh/topology.h"
 
 #include "core/bucket_sort.h"
@@ -23,6 +30,7 @@ VertexTriangles triangles_around_vertices(std::size_t vertex_count,
     for (std::size_t v = 0; v < vertex_count; ++v)
         result.offset[v + 1] += result.offset[v];
     result.triangle.resize(triangles.size() * 3);
+    // Triangles come in ascending order, so each vertex gets its list in ascending order.
     std::vector<std::uint32_t> next(result.offset.begin(), result.offset.end() - 1);
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (int corner = 0; corner < 3; ++corner)
@@ -45,10 +53,14 @@ bool list_rim(const std::vector<openvdb::Vec3I>& triangles, const VertexTriangle
     };
     if (around.size() == 0)
         return false;
+    // Each step looks through all triangles of the vertex for the next one. That is quadratic in
+    // their number, which is about 6 on average in a closed surface (Euler's formula).
     std::array<std::uint32_t, 2> side = side_of(*around.begin());
     const std::uint32_t start = side[0];
     for (std::size_t i = 0; i < around.size(); ++i) {
         rim[i] = side[0];
+        // Back at the start too early, there is more than one fan; not back at the end, the fan is
+        // open or the triangles disagree in orientation.
         const bool last = i + 1 == around.size();
         if (last || side[1] == start)
             return last && side[1] == start;
@@ -89,6 +101,7 @@ std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangl
     std::uint32_t vertices = 0;
     for (const EdgeUse& use : uses)
         vertices = std::max(vertices, use.edge[1] + 1);
+    // Triangle and side tell all uses of an edge apart, so the order is unique.
     return bucket_sort<EdgeUse>(
         std::array{std::move(uses)}, vertices, [](const EdgeUse& use) { return use.edge[0]; },
         [](const EdgeUse& x, const EdgeUse& y) {

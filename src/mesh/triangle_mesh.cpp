@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Extents and the volume of a mesh, in doubles. The volume is the sum of signed tets over the
+// triangles (the divergence theorem): positive when corners run counter-clockwise seen from
+// outside. Sums are in the order of the triangles, so their bits are the same each time. The sign
+// is no proof; where it decides validity, the certificate computes its own with a bound on the
+// error.
+
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 namespace vdb_shell
@@ -6,6 +13,7 @@ namespace vdb_shell
 
 Bounds bounds_of(const std::vector<openvdb::Vec3s>& points)
 {
+    // Precondition: there are points.
     Bounds bounds{openvdb::Vec3d(points.front()), openvdb::Vec3d(points.front())};
     for (const openvdb::Vec3s& p : points) {
         bounds.low = openvdb::math::minComponent(bounds.low, openvdb::Vec3d(p));
@@ -25,6 +33,7 @@ double signed_volume(const std::vector<openvdb::Vec3s>& points,
     if (points.empty())
         return 0.0;
     const Bounds bounds = bounds_of(points);
+    // About the middle the terms are as small as they can be, so least is lost where they cancel.
     const openvdb::Vec3d centre = 0.5 * (bounds.low + bounds.high);
     double six_volumes = 0.0;
     for (const openvdb::Vec3I& t : triangles) {

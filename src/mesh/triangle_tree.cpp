@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Builds the tree that finds the nearest triangle: a bounding volume hierarchy of eight children a
+// node and up to eight triangles a leaf, since that many are compared at a time (core/simd.h).
+// Boxes are turned with the surface (the header says why). Invariant: as computed in floats, no
+// point is nearer to a triangle than to a box around it, because boxes are widened by more than the
+// rounding. The number of leaves is a power of two, and items are split evenly among them, so the
+// shape follows from the number of triangles alone, and who is in which leaf from coordinates and
+// indices; threads change neither. Trap: the mesh must not be empty.
+
 #include "mesh/triangle_tree.h"
 
 #include "core/parallel.h"
@@ -19,10 +28,12 @@ namespace
 {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Below it a range is not worth another thread.
+// With fewer triangles than this a second thread would cost more than it saves.
 constexpr std::size_t kWorthAThread = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
-// triangle seem nearer than its box.
+// triangle seem nearer than its box. One rounding of a float is 6e-8 of what is rounded, and a
+// distance takes a handful of them; what is rounded is as large as the mesh for points that are not
+// many diagonals away from it.
 constexpr float kBoxSlack = 2e-6F;
 
 struct Item {
@@ -48,6 +59,7 @@ public:
         });
         for_each_index(items_.size(), [&](std::size_t t) {
             const openvdb::Vec3I& c = mesh.triangles[t];
+            // Three times the centre, which is in the same order.
             items_[t] = {points_[c[0]] + points_[c[1]] + points_[c[2]], std::uint32_t(t)};
         });
         while (leaves_ * kLanes < items_.size())
@@ -82,6 +94,7 @@ private:
         const int axis = static_cast<int>(openvdb::math::MaxIndex(high - low));
         std::nth_element(at(first), at(mid), at(last), [axis](const Item& a, const Item& b) {
             const float x = a.centre[axis], y = b.centre[axis];
+            // Ties by index, so that the two halves are the same sets every time.
             return x != y ? x < y : a.triangle < b.triangle;
         });
         const auto left = [&] { halve(first, mid); };
@@ -110,6 +123,7 @@ std::array<Vec3f, 3> frame_of(const Ordered& ordered, std::size_t begin, std::si
         normal += Vec3d(b - a).cross(Vec3d(c - a));
         centre += Vec3d(a) + Vec3d(b) + Vec3d(c);
     }
+    // The areas of a closed piece add up to nothing; any frame is right for its box.
     if (!normal.normalize())
         normal = Vec3d(0, 0, 1);
     centre /= 3.0 * static_cast<double>(end - begin);
@@ -123,6 +137,8 @@ std::array<Vec3f, 3> frame_of(const Ordered& ordered, std::size_t begin, std::si
             const double u = off.dot(x), v = off.dot(y);
             xx += u * u, xy += u * v, yy += v * v;
         }
+    // The eigenvector of the larger eigenvalue of the matrix (xx xy; xy yy). Of the two forms that
+    // it has, the one is taken in which nothing cancels.
     const double half = 0.5 * (xx - yy), root = std::sqrt(half * half + xy * xy);
     Vec3d along = half > 0 ? (half + root) * x + xy * y : xy * x + (root - half) * y;
     if (!along.normalize())
@@ -151,7 +167,8 @@ TriangleTree::Block make_block(const Ordered& ordered, std::size_t leaf)
     const std::size_t begin = ordered.begin(leaf), end = ordered.begin(leaf + 1);
     TriangleTree::Block block;
     for (std::size_t i = 0; i < kLanes; ++i) {
-        // The last one fills the places that are left.
+        // The last triangle fills the places that are left. A search takes a triangle only if it is
+        // nearer than what it has, so a copy in a later lane is never found.
         const std::size_t item = std::min(begin + i, end - 1);
         const std::array<Vec3f, 3> corner = ordered.corners(item);
         const Vec3d a(corner[0]), b(corner[1]), c(corner[2]);
@@ -163,6 +180,7 @@ TriangleTree::Block make_block(const Ordered& ordered, std::size_t leaf)
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3d e = Vec3d(corner[(k + 1) % 3]) - Vec3d(corner[k]), m = e.cross(n);
             const double squared = e.lengthSqr();
+            // With 0 for its inverse a side without length is its first corner.
             block.inverse[k][i] = squared > 0 ? static_cast<float>(1 / squared) : 0.0F;
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 block.corner[k][axis][i] = corner[k][int(axis)];
@@ -174,12 +192,14 @@ TriangleTree::Block make_block(const Ordered& ordered, std::size_t leaf)
     return block;
 }
 
-/// `leaves` successive leaves to a child.
+/// A node whose children have `leaves` successive leaves each, from `first_leaf` on.
 TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std::size_t leaves,
                              std::size_t children, float slack)
 {
     TriangleTree::Node node{};
     for (std::size_t i = 0; i < kLanes; ++i) {
+        // With axes of 0, every point is infinitely far below this box, so a child that is not
+        // there needs no test of its own.
         TurnedBox box{{Vec3f(0), Vec3f(0), Vec3f(0)}, Vec3f(kInfinity), Vec3f(kInfinity)};
         if (i < children)
             box = ordered.box(first_leaf + i * leaves, first_leaf + (i + 1) * leaves, slack);
@@ -210,7 +230,9 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit)
         arrays_.root = kLeafBit;
         return;
     }
-    // The nodes of a level lie together, the root first, and have as many leaves each.
+    // The nodes of a level lie together, the root first, and have as many leaves each. Only the
+    // root may have fewer than eight children, because all other levels are reached by dividing a
+    // power of two by eight.
     std::vector<std::size_t> below{ordered.leaves()};
     while (below.back() > kLanes)
         below.push_back(below.back() / kLanes);

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Finds the nearest triangle in the tree, eight boxes or triangles at a time, in floats. Nodes wait
+// on a stack, the nearest of a node's children on top, and are dropped when they are farther than
+// the best triangle so far; a query begins with the leaf where the last one ended, which is mostly
+// near the right one. Without tolerance the distance found is the least of all triangles as
+// computed here, whatever the order of the visits, because boxes are widened by more than the
+// rounding; so neither seed nor processor changes a bit of it. Which of two equally near triangles
+// is named does depend on the seed. Compiled once for each kind of processor (core/simd.h).
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,10 +29,11 @@ namespace
 {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Queries that begin with many boxes take longer over these than over the levels above.
+// Picked boxes are all compared in every query of the ball. With more of them than this, queries
+// take longer over these than over the levels above.
 constexpr std::size_t kMostPicked = 48;
 
-/// Children of nodes.
+/// A child, by its node and its place there: the box of a child stands in the node above it.
 struct Place {
     std::uint32_t node, lane;
 };
@@ -62,7 +72,8 @@ HWY_INLINE Floats load(const TriangleTree::LaneFloats& from)
     return Floats::load(from.data());
 }
 
-/// Squared.
+/// The squared distances of a point to eight boxes, 0 within. Along each axis of a box at most one
+/// of the two differences is positive, so the greater one, or 0, is how far the point is outside.
 template <typename Boxes> HWY_INLINE Floats box_distances(const Boxes& node, const FloatPoint& p)
 {
     const Floats zero(0.0F);
@@ -78,7 +89,11 @@ template <typename Boxes> HWY_INLINE Floats box_distances(const Boxes& node, con
     return squared;
 }
 
-/// Squared.
+/// The squared distances of a point to eight triangles. The point is taken relative to corner k and
+/// goes on from corner to corner, and the foot on each side is cut off at its ends. If the point is
+/// beyond a side, seen along the normal, the nearest of the three feet counts, else the height
+/// above the plane. The bias of a triangle without a normal stands for a place beyond its sides, so
+/// that its height is never used.
 HWY_INLINE Floats distances(const TriangleTree::Block& t, const FloatPoint& p)
 {
     const Floats zero(0.0F), one(1.0F);
@@ -124,7 +139,8 @@ struct Search {
     Seed done = TriangleTree::kNoSeed; ///< the block looked into first
     float limit = std::numeric_limits<float>::max();
     Found found{0, kInfinity};
-    // What is picked, and at each of at most 12 levels all but one of the siblings.
+    // Room for what is picked, and at each of at most 12 levels for all siblings of the child that
+    // is looked into. Twelve levels of eight are more leaves than numbers of 32 bits can name.
     std::array<Entry, kMostPicked + 12 * kLanes> stack;
     std::size_t top = 0;
 
@@ -143,6 +159,7 @@ struct Search {
                 found = {block.triangle[i], d[i]};
         }
         seed = id;
+        // From here on only what is nearer by more than the tolerance is looked for.
         const float nearer = std::max(std::sqrt(found.squared) - tolerance, 0.0F);
         limit = tolerance > 0 ? nearer * nearer : found.squared;
     }
@@ -154,7 +171,7 @@ struct Search {
             look_into(seed);
     }
 
-    /// Nearest on top of what is above `bottom`.
+    /// Puts an entry on the stack so that what is above `bottom` stays sorted, the nearest on top.
     HWY_INLINE void push(const Entry& entry, std::size_t bottom)
     {
         std::size_t place = top++;
@@ -167,6 +184,7 @@ struct Search {
     {
         while (top > 0) {
             const Entry entry = stack[--top];
+            // The limit may have fallen since this was put on the stack.
             if (entry.squared > limit || entry.id == done)
                 continue;
             if (entry.id & kLeafBit) {
@@ -218,7 +236,9 @@ void gather(const Arrays& tree, const Vec3d& centre, double radius, Places& plac
     nearby.centre = centre;
     nearby.radius = radius;
     const auto distance = std::sqrt(nearest(tree, centre, 0.0F, nearby.seed).squared);
-    // Rounding is far less than a hundredth of the ball.
+    // A point of the ball is at most the radius farther from the centre's nearest triangle than the
+    // centre is, and its own nearest triangle is again at most the radius farther from the centre.
+    // So twice the radius is enough. Rounding is far less than a hundredth of the ball.
     const float reach = distance + 2.01F * static_cast<float>(radius / tree.unit);
     const FloatPoint point = everywhere(Vec3f((centre - tree.middle) / tree.unit));
     // Level by level, as long as that does not give too many.
@@ -234,6 +254,8 @@ void gather(const Arrays& tree, const Vec3d& centre, double radius, Places& plac
                 if (found < kMostPicked)
                     next[found] = {ids[n], static_cast<std::uint32_t>(__builtin_ctz(bits))};
         }
+        // One level more would be too many; the level before is a complete answer as well, with
+        // larger boxes. A tree that is a single leaf picks nothing: the seed is that leaf.
         if (found > kMostPicked)
             break;
         std::swap(list, next);
@@ -273,6 +295,8 @@ void TriangleTree::gather(const openvdb::Vec3d& centre, double radius, Nearby& n
 {
     Places places;
     HWY_DYNAMIC_DISPATCH(gather)(arrays_, centre, radius, places, nearby);
+    // What follows uses the standard library's vectors and is therefore kept out of the kernels,
+    // which are compiled for other processors.
     const auto& [list, count] = places;
     nearby.picked.resize((count + kLanes - 1) / kLanes);
     nearby.count = count;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// What the descriptions of options can do: take values of any source, refuse the wrong ones in one
+// wording, and name what would be right. A value that was taken is of the option's kind, within its
+// range and within the type of its field; when one is refused, the field keeps what it had. The
+// command line, JSON and callers in C++ are all tested by the same function, allowed(). Texts are
+// read and written in the classic locale, so that a decimal comma of the system changes nothing.
+// Trap: numbers in messages have six digits; files keep all digits by option_json.cpp.
+
 #include "vdb_shell/options/option.h"
 
 #include "vdb_shell/core/error.h"
@@ -33,6 +41,8 @@ std::string joined(const std::vector<std::string>& words)
 [[noreturn]] void refuse(const Option& option, const std::string& name, const std::string& value,
                          const std::string& expected)
 {
+    // Without an expectation it is the kind that was wrong, and the message tells all that is
+    // allowed.
     const bool of_kind = expected.empty();
     throw InvalidOption(name + " is " + value + ", must be " +
                         (of_kind ? expectation(option) : expected));
@@ -42,13 +52,18 @@ std::string joined(const std::vector<std::string>& words)
 std::string expected_range(const Option& option, const OptionValue& value)
 {
     const auto* number = std::get_if<double>(&value);
+    // Infinity is "0 or more" for anybody who reads it, so the message has to say that it must be
+    // finite. Between two bounds that goes without saying.
     const bool bounded = option.range.low && option.range.high;
     if (number && !std::isfinite(*number) && !bounded && !option.range.text().empty())
         return "finite and " + option.range.text();
     return option.range.text();
 }
 
-/// The value as the kind that the option has, where that loses nothing; else unset.
+/// The value as the kind that the option has, or unset where the kinds do not fit. JSON and callers
+/// write 2 for 2.0, so whole numbers are taken for numbers (above 2^53 the nearest double); numbers
+/// are never taken for whole numbers, since 2.5 would lose its half in silence. Texts are never
+/// parsed here: that is left to parsed_as().
 OptionValue converted(OptionKind kind, const OptionValue& value)
 {
     if (const auto* integer = std::get_if<std::int64_t>(&value)) {
@@ -72,7 +87,8 @@ OptionValue converted(OptionKind kind, const OptionValue& value)
     return kind == OptionKind::choice || kind == OptionKind::text ? value : OptionValue();
 }
 
-/// Of a value of the right kind.
+/// Whether a value, which has to be of the right kind already, is one of the choices or within the
+/// range.
 bool allowed(const Option& option, const OptionValue& value)
 {
     if (option.kind == OptionKind::choice)
@@ -81,6 +97,8 @@ bool allowed(const Option& option, const OptionValue& value)
     if (const auto* number = std::get_if<double>(&value))
         return option.range.holds(*number);
     if (const auto* integer = std::get_if<std::int64_t>(&value))
+        // The field may be narrower than the value that came in, as an int is. Without this test a
+        // large number would wrap around when it is set.
         return std::abs(static_cast<double>(*integer)) <= option.largest &&
                option.range.holds(static_cast<double>(*integer));
     if (const auto* count = std::get_if<std::uint64_t>(&value))
@@ -89,13 +107,15 @@ bool allowed(const Option& option, const OptionValue& value)
     return true;
 }
 
-/// Unset where the text is no number of that type, or one that the type cannot hold.
+/// The number that the text is, or unset where it is none of that type, or one that the type cannot
+/// hold.
 template <typename Number> OptionValue parsed(const std::string& text)
 {
     std::istringstream in(text);
     in.imbue(std::locale::classic());
     Number number{};
     in >> std::noskipws >> number;
+    // All of the text has to be the number: "2mm" and " 2" are refused.
     return in && in.peek() == std::istringstream::traits_type::eof() ? OptionValue(number)
                                                                      : OptionValue();
 }
@@ -108,7 +128,8 @@ OptionValue parsed_as(OptionKind kind, const std::string& text)
         return parsed<std::int64_t>(text);
     if (kind == OptionKind::number)
         return parsed<double>(text);
-    // Streams take -1 for the largest of the unsigned numbers.
+    // Streams take -1 for the largest of the unsigned numbers, as C does, so a minus sign is
+    // refused before the stream sees it.
     if (kind == OptionKind::count)
         return text.rfind('-', 0) == 0 ? OptionValue() : parsed<std::uint64_t>(text);
     return text;
@@ -118,6 +139,7 @@ OptionValue parsed_as(OptionKind kind, const std::string& text)
 
 const NameTable<Unit>& names(Unit)
 {
+    // These names are in the schema that programs read, so they must stay what they are.
     static const NameTable<Unit> table{
         {"none", Unit::none},     {"world length", Unit::world_length},
         {"voxels", Unit::voxels}, {"radians", Unit::radians},
@@ -144,7 +166,8 @@ std::string text_of(const OptionValue& value)
 
 bool Range::holds(double value) const
 {
-    // Written so that no bound holds for what is not a number.
+    // Comparisons are written so that no bound holds for what is not a number; infinity is refused
+    // even where there is no bound.
     const bool over = !low || (low_excluded ? value > *low : value >= *low);
     const bool under = !high || (high_excluded ? value < *high : value <= *high);
     return std::isfinite(value) && over && under;
@@ -152,6 +175,8 @@ bool Range::holds(double value) const
 
 std::string Range::text() const
 {
+    // People read "0 to 1" as a range that holds both of its ends, so only such a range is written
+    // so.
     if (low && high && !low_excluded && !high_excluded)
         return text_of_number(*low) + " to " + text_of_number(*high);
     std::string text;
@@ -238,6 +263,7 @@ Option& Option::not_stored()
 OptionList in_group(const std::string& group, OptionList options)
 {
     for (Option& o : options)
+        // An option that names its own group keeps it.
         if (o.group.empty())
             o.group = group;
     return options;
@@ -266,11 +292,13 @@ std::string expectation(const Option& option)
 void assign(Option& option, const OptionValue& value, const std::string& name)
 {
     if (std::holds_alternative<std::monostate>(value)) {
+        // Only a field that is an optional can hold nothing.
         if (!option.may_be_unset)
             refuse(option, name, "null", "");
         option.set(value);
         return;
     }
+    // All tests come before the field is set, so a refused value changes nothing.
     const OptionValue fitting = converted(option.kind, value);
     if (std::holds_alternative<std::monostate>(fitting))
         refuse(option, name, text_of(value), "");
@@ -281,6 +309,8 @@ void assign(Option& option, const OptionValue& value, const std::string& name)
 
 void assign_text(Option& option, const std::string& text, const std::string& name)
 {
+    // A text comes from a person, so it is parsed as the option's own kind, and not guessed from
+    // its looks.
     const OptionValue value = parsed_as(option.kind, text);
     if (std::holds_alternative<std::monostate>(value))
         refuse(option, name, text, "");
@@ -300,6 +330,7 @@ void require_in_range(const OptionList& options, const std::string& owner)
 {
     for (const Option& o : options) {
         const OptionValue value = o.get();
+        // For structs that were filled in C++, where nothing was tested on the way.
         if (!std::holds_alternative<std::monostate>(value) && !allowed(o, value))
             refuse(o, owner + ": " + o.key, text_of(value), expected_range(o, value));
     }
@@ -309,6 +340,8 @@ void divide_lengths(OptionList& options, double unit)
 {
     for (Option& o : options) {
         const OptionValue value = o.get();
+        // Lengths in voxels, and shares of lengths, do not change with the unit. An optional length
+        // that is unset stays so.
         if (o.unit == Unit::world_length && std::holds_alternative<double>(value))
             o.set(std::get<double>(value) / unit);
     }

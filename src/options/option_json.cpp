@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Options as JSON: to write what a run used, to set a run up from a file, and to tell other
+// programs what options there are. Numbers are written with as many digits as bring the same double
+// back. An unknown key is an error, because a key that is spelled wrong would otherwise be an
+// option that silently keeps its default; only set_known_from_json() passes over such keys, because
+// one file of options serves all commands. Objects keep the order of the descriptions. Trap:
+// entries are set one after the other, so when one is refused those before it are set already.
+
 #include "options/option_json.h"
 
 #include "vdb_shell/core/error.h"
@@ -19,6 +27,8 @@ OptionValue value_of(const ordered_json& json, const std::string& name)
         return {};
     if (json.is_boolean())
         return json.get<bool>();
+    // The order matters: an unsigned number is an integer for this library too, and one above 2^63
+    // is no int64.
     if (json.is_number_unsigned())
         return json.get<std::uint64_t>();
     if (json.is_number_integer())
@@ -33,11 +43,14 @@ OptionValue value_of(const ordered_json& json, const std::string& name)
 Option* find_by_key(OptionList& options, const std::string& key)
 {
     const auto found = std::find_if(options.begin(), options.end(), [&](const Option& o) {
+        // Options without a key are not in files, and must not be found by an empty key.
         return !o.key.empty() && o.key == key;
     });
     return found == options.end() ? nullptr : &*found;
 }
 
+/// A section that can be off has null for "off" and an object, of any size, for "on". That flag is
+/// set before the entries, so that they go into options that exist.
 void set_section(const ordered_json& json, OptionSection& section, const std::string& name)
 {
     if (section.asked && !json.is_object() && !json.is_null())
@@ -68,6 +81,8 @@ bool set_entry(const std::string& key, const ordered_json& json, OptionSections&
             set_section(json, section, name);
             return true;
         }
+        // Options of a section with a name are only found within its object, so two sections may
+        // have options of the same name.
         if (!section.key.empty())
             continue;
         if (Option* option = find_by_key(section.options, key)) {
@@ -78,6 +93,8 @@ bool set_entry(const std::string& key, const ordered_json& json, OptionSections&
     return false;
 }
 
+/// Each bound has a key that says whether the bound itself is allowed, so that a program that
+/// builds a form of the schema needs no further flag.
 ordered_json range_json(const Range& range)
 {
     ordered_json json = ordered_json::object();
@@ -88,6 +105,8 @@ ordered_json range_json(const Range& range)
     return json;
 }
 
+/// These names are read by other programs. There is no default, so that compilers warn of a kind
+/// that was forgotten.
 const char* type_name(OptionKind kind)
 {
     switch (kind) {
@@ -118,6 +137,8 @@ ordered_json option_schema(const OptionSection& section, const Option& option)
     json["type"] = type_name(option.kind);
     json["unit"] = name_in_table(option.unit);
     json["range"] = range_json(option.range);
+    // This is the value that the option has now: hence the precondition that options have their
+    // defaults.
     json["default"] = value_json(option.get());
     json["may_be_unset"] = option.may_be_unset;
     json["repeated"] = option.repeated;
@@ -155,6 +176,8 @@ ordered_json to_json(const OptionSections& sections)
             continue;
         }
         for (const Option& option : section.options)
+            // What does not change the result is not written, so runs that differ in nothing else
+            // have the same record.
             if (option.stored && !option.key.empty())
                 (section.key.empty() ? json[option.key] : json[section.key][option.key]) =
                     value_json(option.get());
@@ -177,6 +200,7 @@ void set_known_from_json(const ordered_json& json, OptionSections& sections,
             continue;
         const ordered_json& object = section.key.empty() ? json : json.at(section.key);
         if (section.asked)
+            // Null is "off", as set_section() has it.
             section.asked->set(object.is_object());
         for (Option& option : section.options) {
             if (option.key.empty() || !object.is_object() || !object.contains(option.key))
@@ -192,6 +216,7 @@ ordered_json parse_options(const std::string& text, const std::string& name)
     ordered_json json;
     try {
         json = ordered_json::parse(text);
+        // The caller gets the project's own exception, with the name of the file in front.
     } catch (const ordered_json::parse_error& error) {
         throw ReadError(name + ": is no JSON: " + error.what());
     }

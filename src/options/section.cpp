@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The options of one stage under one name, as JSON nests them. Either name may be empty: a section
+// without a key has its options at the top, and an option without a key is not in files.
+
 #include "vdb_shell/options/section.h"
 
 namespace vdb_shell
