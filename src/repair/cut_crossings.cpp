@@ -118,7 +118,7 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh)
 bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report)
 {
     std::vector<char> drop = crossing_triangles(surface.mesh);
-    // A rim that is still there after the last round is a hole that no fill could close without a
+    // A rim that the last round has left is a hole that no fill could close without a
     // crossing. It needs more room as well.
     if (round > 0)
         mark_rims(surface.mesh, drop);
