@@ -2,9 +2,10 @@
 
 // Takes triangles of which some have the same three points, whichever way they run, and leaves at
 // most one of each. Whether one stays is a question of parity: an edge of a closed surface has an
-// even number of triangles, so a repeat is kept if most of its edges need it for that, and a partition that two closed bodies have in common goes altogether. All edges are counted before anything
-// goes, so the result does not depend on the order in which the groups are taken. The trap is that
-// a neighbour which is repeated itself counts each time.
+// even number of triangles, so a repeat is kept if most of its edges need it for that, and a
+// partition that two closed bodies have in common goes altogether. All edges are counted before
+// anything goes, so the result does not depend on the order in which the groups are taken. The trap
+// is that a neighbour which is repeated itself counts each time.
 
 #include "repair/working_surface.h"
 

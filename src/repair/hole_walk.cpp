@@ -4,9 +4,9 @@
 // which two sides are one edge, which corners are one fan, and how the rims of holes run from fan
 // to fan. A side gets one partner at most, so surfaces that are parted by these answers are
 // manifolds, whatever was paired. Angles are in doubles for that reason: they only decide which of
-// several sheets go together, and a wrong choice gives another shape, but a manifold as well. A side is
-// 3 * triangle + k, from corner k to the next, and a corner has the number of the side that starts
-// there.
+// several sheets go together, and a wrong choice gives another shape, but a manifold as well. A
+// side is 3 * triangle + k, from corner k to the next, and a corner has the number of the side that
+// starts there.
 
 #include "repair/hole_walk.h"
 

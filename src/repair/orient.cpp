@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes triangles that meet anyhow and makes neighbours run through their common edge opposite
-// ways. Two steps: sheets that bound no solid, such as a partition inside a body or a fin on it, are
-// removed, as no orientation fits them; then in each piece, which is what hangs together by edges
-// of two triangles, as few triangles as possible are turned. Whether a whole piece is inside out is
-// decided after the holes are closed, when it has an inside. Parity is the idea of the first step:
-// a surface that bounds a solid has an even number of triangles at each edge.
+// ways. Two steps: sheets that bound no solid, such as a partition inside a body or a fin on it,
+// are removed, as no orientation fits them; then in each piece, which is what hangs together by
+// edges of two triangles, as few triangles as possible are turned. Whether a whole piece is inside
+// out is decided after the holes are closed, when it has an inside. Parity is the idea of the first
+// step: a surface that bounds a solid has an even number of triangles at each edge.
 
 #include "mesh/orientation.h"
 #include "mesh/surface_defects.h"
