@@ -101,9 +101,9 @@ public:
     std::size_t new_points() const { return surface_.mesh.points.size() - points_; }
     std::size_t new_triangles() const { return surface_.mesh.triangles.size() - triangles_; }
 
-    // Pairs of a new triangle and any other that cross or touch; a new one without area counts as
-    // such a pair. `rest` holds the old triangles. Old ones without area are passed over: they are
-    // no fault of the fill, and the exact test is not defined for them.
+    /// Pairs of a new triangle and any other that cross or touch; a new one without area counts as
+    /// such a pair. `rest` holds the old triangles. Old ones without area are passed over: they are
+    /// no fault of the fill, and the exact test is not defined for them.
     std::size_t count_crossings(const BoxTree& rest) const
     {
         const TriangleMesh& mesh = surface_.mesh;

@@ -35,9 +35,9 @@ std::uint32_t key_of(const EdgeUse& use)
     return 3 * use.triangle + use.side;
 }
 
-// Direction of each triangle's third corner around the edge, in radians, counter-clockwise about
-// the way from the smaller to the larger point. The first triangle is at 0. The axes x and y are
-// not of unit length but of equal length, which is all that an angle needs.
+/// Direction of each triangle's third corner around the edge, in radians, counter-clockwise about
+/// the way from the smaller to the larger point. The first triangle is at 0. The axes x and y are
+/// not of unit length but of equal length, which is all that an angle needs.
 std::vector<double> angles_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t count)
 {
     const Vec3d origin(mesh.points[uses[0].edge[0]]);
@@ -57,10 +57,10 @@ std::vector<double> angles_around(const TriangleMesh& mesh, const EdgeUse* uses,
     return angles;
 }
 
-// Pairs the sides around an edge of more than two. The normal of a side that runs forward, from the
-// smaller to the larger point, shows counter-clockwise around the edge, so its solid lies clockwise
-// of it; with a backward side it is the other way round. So a backward side and the next forward
-// one counter-clockwise have solid between them.
+/// Pairs the sides around an edge of more than two. The normal of a side that runs forward, from
+/// the smaller to the larger point, shows counter-clockwise around the edge, so its solid lies
+/// clockwise of it; with a backward side it is the other way round. So a backward side and the next
+/// forward one counter-clockwise have solid between them.
 void pair_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t count,
                  std::vector<std::uint32_t>& partner)
 {
@@ -155,10 +155,10 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
 namespace
 {
 
-// An open fan is a strip around its point with two ends: one unpaired side ends at the point,
-// another one starts there. A hole runs against the triangles, so it leaves the point by the former
-// and comes to it by the latter. Where a one-sided piece makes both ends alike, one of them stays
-// unpaired here.
+/// An open fan is a strip around its point with two ends: one unpaired side ends at the point,
+/// another one starts there. A hole runs against the triangles, so it leaves the point by the
+/// former and comes to it by the latter. Where a one-sided piece makes both ends alike, one of them
+/// stays unpaired here.
 struct Border {
     std::vector<std::uint32_t> leaves, comes;
     std::vector<std::vector<std::uint32_t>> open_fans; ///< by point
@@ -181,9 +181,9 @@ Border border_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& par
     return border;
 }
 
-// Angles of the points around `centre`, seen against the sum of the normals of the triangles there.
-// Their sum is weighted by area and not of unit length, so that the angles are distorted; only
-// their cyclic order is used, and that stays.
+/// Angles of the points around `centre`, seen against the sum of the normals of the triangles
+/// there. Their sum is weighted by area and not of unit length, so that the angles are distorted;
+/// only their cyclic order is used, and that stays.
 class View
 {
 public:
@@ -212,10 +212,10 @@ private:
     Vec3d centre_, x_, y_;
 };
 
-// At a point of three or more open fans a hole that comes to one goes on to the fan that is next
-// clockwise, seen from outside: the hole is the gap between these two. Nothing is returned when
-// this is no one-to-one order, as around a point whose triangles are folded over each other; the
-// rims then run through each fan by itself.
+/// At a point of three or more open fans a hole that comes to one goes on to the fan that is next
+/// clockwise, seen from outside: the hole is the gap between these two. Nothing is returned when
+/// this is no one-to-one order, as around a point whose triangles are folded over each other; the
+/// rims then run through each fan by itself.
 std::vector<std::uint32_t> next_clockwise(const TriangleMesh& mesh, const Border& border,
                                           const std::vector<std::uint32_t>& here, const View& view)
 {

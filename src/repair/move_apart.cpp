@@ -24,8 +24,8 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// How far the copies of a point are moved, as a share of their shortest edge, and whether the first
-// copy moves as well.
+/// How far the copies of a point are moved, as a share of their shortest edge, and whether the
+/// first copy moves as well.
 struct Attempt {
     double share;
     bool first_too;
@@ -54,11 +54,11 @@ double shortest_edge_at(const std::vector<openvdb::Vec3s>& points,
     return std::isfinite(shortest) ? shortest : 0;
 }
 
-// Whether a direction from the top of a cone of triangles points out of the solid: by the normal of
-// the nearest face or edge of the cone, or of its top (Baerentzen and Aanaes 2005, "Signed distance
-// computation using the angle weighted pseudonormal"). A cone looks alike at every scale, so one
-// unit along the direction stands for all: the nearest feature is the one at the smallest angle, if
-// that is less than a right angle, and else the top.
+/// Whether a direction from the top of a cone of triangles points out of the solid: by the normal
+/// of the nearest face or edge of the cone, or of its top (Baerentzen and Aanaes 2005, "Signed
+/// distance computation using the angle weighted pseudonormal"). A cone looks alike at every scale,
+/// so one unit along the direction stands for all: the nearest feature is the one at the smallest
+/// angle, if that is less than a right angle, and else the top.
 bool points_outside(const TriangleMesh& mesh, const VertexTriangles::Range& cone, std::uint32_t top,
                     const Vec3d& top_normal, const Vec3d& direction)
 {

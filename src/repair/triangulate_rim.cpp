@@ -28,8 +28,8 @@ struct Weight {
 };
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// The table of best triangulations of the rim from i to k. Short stretches come before long ones,
-// so that the parts of a stretch are always there.
+/// The table of best triangulations of the rim from i to k. Short stretches come before long ones,
+/// so that the parts of a stretch are always there.
 class Table
 {
 public:
