@@ -27,9 +27,10 @@ namespace
 
 using openvdb::Vec3d;
 
-/// Vertices that even growth's mended directions leave blind. The directions are made just as
-/// growth makes them, so that what is told here is what growth will pin for that reason. Points
-/// without a triangle have no direction either, and are no fault.
+/// Vertices that even growth's mended directions leave blind. Growth mends a direction by looking
+/// for the one that sees the worst triangle best; the same is done here, from the normals on. Where
+/// even that one sees a triangle from behind, growth pins the vertex. Points without a triangle
+/// have no direction either, and are no fault.
 std::vector<std::uint32_t> find_blind_vertices(const TriangleMesh& mesh)
 {
     Directions directions = directions_along(mesh, pseudo_normals(mesh));

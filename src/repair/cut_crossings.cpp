@@ -118,8 +118,8 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh)
 bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report)
 {
     std::vector<char> drop = crossing_triangles(surface.mesh);
-    // A rim that the last round has left is a hole that no fill could close without a crossing. It
-    // needs more room as well.
+    // A rim that the last round has left belongs to a hole for which no fill was found. It needs
+    // more room as well.
     if (round > 0)
         mark_rims(surface.mesh, drop);
     if (std::find(drop.begin(), drop.end(), char(1)) == drop.end())

@@ -3,10 +3,11 @@
 // Takes triangles without area, or lower than the user's sliver height, and removes them without
 // opening the surface. The corner of a flat triangle that is between the other two lies on its
 // longest side, so the neighbour there can be cut in two at that point and covers what both covered
-// before; a needle with a short side is collapsed instead. Flat is decided exactly on the float32
-// points, heights in doubles. The trap is that a half may be flat or too low in its turn, so the
-// work is bounded and what is left then is found by the check of the result. Triangles go by
-// ascending index, so the result is determined.
+// before; a needle with a short side is collapsed instead. Only where there is no single neighbour
+// to cut is a triangle just dropped; the later steps close what that opens. Flat is decided exactly
+// on the float32 points, heights in doubles. The trap is that a half may be flat or too low in its
+// turn, so the work is bounded and what is left then is found by the check of the result. Triangles
+// go by ascending index, so the result is determined.
 
 #include "repair/working_surface.h"
 

@@ -5,7 +5,8 @@
 // even number of triangles, so a repeat is kept if most of its edges need it for that, and a
 // partition that two closed bodies have in common goes altogether. All edges are counted before
 // anything goes, so the result does not depend on the order in which the groups are taken. The trap
-// is that a neighbour which is repeated itself counts each time.
+// is that a neighbour which is repeated itself counts each time, so that a region which is there
+// twice can go altogether.
 
 #include "repair/working_surface.h"
 

@@ -97,7 +97,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b)
 /// Least squares of A x + constant along one axis by conjugate gradients on the normal equations,
 /// from x on (Hestenes and Stiefel 1952, "Methods of conjugate gradients for solving linear
 /// systems"). The matrix is never formed: a row has as many terms as a point has neighbours.
-/// Serial, as patches are small beside the surface, and so that sums keep their order.
+/// Serial, so that sums keep their order.
 void minimise(const std::vector<Row>& rows, int axis, std::vector<double>& x)
 {
     // The length of the residual, relative to what it was at the start, at which this ends.

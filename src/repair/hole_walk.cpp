@@ -214,8 +214,8 @@ private:
 
 /// At a point of three or more open fans a hole that comes to one goes on to the fan that is next
 /// clockwise, seen from outside: the hole is the gap between these two. Nothing is returned when
-/// this is no one-to-one order, as around a point whose triangles are folded over each other; the
-/// rims then run through each fan by itself.
+/// this is no one-to-one order, as can be around a point whose triangles are folded over each
+/// other; the rims then run through each fan by itself.
 std::vector<std::uint32_t> next_clockwise(const TriangleMesh& mesh, const Border& border,
                                           const std::vector<std::uint32_t>& here, const View& view)
 {

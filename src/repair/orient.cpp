@@ -2,10 +2,11 @@
 
 // Takes triangles that meet anyhow and makes neighbours run through their common edge opposite
 // ways. Two steps: sheets that bound no solid, such as a partition inside a body or a fin on it,
-// are removed, as no orientation fits them; then in each piece, which is what hangs together by
-// edges of two triangles, as few triangles as possible are turned. Whether a whole piece is inside
-// out is decided after the holes are closed, when it has an inside. Parity is the idea of the first
-// step: a surface that bounds a solid has an even number of triangles at each edge.
+// are removed, since an edge with three triangles has no pair of neighbours to agree; then in each
+// piece, which is what hangs together by edges of two triangles, as few triangles as possible are
+// turned. Whether a whole piece is inside out is decided after the holes are closed, when it has an
+// inside. Parity is the idea of the first step: a surface that bounds a solid has an even number of
+// triangles at each edge.
 
 #include "mesh/orientation.h"
 #include "mesh/surface_defects.h"
@@ -71,7 +72,7 @@ bool is_sheet(const std::vector<BadEdge>& bad, std::uint32_t piece)
 void drop_sheets(WorkingSurface& surface, RepairReport& report)
 {
     // A share of the area of what is there at the time. A piece with more than that is taken for a
-    // part of the object, which a hole elsewhere makes odd.
+    // part of the object, not for a sheet on it.
     constexpr double kLargestShare = 0.25;
     for (bool dropped = true; dropped;) {
         dropped = false;

@@ -118,8 +118,8 @@ bool turn_edges(HalfEdgeMesh& mesh, const Rim& rim)
         const Vertex a = mesh.from_vertex_handle(h), b = mesh.to_vertex_handle(h);
         const Vertex c = mesh.to_vertex_handle(mesh.next_halfedge_handle(h));
         const Vertex d = mesh.to_vertex_handle(mesh.next_halfedge_handle(o));
-        // Two corners of the rim may have an edge in the surface outside already; a second one
-        // would make it an edge of four triangles.
+        // Two corners of the rim may have an edge in the surface outside already; with the new one
+        // it would get more than two triangles.
         const int low = std::min(c.idx(), d.idx()), high = std::max(c.idx(), d.idx());
         const std::pair<std::uint32_t, std::uint32_t> chord(low, high);
         if (high < rim_size && rim.edges.count(chord) > 0)

@@ -3,9 +3,10 @@
 // Takes any triangles with finite points and leaves a closed, oriented manifold where it can, and
 // every triangle that needed no change bit for bit. The order is the idea: equal points first,
 // since all that follows goes by indices; then triangles that are faulty by themselves, repeats and
-// sheets, which would mislead orientation; then orientation, which fans and rims need; then fans,
-// then holes, whose fills need fans; at last nesting and contacts, which mean something on closed
-// surfaces only. It proves nothing: the result is checked anew, and the check is in the report.
+// sheets, whose edges of three and more triangles keep neighbours apart; then orientation, which
+// fans and rims need; then fans, then holes, whose fills need fans; at last nesting and contacts,
+// which mean something on closed surfaces only. It proves nothing: the result is checked anew, and
+// the check is in the report.
 
 #include "vdb_shell/repair/repair_mesh.h"
 

@@ -80,8 +80,8 @@ private:
         return normal(rim_.points[i], rim_.points[middle_[at(i, k)]], rim_.points[k]);
     }
 
-    /// A chord that is an edge of the surface already would become an edge of four triangles.
-    /// Stretches of one edge are the rim itself, and so is the chord that closes it.
+    /// A chord that is an edge of the surface already would get more than two triangles. Stretches
+    /// of one edge are the rim itself, and so is the chord that closes it.
     bool exists_already(std::uint32_t i, std::uint32_t k) const
     {
         return k > i + 1 && !(i == 0 && k == n_ - 1) && rim_.edges.count({i, k}) > 0;
