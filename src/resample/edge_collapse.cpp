@@ -226,9 +226,9 @@ private:
         }
         if (bounds_distance())
             hand_over_samples(v);
-        quadric_[u] += quadric_[v];
         // The sum of both quadrics goes on counting every plane that the vertex has stood for;
         // planes of triangles with both ends count more than once, as in the source of the method.
+        quadric_[u] += quadric_[v];
         best_[v] = {};
     }
 
