@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a mesh however bad it is and writes it with its defects as colours, so that a person finds
+// the places in any program that shows a PLY with colours. Points and triangles both have marks:
+// holes and blind vertices are seen best at points, what belongs to a triangle at the triangle. All
+// marks stand in a property of bits beside the colour, which shows the worst one only. Unlike the
+// report, which names the first few of each kind, this marks every one. The same marks as the
+// report's come from mark_defects(), so the two cannot disagree.
+
 #include "inspect/marks.h"
 
 #include "vdb_shell/core/atomic_file.h"
@@ -13,8 +21,9 @@ namespace vdb_shell
 namespace
 {
 
-/// The bits of the property `defects`, worst last: the highest one gives the colour. Part of the
-/// file, so the values never change.
+/// The bits of the property `defects`, worst last: the highest one gives the colour. They are a
+/// part of the file, and docs/stages/repair.md tells their meaning to other programs, so the values
+/// never change.
 enum Mark : std::uint16_t {
     thin = 1,
     blind = 2,
@@ -58,7 +67,8 @@ void mark_edges(Marked& marked, const std::vector<Edge>& edges, Mark mark)
             marked.points[point] |= mark;
 }
 
-/// The triangles of the marked edges: those at the edge, not all at its ends.
+/// The triangles of the marked edges: those at the edge, not all at its ends, where most triangles
+/// are sound. The uses come sorted by edge, so those of one edge stand together.
 void mark_triangles_at(Marked& marked, const std::vector<EdgeUse>& uses)
 {
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
@@ -81,6 +91,8 @@ Marked marks_of(const TriangleMesh& mesh, const DefectMarks& found)
         for (const std::uint32_t i : indices)
             marks[i] |= mark;
     };
+    // Edges have no place of their own in the file, so their ends and their triangles are marked
+    // instead.
     mark_edges(marked, found.surface.boundary_edges, Mark::boundary);
     mark_edges(marked, found.surface.non_manifold_edges, Mark::non_manifold);
     mark_triangles_at(marked, found.uses);
@@ -97,7 +109,7 @@ Marked marks_of(const TriangleMesh& mesh, const DefectMarks& found)
     return marked;
 }
 
-/// Little-endian whatever the machine.
+/// Little-endian whatever the machine, since the bytes are taken out by shifts. The header says so.
 template <typename Unsigned> void put(std::string& out, Unsigned value)
 {
     for (std::size_t byte = 0; byte < sizeof value; ++byte)
@@ -124,6 +136,8 @@ std::string ply_bytes(const TriangleMesh& mesh, const Marked& marked)
         for (int axis = 0; axis < 3; ++axis) {
             const float value = mesh.points[v][axis];
             std::uint32_t bits = 0;
+            // The bits of the float as they are, which keeps every coordinate exactly, also those
+            // that are -0.
             std::memcpy(&bits, &value, sizeof bits);
             put(out, bits);
         }
@@ -147,6 +161,7 @@ void write_defect_picture(const std::filesystem::path& path, const TriangleMesh&
         throw InvalidOption(path.string() + ": the coloured mesh of the defects is a .ply, not \"" +
                             path.extension().string() + "\"");
     const DefectMarks found = mark_defects(mesh, resolve_voxel_size(mesh, options.level_set));
+    // All bytes are made before the file is opened, and the file then appears whole or not at all.
     const std::string bytes = ply_bytes(mesh, marks_of(mesh, found));
     write_stream_atomically(path, [&](std::ostream& out) {
         out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

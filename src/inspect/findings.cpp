@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes what an inspection measured and says it as findings: what it is, how many, the first of
+// them, whether it is in the way, and what mends it. It measures nothing itself. The rule is that
+// `blocks` is meant for what makes `build` refuse the surface without any option, so that the
+// verdict here is that of a build; what only makes the shell worse is a note. The order is fixed,
+// connectivity before triangles before looks, as a fault in the former often explains those in the
+// latter. The kinds are keys that programs read in the JSON and have a row each in
+// docs/stages/repair.md.
+
 #include "vdb_shell/inspect/inspect_mesh.h"
 
 #include <algorithm>
@@ -10,7 +19,8 @@ namespace
 {
 
 constexpr std::size_t kShown = Defect<std::uint32_t>::kFirstShown;
-// With fewer binary digits the surface itself is visibly snapped to a lattice.
+// A share of 2^-18 of the longest side is a step of 4 micrometres on a metre. With fewer binary
+// digits the surface itself is visibly snapped to a lattice.
 constexpr int kFewDigits = 18;
 
 std::string shown(std::uint32_t index)
@@ -35,6 +45,7 @@ std::string shown(const FlippedPatch& patch)
            std::to_string(patch.triangles) + (patch.triangles == 1 ? " triangle" : " triangles");
 }
 
+/// What all findings of one kind have in common; the rest of a finding is counted.
 struct Kind {
     const char *kind, *text;
     bool blocks;
@@ -49,6 +60,9 @@ public:
         add(kind, defect.count, defect.first);
     }
     template <typename Element>
+    /// What was not found is not listed: no finding has the count 0. Of elements only the first few
+    /// are told, because a bad mesh may have as many as it has triangles; the count is exact
+    /// nevertheless.
     void add(const Kind& kind, std::size_t count, const std::vector<Element>& elements)
     {
         if (count == 0)
@@ -61,6 +75,7 @@ public:
     std::vector<Finding> list;
 };
 
+/// Holes are told twice, as boundaries and, in the way check_mesh() counts them, as edges.
 void add_connectivity(Findings& findings, const MeshInspection& inspection)
 {
     const MeshCheck& check = inspection.check;
@@ -85,7 +100,8 @@ void add_connectivity(Findings& findings, const MeshInspection& inspection)
         inspection.one_sided_pieces);
 }
 
-/// Closed components that are inside out, by index.
+/// Closed components that are inside out, by index. Components are numbered by their first
+/// triangles.
 std::vector<std::uint32_t> inside_out(const MeshCheck& check)
 {
     std::vector<std::uint32_t> found;
@@ -95,6 +111,8 @@ std::vector<std::uint32_t> inside_out(const MeshCheck& check)
     return found;
 }
 
+/// A component at an odd depth is a cavity and one at an even depth a body within it. Neither is a
+/// fault, but a file that was not meant to have cavities is told of them here.
 std::vector<std::uint32_t> nested(const MeshCheck& check)
 {
     std::vector<std::uint32_t> found;
@@ -126,6 +144,8 @@ void add_triangles_and_components(Findings& findings, const MeshInspection& insp
                  inner.size(), inner);
 }
 
+/// Both of these are measured in doubles and are hints. They never block, for growth pins what it
+/// has to and the certificate decides.
 void add_looks(Findings& findings, const MeshInspection& inspection)
 {
     findings.add({"blind_vertices", "points from which no direction sees all their triangles",
@@ -143,7 +163,9 @@ void add_float_limits(Findings& findings, const MeshInspection& inspection)
     const auto add = [&](const char* kind, const std::string& text, bool blocks, const char* mend) {
         findings.list.push_back({kind, text, 1, {}, blocks, mend});
     };
-    // Rounding of about one part in 2^25 is what any file suffers.
+    // Rounding to float32 moves a coordinate by about one part in 2^25, which any file suffers.
+    // Only where the loss is seen beside the object itself does the file have more digits than
+    // reading kept, and only then can reading about another origin bring them back.
     const bool reading_lost = floats.largest_rounding > floats.longest_side / (1 << kFewDigits);
     const char* const centre =
         reading_lost ? "--recentre keeps the digits that the file has"
@@ -163,6 +185,7 @@ void add_float_limits(Findings& findings, const MeshInspection& inspection)
         add("coarse_coordinates",
             apart + std::to_string(floats.digits) + " binary digits within the object, of 24",
             false, centre);
+    // No voxel size could be derived from the mesh, so nothing can be said of voxels.
     if (inspection.voxel_size <= 0)
         return;
     if (floats.farthest / inspection.voxel_size > kLargestVoxelIndex)
@@ -178,6 +201,7 @@ void add_float_limits(Findings& findings, const MeshInspection& inspection)
 std::vector<Finding> findings_of(const MeshInspection& inspection)
 {
     Findings findings;
+    // An empty surface has no other faults, and there is nothing that could be measured on it.
     if (inspection.check.triangles == 0) {
         findings.list.push_back({"no_triangles", "the surface has no triangles", 1, {}, true, ""});
         return findings.list;

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a mesh and says what float32 leaves of its coordinates. The spacing of floats grows with
+// their size, so an object far from the origin stands on a coarse lattice however small it is. What
+// counts is the farthest coordinate, where the spacing is largest, against the object's own size:
+// the binary digits that its longest side has are the logarithm of their ratio, about 24 around the
+// origin.
+
 #include "inspect/marks.h"
 
 #include <algorithm>
@@ -19,6 +26,8 @@ FloatLimits float_limits(const TriangleMesh& mesh)
     for (const openvdb::Vec3s& p : mesh.points)
         for (int axis = 0; axis < 3; ++axis)
             farthest = std::max(farthest, std::abs(p[axis]));
+    // The spacing just beyond the farthest coordinate. At a power of two the one below it is half
+    // as large; the larger one is told.
     const float next = std::nextafter(farthest, std::numeric_limits<float>::infinity());
     limits.farthest = farthest;
     limits.spacing = double(next) - double(farthest);
@@ -33,6 +42,7 @@ FloatLimits float_limits(const TriangleMesh& mesh)
         for (int side = 0; side < 3; ++side) {
             const double length =
                 (Vec3d(mesh.points[t[side]]) - Vec3d(mesh.points[t[(side + 1) % 3]])).length();
+            // Edges without length are a defect of their own, and would hide the shortest real one.
             if (length > 0)
                 shortest = std::min(shortest, length);
         }

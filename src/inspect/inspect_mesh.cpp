@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a mesh however bad it is and finds everything that stands in the way of a shell or will
+// show in it. It changes nothing and throws at no bad surface, so every part has to bear any
+// topology: what needs an orientation looks at edges of two triangles only, and loops may be open.
+// Connectivity and contacts are exact, as they are those of check_mesh(); blind vertices and thin
+// triangles are measured in doubles. Marks hold every element in ascending order, the result only
+// counts and first ones, so neither depends on threads.
+
 #include "vdb_shell/inspect/inspect_mesh.h"
 #include "vdb_shell/mesh/normals.h"
 
@@ -19,7 +27,10 @@ namespace
 
 using openvdb::Vec3d;
 
-/// Vertices that even growth's mended directions leave blind.
+/// Vertices that even growth's mended directions leave blind. Growth mends a direction by looking
+/// for the one that sees the worst triangle best; the same is done here, from the normals on. Where
+/// even that one sees a triangle from behind, growth pins the vertex. Points without a triangle
+/// have no direction either, and are no fault.
 std::vector<std::uint32_t> find_blind_vertices(const TriangleMesh& mesh)
 {
     Directions directions = directions_along(mesh, pseudo_normals(mesh));
@@ -35,6 +46,8 @@ std::vector<std::uint32_t> find_blind_vertices(const TriangleMesh& mesh)
     return blind;
 }
 
+/// Of a one-sided piece only the first triangle is marked: which of its triangles disagree depends
+/// on where one begins, and none of them is the wrong one.
 void mark_orientation(DefectMarks& marks, std::size_t triangle_count)
 {
     const Orientation orientation = consistent_orientation(marks.uses, triangle_count);
@@ -49,6 +62,8 @@ void mark_orientation(DefectMarks& marks, std::size_t triangle_count)
     }
 }
 
+/// A walk that is not closed has a point more than edges. Loops are sorted by their first points;
+/// stable, since loops that meet in a point can have the same.
 std::vector<BoundaryLoop> measure_loops(const TriangleMesh& mesh,
                                         const std::vector<Edge>& boundary_edges)
 {
@@ -70,7 +85,9 @@ std::vector<BoundaryLoop> measure_loops(const TriangleMesh& mesh,
     return loops;
 }
 
-/// The flipped triangles, those that share an edge together.
+/// The flipped triangles as patches, by union of those that share an edge. The smaller root always
+/// stays, so the root of a patch is its first triangle, and as flipped triangles ascend it comes
+/// before all others of its patch in the last loop.
 std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t triangle_count)
 {
     std::vector<char> flipped(triangle_count);
@@ -119,6 +136,8 @@ DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size)
     return marks;
 }
 
+/// Inspection needs the options of the level set for the size of a voxel only. The first of them
+/// gets a help that fits.
 OptionList describe(InspectOptions& o)
 {
     OptionList options;
@@ -136,7 +155,8 @@ MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& opti
     if (mesh.triangles.empty())
         return inspection;
     const Bounds bounds = bounds_of(mesh.points);
-    // All points in one place have no voxel size by resolution; the triangles say what is wrong.
+    // When all points are in one place, no voxel size follows from the resolution. The size is then
+    // left at 0, and it is the triangles, all without area, that tell what is wrong.
     if (options.level_set.voxel_size || diagonal_of(bounds) > 0)
         inspection.voxel_size = resolve_voxel_size(mesh, options.level_set);
     const DefectMarks marks = mark_defects(mesh, inspection.voxel_size);

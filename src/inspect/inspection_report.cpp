@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes an inspection and says it for people and as JSON. It computes nothing; the verdict in both
+// comes from the same usable(). The text names the first few of each kind, the JSON lists every
+// loop, patch and component. Numbers are in the classic locale, whatever that of the program is.
+
 #include "vdb_shell/inspect/inspect_mesh.h"
 
 #include "mesh/components_json.h"
@@ -45,6 +50,8 @@ ordered_json patches_json(const MeshInspection& inspection)
     return list;
 }
 
+/// A finding without elements is a statement about the whole mesh, and its count of 1 would say
+/// nothing.
 void put(std::ostream& out, const Finding& finding)
 {
     out << (finding.blocks ? "  in the way  " : "  take note   ");

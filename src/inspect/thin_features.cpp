@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a mesh and finds the triangles behind which the solid is thinner than a voxel: a ray goes
+// inward from the middle of each and leaves the solid through another triangle. The level set
+// hardly tells the two sides apart there. Middles stand for their triangles, so a thin place under
+// the rest of a large triangle can be missed, and all is in doubles: this advises, it proves
+// nothing. A tree over boxes finds the triangles along a ray, so that a ray need not be tried
+// against all.
+
 #include "inspect/marks.h"
 
 #include "core/box_pairs.h"
@@ -13,6 +21,8 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
+/// Triangles are counter-clockwise from outside, so the product in this order points inward. A
+/// triangle without area has no inside, and gets a ray of no direction.
 Ray inward_from(const TriangleMesh& mesh, const Vec3I& t)
 {
     const Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
@@ -21,6 +31,8 @@ Ray inward_from(const TriangleMesh& mesh, const Vec3I& t)
     return {(a + b + c) / 3.0, length > 0 ? cross / length : Vec3d(0.0)};
 }
 
+/// Along a sharp edge the other side is always near, however fine the voxels are. So triangles with
+/// a common corner do not count.
 bool share_a_corner(const Vec3I& a, const Vec3I& b)
 {
     for (int i = 0; i < 3; ++i)
@@ -37,6 +49,8 @@ std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double 
     BoxTree tree;
     tree.build(triangle_boxes(mesh.points, mesh.triangles));
     std::vector<char> thin(mesh.triangles.size());
+    // Each index writes its own slot and the answers are collected in order, so threads do not
+    // matter.
     for_each_index(thin.size(), [&](std::size_t t) {
         const Ray ray = inward_from(mesh, mesh.triangles[t]);
         if (ray.along.lengthSqr() == 0)

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a surface whose other faults are mended and removes the triangles that touch or cross
+// others, so that the holes which this leaves can be filled without a crossing. Contacts are
+// decided exactly on the float32 points. Unlike the other steps this one changes the shape, so it
+// is done on request only, and every triangle of the input that goes is counted. The trap is that a
+// fill may cross something in its turn: therefore the cut grows from round to round, and the caller
+// bounds the number of rounds.
+
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
@@ -16,10 +24,13 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// An open piece with less of the area than this is a rag that the cut left.
+// A share of the area of the whole surface. An open piece with less than that is taken for
+// something that the cut severed; closing it would leave a small body of its own beside the object.
 constexpr double kRag = 0.01;
 
-/// Marks all triangles with a corner in common with a marked one.
+/// Marks all triangles with a corner in common with a marked one. The points are marked first and
+/// the triangles afterwards: in a single pass a new mark could spread on to later triangles, and
+/// the width of the ring would depend on the order of the triangles.
 void add_ring(const TriangleMesh& mesh, std::vector<char>& marked)
 {
     std::vector<char> points(mesh.points.size());
@@ -31,6 +42,7 @@ void add_ring(const TriangleMesh& mesh, std::vector<char>& marked)
             marked[t] |= points[mesh.triangles[t][k]];
 }
 
+/// The uses come sorted by edge, so those of one edge stand together; a single one is a rim.
 void mark_rims(const TriangleMesh& mesh, std::vector<char>& marked)
 {
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
@@ -42,6 +54,8 @@ void mark_rims(const TriangleMesh& mesh, std::vector<char>& marked)
     }
 }
 
+/// Fills and other triangles that a step has made have no number in the input, so they are not
+/// reported.
 void note(const WorkingSurface& surface, const std::vector<char>& drop, RepairReport& report)
 {
     for (std::size_t t = 0; t < drop.size(); ++t)
@@ -49,7 +63,8 @@ void note(const WorkingSurface& surface, const std::vector<char>& drop, RepairRe
             add_to(report.cut, surface.source[t]);
 }
 
-/// The triangles of small open pieces.
+/// The triangles of small open pieces. A closed piece stays however small it is, since it bounds a
+/// solid. Areas are only compared with each other, so the factor of one half is left out.
 std::vector<char> find_rags(const TriangleMesh& mesh)
 {
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
@@ -82,7 +97,9 @@ std::vector<char> find_rags(const TriangleMesh& mesh)
 
 } // namespace
 
-/// Triangles that cross or touch another one.
+/// Triangles that cross or touch another one. The exact test is defined for triangles with an area
+/// only, so one without area is marked together with everything that its box meets. Pairs are
+/// tested by several threads but marked afterwards by one, in sorted order.
 std::vector<char> crossing_triangles(const TriangleMesh& mesh)
 {
     const auto flat = [&](const Vec3I& t) {
@@ -101,11 +118,14 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh)
 bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report)
 {
     std::vector<char> drop = crossing_triangles(surface.mesh);
-    // A hole that the last cut left and no fill could close needs room as well.
+    // A rim that the last round has left belongs to a hole for which no fill was found. It needs
+    // more room as well.
     if (round > 0)
         mark_rims(surface.mesh, drop);
     if (std::find(drop.begin(), drop.end(), char(1)) == drop.end())
         return false;
+    // No ring in the first two rounds, one in the third, two in the fourth and so on: a wider cut
+    // leaves a fill more room, but also less of the shape.
     for (int ring = 0; ring + 1 < round; ++ring)
         add_ring(surface.mesh, drop);
     note(surface, drop, report);

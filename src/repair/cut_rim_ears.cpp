@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a rim that is too long for the optimal triangulation, whose time grows with the cube of its
+// length, and closes it without new points by ear cutting: the corner with the smallest angle whose
+// triangle holds no other corner is cut off, again and again. A simple polygon in a plane always
+// has such a corner (Meisters 1975, "Polygons have ears"); here the rim is seen along its mean
+// normal, and a folded rim need not be simple from there. All tests are in doubles and prove
+// nothing: the caller rounds the fill to float32, tests it exactly against the surface and discards
+// it if it crosses.
+
 #include "repair/fill_patch.h"
 
 #include <algorithm>
@@ -24,6 +33,9 @@ public:
             next_.push_back((i + 1) % n);
             before_.push_back((i + n - 1) % n);
             angle_.push_back(0);
+            // The sum of these products is twice the area vector of the rim, whatever point they
+            // are taken from. A point of the rim is taken so that nothing cancels far from the
+            // origin.
             normal_ +=
                 (rim.points[i] - rim.points[0]).cross(rim.points[(i + 1) % n] - rim.points[0]);
         }
@@ -40,6 +52,8 @@ public:
                 return false;
             const std::uint32_t i = ear->second, a = before_[i], b = next_[i];
             triangles.emplace_back(a, i, b);
+            // Of all corners only the two beside the ear get another angle. They have to leave the
+            // set under the old angle, which is a part of the key.
             ears_.erase(ear);
             reflex_.erase(i);
             ears_.erase({angle_[a], a});
@@ -49,20 +63,27 @@ public:
             enter(a);
             enter(b);
         }
+        // The last three corners need no test: their edges are rim edges, or were tested when an
+        // ear made them.
         const std::uint32_t last = ears_.begin()->second;
         triangles.emplace_back(before_[last], last, next_[last]);
         return true;
     }
 
 private:
+    // Angle and corner: corners of equal angle follow each other by index, so the order is always
+    // the same.
     using Ear = std::pair<double, std::uint32_t>;
 
+    /// An edge that the surface has already between the two corners would get a third triangle by
+    /// the cut.
     bool is_new_edge(const Ear& e) const
     {
         return rim_.edges.count(std::minmax(before_[e.second], next_[e.second])) == 0;
     }
 
-    /// Of a polygon in a plane there is always an empty one; of a folded rim any has to do.
+    /// The sharpest corner whose triangle is empty. Of a polygon in a plane there always is one; of
+    /// a folded rim, seen along one normal, there may be none, and then any corner has to do.
     std::set<Ear>::iterator find_ear() const
     {
         const auto empty = std::find_if(ears_.begin(), ears_.end(), [&](const Ear& e) {
@@ -74,8 +95,9 @@ private:
                             [&](const Ear& e) { return is_new_edge(e); });
     }
 
-    /// Whether no other corner lies in the triangle, seen along the normal: none could but those
-    /// that point inwards.
+    /// Whether no other corner lies in the triangle, seen along the normal. Only reflex corners are
+    /// looked at: where a polygon enters the triangle of a convex corner, one of its corners in
+    /// there is reflex.
     bool is_empty(std::uint32_t i) const
     {
         const std::uint32_t a = before_[i], b = next_[i];
@@ -90,7 +112,9 @@ private:
         });
     }
 
-    /// The angle inside, from 0 to a whole turn.
+    /// Computes the angle inside, from 0 to a whole turn; it is under a half turn where the rim
+    /// turns left as seen against the normal. A corner that is straight or folded back on itself
+    /// counts as a half turn, since its triangle has no area.
     void enter(std::uint32_t i)
     {
         const Vec3d ahead = rim_.points[next_[i]] - rim_.points[i];

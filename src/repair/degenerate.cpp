@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes triangles without area, or lower than the user's sliver height, and removes them without
+// opening the surface. The corner of a flat triangle that is between the other two lies on its
+// longest side, so the neighbour there can be cut in two at that point and covers what both covered
+// before; a needle with a short side is collapsed instead. Only where there is no single neighbour
+// to cut is a triangle just dropped; the later steps close what that opens. Flat is decided exactly
+// on the float32 points, heights in doubles. The trap is that a half may be flat or too low in its
+// turn, so the work is bounded and what is left then is found by the check of the result. Triangles
+// go by ascending index, so the result is determined.
+
 #include "repair/working_surface.h"
 
 #include "core/exact.h"
@@ -17,7 +27,7 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-/// Side k of a triangle runs from corner k to the next; the longest one, the first of equal ones.
+/// The longest side of a triangle, the first of equal ones. Side k runs from corner k to the next.
 int longest_side(const TriangleMesh& mesh, const Vec3I& t)
 {
     int best = 0;
@@ -33,6 +43,7 @@ int longest_side(const TriangleMesh& mesh, const Vec3I& t)
     return best;
 }
 
+/// All three sides give the same area with their heights, so the longest has the smallest one.
 double smallest_height(const TriangleMesh& mesh, const Vec3I& t)
 {
     const int k = longest_side(mesh, t);
@@ -67,6 +78,8 @@ bool find_short_side(const TriangleMesh& mesh, const Vec3I& t, double length, Ed
         const double side = (Vec3d(mesh.points[a]) - Vec3d(mesh.points[b])).length();
         if (side < shortest) {
             shortest = side;
+            // Smaller point first: it is the one that a collapse keeps, whichever way the side
+            // runs.
             ends = {std::min(a, b), std::max(a, b)};
             found = true;
         }
@@ -74,9 +87,10 @@ bool find_short_side(const TriangleMesh& mesh, const Vec3I& t, double length, Ed
     return found;
 }
 
-/// Removes bad triangles one by one, the first first. What is dropped stays in the list, marked,
-/// until the end, and a removal looks only at the triangles around its points: a mesh may have as
-/// many of them as it has triangles.
+/// Removes bad triangles one by one in the order of their indices. A triangle that goes is only
+/// marked, and leaves the list at the end; a removal looks only at the triangles around its own
+/// points. A pass over the whole mesh for each removal would be quadratic, since a mesh may have as
+/// many bad triangles as it has triangles.
 class Remover
 {
 public:
@@ -88,6 +102,7 @@ public:
         for_each_index(bad.size(), [&](std::size_t t) { bad[t] = is_bad(mesh_.triangles[t]); });
         for (std::uint32_t t = 0; t < bad.size(); ++t) {
             if (bad[t])
+                // Indices ascend here, so each insertion at the end takes constant time.
                 bad_.insert(bad_.end(), t);
             const Vec3I& corner = mesh_.triangles[t];
             for (int k = 0; k < 3; ++k)
@@ -98,8 +113,8 @@ public:
 
     void run()
     {
-        // Each removal may make its neighbour flat in turn; the bound ends rows of them that would
-        // cut each other for ever.
+        // A removal may make the neighbour bad in turn. Rows of slivers could so cut each other for
+        // ever, which this bound ends.
         const std::size_t most = 4 * dropped_.size();
         for (std::size_t removed = 0; removed < most && !bad_.empty(); ++removed)
             remove(*bad_.begin());
@@ -137,7 +152,8 @@ private:
             bad_.erase(t);
     }
 
-    /// look(triangle) for each that has the point as a corner; lists keep those that had it once.
+    /// Calls look(triangle) for each triangle that has the point as a corner. The lists only grow,
+    /// so they also hold triangles that had the point once; these are passed over.
     template <typename Look> void for_each_around(std::uint32_t point, const Look& look) const
     {
         for (const std::uint32_t t : around_[point]) {
@@ -147,7 +163,8 @@ private:
         }
     }
 
-    /// The single other triangle at side k of triangle t.
+    /// The single other triangle at side k of triangle t. Of several none is given: to cut one of
+    /// them and not the others would leave those with an edge that runs past the new corner.
     bool find_neighbour(std::uint32_t t, int k, Use& found) const
     {
         const std::uint32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3];
@@ -165,8 +182,10 @@ private:
         return count == 1;
     }
 
-    /// A cap: its corner over the longest side cuts the neighbour there in two; one half takes the
-    /// triangle's place in the list.
+    /// For a cap: its corner over the longest side cuts the neighbour there in two, and the second
+    /// half takes the triangle's place in the list. The halves turn as the neighbour does and take
+    /// over the two short sides of the cap, so no edge is opened. Where the neighbour has that very
+    /// corner itself, each half has a corner twice, and change() drops both.
     void cut_neighbour(std::uint32_t t, int side, const Use& neighbour)
     {
         const std::uint32_t middle = mesh_.triangles[t][(side + 2) % 3];
@@ -177,7 +196,8 @@ private:
         change(t, second);
     }
 
-    /// A needle: the two ends of its shortest side become one point, the one of smaller index.
+    /// For a needle: the two ends of its shortest side become one point, the one of smaller index.
+    /// The list of triangles is copied first, as change() adds to the lists.
     void collapse(std::uint32_t from, std::uint32_t to)
     {
         std::vector<std::uint32_t> moved;
@@ -190,8 +210,10 @@ private:
         }
     }
 
-    /// Whether the two points have no common neighbours but the two across their edge: else a
-    /// collapse would fold the surface onto itself.
+    /// Whether the two points have no common neighbours but those across their edge; otherwise a
+    /// collapse would fold the surface onto itself. This is the link condition of Dey and others
+    /// 1999, "Topology preserving edge contraction". The triangles at the edge are counted and not
+    /// taken to be two, so that it means the same at a rim.
     bool may_collapse(const Edge& ends) const
     {
         std::map<std::uint32_t, int> seen; // bit 0: neighbour of the first end, bit 1: of the other
@@ -218,6 +240,9 @@ private:
         if (surface_.source[t] != kNoSource)
             add_to(flat ? report_.degenerate : report_.slivers, surface_.source[t]);
         Edge ends{};
+        // The limit of twice the sliver height bounds how far a collapse moves a point. A triangle
+        // that is exactly flat is never collapsed, because the cut of its neighbour moves no point
+        // at all.
         if (!flat && find_short_side(mesh_, corners, 2 * sliver_height_, ends) &&
             may_collapse(ends))
             return collapse(ends[1], ends[0]);

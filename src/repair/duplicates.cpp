@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes triangles of which some have the same three points, whichever way they run, and leaves at
+// most one of each. Whether one stays is a question of parity: an edge of a closed surface has an
+// even number of triangles, so a repeat is kept if most of its edges need it for that, and a
+// partition that two closed bodies have in common goes altogether. All edges are counted before
+// anything goes, so the result does not depend on the order in which the groups are taken. The trap
+// is that a neighbour which is repeated itself counts each time, so that a region which is there
+// twice can go altogether.
+
 #include "repair/working_surface.h"
 
 #include "mesh/surface_defects.h"
@@ -39,8 +48,8 @@ void drop_duplicates(WorkingSurface& surface, RepairReport& report)
     for (const auto& [c, group] : groups) {
         if (group.size() == 1)
             continue;
-        // One is kept if it has a neighbour to close up with across most of its edges; a wall
-        // between two closed parts goes altogether.
+        // The other triangles at an edge are an odd number where one of this group is needed to
+        // close it. With three edges there is always a majority.
         int wanted = 0;
         for (const Edge& edge : {Edge{c[0], c[1]}, Edge{c[1], c[2]}, Edge{c[0], c[2]}})
             wanted += (uses.at(edge) - group.size()) % 2 == 1 ? 1 : -1;

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a refined patch and moves its new points; the rim stays. The Laplacian at a point is the
+// mean of its neighbours, weighted by the inverse of their distance, minus the point: the
+// scale-dependent umbrella of Desbrun, Meyer, Schroeder and Barr 1999, "Implicit fairing of
+// irregular meshes using diffusion and curvature flow". With Laplacians at the new points only,
+// their sum of squares can be made zero and the patch is a membrane; with those at the rim too,
+// which see the surface outside, the patch goes on with its slope. Weights are those of the places
+// before, so the problem is linear and the three axes are apart. Nothing rests on how exactly it is
+// solved: the fill is tested afterwards.
+
 #include "repair/fill_patch.h"
 
 #include <algorithm>
@@ -13,13 +23,15 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-/// One Laplacian: its new points with their coefficients, and the rest of it.
+/// One Laplacian as a linear function of the new points: their coefficients, and the constant part
+/// that comes from points which stay.
 struct Row {
     std::vector<std::pair<std::size_t, double>> terms;
     Vec3d constant{0.0};
 };
 
-/// The Laplacian at a point with neighbours weighted by the inverse of their distance.
+/// The Laplacian at a point. Neighbours come in ascending order, so the sums are always rounded
+/// alike.
 Row laplacian_at(const Patch& patch, const Rim& rim, std::size_t point,
                  const std::set<std::uint32_t>& neighbours)
 {
@@ -29,6 +41,7 @@ Row laplacian_at(const Patch& patch, const Rim& rim, std::size_t point,
     double sum = 0;
     const auto weigh = [&](const Vec3d& other) {
         const double length = (other - patch.points[point]).length();
+        // A neighbour in the same place would have an infinite weight, and gets none.
         const double weight = length > 0 ? 1 / length : 0;
         sum += weight;
         return weight;
@@ -42,6 +55,8 @@ Row laplacian_at(const Patch& patch, const Rim& rim, std::size_t point,
             row.constant += outside * weigh(outside);
     if (!(sum > 0))
         return {};
+    // So far the constant has only the neighbours outside of the patch, by weights that do not yet
+    // sum to 1; the shares below do.
     row.constant /= sum;
     std::size_t next = 0;
     for (const std::uint32_t v : neighbours) {
@@ -79,9 +94,13 @@ double dot(const std::vector<double>& a, const std::vector<double>& b)
     return sum;
 }
 
-/// Least squares of A x + constant along one axis by conjugate gradients, from x on.
+/// Least squares of A x + constant along one axis by conjugate gradients on the normal equations,
+/// from x on (Hestenes and Stiefel 1952, "Methods of conjugate gradients for solving linear
+/// systems"). The matrix is never formed: a row has as many terms as a point has neighbours.
+/// Serial, so that sums keep their order.
 void minimise(const std::vector<Row>& rows, int axis, std::vector<double>& x)
 {
+    // The length of the residual, relative to what it was at the start, at which this ends.
     constexpr double kGain = 1e-9;
     const std::size_t n = x.size();
     std::vector<double> residual(n), direction, image(n);
@@ -94,9 +113,11 @@ void minimise(const std::vector<Row>& rows, int axis, std::vector<double>& x)
     direction = residual;
     double squared = dot(residual, residual);
     const double enough = kGain * kGain * squared;
+    // Without rounding n steps would be enough; a few times as many bound the work with it.
     for (std::size_t step = 0; step < 4 * n && squared > enough && squared > 0; ++step) {
         apply(rows, direction, image);
         const double curvature = dot(direction, image);
+        // Along this direction no Laplacian changes, so there is nothing left to gain.
         if (!(curvature > 0))
             return;
         const double length = squared / curvature;

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a surface that is oriented and whose fans are parted, and closes its holes by fills that
+// touch nothing. For each hole the fills are tried from the fairest to the plainest; each is
+// rounded to float32 and tested exactly against the surface, the fills made before, and itself.
+// Holes are filled one after the other in the order of their first sides, since a fill has to keep
+// clear of those before it. Sources: Barequet and Sharir 1995, "Filling gaps in the boundary of a
+// polyhedron"; Liepa 2003, "Filling holes in meshes". The trap is the cost: the tree over the
+// surface is built anew for each hole.
+
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/stage_progress.h"
@@ -26,6 +35,8 @@ BoxTree tree_over(std::vector<FloatBox> boxes)
     return tree;
 }
 
+/// What the fill of a hole has to know of the surface around it. The surface has the earlier fills
+/// in it, so an edge that one of them runs between two points of this rim counts as taken.
 Rim look_around(const TriangleMesh& mesh, const Hole& hole)
 {
     const auto n = static_cast<std::uint32_t>(hole.points.size());
@@ -54,7 +65,8 @@ Rim look_around(const TriangleMesh& mesh, const Hole& hole)
             const auto entry = on_rim.find(v);
             const bool along = entry != on_rim.end() &&
                                (entry->second == (i + 1) % n || (entry->second + 1) % n == i);
-            // Neighbours along the rim are the patch's too.
+            // Neighbours along the rim are neighbours within the patch as well, and would count
+            // twice.
             if (!along)
                 rim.neighbours[i].emplace_back(mesh.points[v]);
             if (!along && entry != on_rim.end() && i < entry->second)
@@ -65,7 +77,8 @@ Rim look_around(const TriangleMesh& mesh, const Hole& hole)
     return rim;
 }
 
-/// Appends a patch to the surface as float32, and takes it off again.
+/// Appends a patch to the surface as float32, and takes it off again. All that is new stands at the
+/// end, so taking it off is a matter of lengths, and the indices of other holes stay valid.
 class Trial
 {
 public:
@@ -89,7 +102,8 @@ public:
     std::size_t new_triangles() const { return surface_.mesh.triangles.size() - triangles_; }
 
     /// Pairs of a new triangle and any other that cross or touch; a new one without area counts as
-    /// such a pair. `rest` holds the old triangles.
+    /// such a pair. `rest` holds the old triangles. Old ones without area are passed over: they are
+    /// no fault of the fill, and the exact test is not defined for them.
     std::size_t count_crossings(const BoxTree& rest) const
     {
         const TriangleMesh& mesh = surface_.mesh;
@@ -114,6 +128,7 @@ public:
             };
             rest.for_each_overlap(box, [&](int other) { meet(std::size_t(other)); });
             fresh.for_each_overlap(box, [&](int other) {
+                // Of two new triangles the later one counts the pair.
                 if (triangles_ + std::size_t(other) < t)
                     meet(triangles_ + std::size_t(other));
             });
@@ -155,7 +170,8 @@ void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, Ho
 {
     const Rim rim = look_around(surface.mesh, hole);
     const BoxTree rest = tree_over(triangle_boxes(surface.mesh.points, surface.mesh.triangles));
-    // A flat rim gets a flat lid, also where the surface around it meets the lid at an edge.
+    // A flat rim gets a flat lid, also where the surface around it meets the lid at an edge. The
+    // smooth fill would go on with the slope of that and bulge.
     std::vector<FillMethod> methods{FillMethod::smooth, FillMethod::membrane, FillMethod::dihedral,
                                     FillMethod::area};
     if (is_planar(rim))
@@ -169,6 +185,7 @@ void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, Ho
             continue;
         Trial trial(surface, hole, patch);
         const std::size_t crossings = trial.count_crossings(rest);
+        // Of fills with equally many crossings the first, which is the fairest, is kept.
         if (!best || crossings < fill.crossings) {
             best = method;
             fill.crossings = crossings;
@@ -209,7 +226,9 @@ HoleFill measured(const TriangleMesh& mesh, const Hole& hole)
     return fill;
 }
 
-/// A piece without an orientation gives its rims no direction: points only.
+/// The rims of one-sided pieces, which are reported but never filled: a fill runs through its rim
+/// against the triangles outside, and these have no common direction there. So only points are
+/// known.
 std::vector<Hole> holes_of_one_sided(const TriangleMesh& mesh,
                                      const std::vector<std::uint32_t>& partner,
                                      const std::vector<char>& one_sided)
@@ -229,6 +248,8 @@ std::vector<Hole> holes_of_one_sided(const TriangleMesh& mesh,
     return holes;
 }
 
+/// Patches and their triangulations tell points apart by their places along the rim. A point that
+/// has two places would be two corners in one position, and no fill is tried.
 bool passes_a_point_twice(const Hole& hole)
 {
     std::vector<std::uint32_t> sorted = hole.points;
@@ -252,6 +273,8 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
     for (std::size_t h = 0; h < holes.size(); ++h) {
         progress.stop_if_interrupted(static_cast<int>(100 * h / holes.size()));
         const Hole& hole = holes[h];
+        // Measured before the fill appends to the mesh; a hole that stays open is reported by the
+        // same figures.
         HoleFill fill = measured(mesh, hole);
         if (hole.points.size() >= 3 && !passes_a_point_twice(hole))
             fill_hole(surface, hole, options.keep_crossing_fills, fill);

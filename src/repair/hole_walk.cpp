@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes triangles that may meet by threes and more at edges, and finds out what belongs together:
+// which two sides are one edge, which corners are one fan, and how the rims of holes run from fan
+// to fan. A side gets one partner at most, so surfaces that are parted by these answers are
+// manifolds, whatever was paired. Angles are in doubles for that reason: they only decide which of
+// several sheets go together, and a wrong choice gives another shape, but a manifold as well. A
+// side is 3 * triangle + k, from corner k to the next, and a corner has the number of the side that
+// starts there.
+
 #include "repair/hole_walk.h"
 
 #include "mesh/orientation.h"
@@ -26,8 +35,9 @@ std::uint32_t key_of(const EdgeUse& use)
     return 3 * use.triangle + use.side;
 }
 
-/// Direction of the triangle's third corner around the edge, counter-clockwise about the way from
-/// the smaller to the larger point.
+/// Direction of each triangle's third corner around the edge, in radians, counter-clockwise about
+/// the way from the smaller to the larger point. The first triangle is at 0. The axes x and y are
+/// not of unit length but of equal length, which is all that an angle needs.
 std::vector<double> angles_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t count)
 {
     const Vec3d origin(mesh.points[uses[0].edge[0]]);
@@ -47,8 +57,10 @@ std::vector<double> angles_around(const TriangleMesh& mesh, const EdgeUse* uses,
     return angles;
 }
 
-/// Around an edge of more than two sides: a backward one and the next forward one counter-clockwise
-/// have solid between them.
+/// Pairs the sides around an edge of more than two. The normal of a side that runs forward, from
+/// the smaller to the larger point, shows counter-clockwise around the edge, so its solid lies
+/// clockwise of it; with a backward side it is the other way round. So a backward side and the next
+/// forward one counter-clockwise have solid between them.
 void pair_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t count,
                  std::vector<std::uint32_t>& partner)
 {
@@ -57,7 +69,9 @@ void pair_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t coun
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
-    // Sides that are paired are taken out: wedges inside wedges pair like brackets.
+    // Sides that are paired are taken out, and the search begins anew: wedges within wedges pair
+    // like brackets. What is left at last is open. The sort is stable, so equal angles keep the
+    // order of their triangles.
     for (std::size_t i = 0; order.size() > 1 && i < order.size();) {
         const std::size_t j = (i + 1) % order.size();
         const EdgeUse &here = uses[order[i]], &next = uses[order[j]];
@@ -84,8 +98,8 @@ std::vector<std::uint32_t> pair_sides(const TriangleMesh& mesh)
             ++end;
         if (end - begin > 2)
             pair_around(mesh, &uses[begin], end - begin, partner);
-        // Two that run the same way have one side only: they are paired all the same, for there is
-        // no hole between them.
+        // Two sides that run the same way are left only in a piece that has no orientation. They
+        // are paired all the same, because there is no hole between them.
         if (end - begin == 2) {
             partner[key_of(uses[begin])] = key_of(uses[begin + 1]);
             partner[key_of(uses[begin + 1])] = key_of(uses[begin]);
@@ -100,6 +114,8 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
     const auto point_of = [&](std::uint32_t corner) {
         return mesh.triangles[corner / 3][int(corner % 3)];
     };
+    // Union of disjoint sets. The smaller root always stays, so the root of a fan is its first
+    // corner, and fans are numbered by that below whatever the order of the unions.
     std::vector<std::uint32_t> parent(corners);
     std::iota(parent.begin(), parent.end(), 0U);
     const auto root_of = [&](std::uint32_t c) {
@@ -115,6 +131,8 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
         const std::uint32_t other = partner[side];
         if (other == kUnpaired || other < side)
             continue;
+        // In a consistent orientation the partner runs the other way, and its first corner is at
+        // this side's second point. In a one-sided piece it may run the same way.
         const bool opposite = point_of(side) == point_of(next_corner(other));
         join(side, opposite ? next_corner(other) : other);
         join(next_corner(side), opposite ? other : next_corner(other));
@@ -137,8 +155,10 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
 namespace
 {
 
-/// By open fan: the unpaired side that ends at its point, by which the hole leaves it, and the one
-/// that starts there, by which the hole comes. (A hole runs against the triangles.)
+/// An open fan is a strip around its point with two ends: one unpaired side ends at the point,
+/// another one starts there. A hole runs against the triangles, so it leaves the point by the
+/// former and comes to it by the latter. Where a one-sided piece makes both ends alike, one of them
+/// stays unpaired here.
 struct Border {
     std::vector<std::uint32_t> leaves, comes;
     std::vector<std::vector<std::uint32_t>> open_fans; ///< by point
@@ -161,13 +181,16 @@ Border border_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& par
     return border;
 }
 
-/// Angles of the points around `centre` seen against the mean normal of the fans' triangles.
+/// Angles of the points around `centre`, seen against the sum of the normals of the triangles
+/// there. Their sum is weighted by area and not of unit length, so that the angles are distorted;
+/// only their cyclic order is used, and that stays.
 class View
 {
 public:
     View(const TriangleMesh& mesh, const Vec3d& centre, const Vec3d& normal)
         : mesh_(mesh), centre_(centre)
     {
+        // The axis along which the normal is shortest makes the largest angle with it.
         int axis = 0;
         for (int k = 1; k < 3; ++k)
             if (std::abs(normal[k]) < std::abs(normal[axis]))
@@ -189,8 +212,10 @@ private:
     Vec3d centre_, x_, y_;
 };
 
-/// At a point of three or more open fans: each goes on to the one that is next clockwise, seen from
-/// outside. Nothing when that is no one-to-one order.
+/// At a point of three or more open fans a hole that comes to one goes on to the fan that is next
+/// clockwise, seen from outside: the hole is the gap between these two. Nothing is returned when
+/// this is no one-to-one order, as can be around a point whose triangles are folded over each
+/// other; the rims then run through each fan by itself.
 std::vector<std::uint32_t> next_clockwise(const TriangleMesh& mesh, const Border& border,
                                           const std::vector<std::uint32_t>& here, const View& view)
 {
@@ -240,6 +265,7 @@ std::vector<std::uint32_t> link_fans(const TriangleMesh& mesh,
         });
         if (here.size() < 2 || !whole)
             continue;
+        // Two open fans can be linked in one way only, and no angle has to be taken.
         std::vector<std::uint32_t> next{here[1], here[0]};
         if (here.size() > 2)
             next =
@@ -261,6 +287,8 @@ std::vector<Hole> walk_holes(const TriangleMesh& mesh, const std::vector<std::ui
         if (partner[start] != kUnpaired || seen[start] || skipped[start / 3])
             continue;
         Hole hole;
+        // Links are one to one at each point, so a walk comes back to its start. The mark on each
+        // side also ends walks where sides of one-sided pieces lead into each other.
         for (std::uint32_t side = start; side != kUnpaired && !seen[side];
              side = leaves[next_fan[fans.of_corner[side]]]) {
             seen[side] = 1;

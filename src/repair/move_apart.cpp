@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes copies of points that were parted and stand in one place, which is a contact of the surface
+// with itself (docs/theory.md, "The whole shell"), and moves them a little into their own solid, or
+// where two cavities met, into their own cavity. All groups make an attempt at the same time, then
+// the exact test looks for crossings on the whole surface, and groups that cross go on to the next
+// attempt. A group for which none succeeds is put back. Moves are measured on the places at the
+// start, so the order of groups does not matter. Largest and number of moves are reported.
+
 #include "repair/working_surface.h"
 #include "vdb_shell/mesh/normals.h"
 
@@ -16,13 +24,15 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-/// How far the copies of a point are moved: a share of their shortest edge; the first of them too
-/// or not.
+/// How far the copies of a point are moved, as a share of their shortest edge, and whether the
+/// first copy moves as well.
 struct Attempt {
     double share;
     bool first_too;
 };
-// Small enough not to be seen, large enough for the shell to have room between.
+// The first share is small enough not to be seen and large enough for the shell to have room
+// between. Each share is tried with the first copy in its place before all are moved, for a point
+// that stays keeps its triangles bit for bit.
 constexpr std::array<Attempt, 6> kAttempts{{{1.0 / 16, false},
                                             {1.0 / 16, true},
                                             {1.0 / 64, false},
@@ -46,7 +56,9 @@ double shortest_edge_at(const std::vector<openvdb::Vec3s>& points,
 
 /// Whether a direction from the top of a cone of triangles points out of the solid: by the normal
 /// of the nearest face or edge of the cone, or of its top (Baerentzen and Aanaes 2005, "Signed
-/// distance computation using the angle weighted pseudonormal").
+/// distance computation using the angle weighted pseudonormal"). A cone looks alike at every scale,
+/// so one unit along the direction stands for all: the nearest feature is the one at the smallest
+/// angle, if that is less than a right angle, and else the top.
 bool points_outside(const TriangleMesh& mesh, const VertexTriangles::Range& cone, std::uint32_t top,
                     const Vec3d& top_normal, const Vec3d& direction)
 {
@@ -64,6 +76,8 @@ bool points_outside(const TriangleMesh& mesh, const VertexTriangles::Range& cone
         normal.normalize();
         for (const std::uint32_t end : {p, q})
             edge_normals.try_emplace(end, Vec3d(0.0)).first->second += normal;
+        // The foot of the direction on the plane of the face; it counts if it lies in the sector of
+        // the face.
         const Vec3d flat = d - normal * d.dot(normal);
         const bool within = normal.dot(a.cross(flat)) >= 0 && normal.dot(flat.cross(b)) >= 0;
         if (within && flat.length() > nearest) {
@@ -71,6 +85,8 @@ bool points_outside(const TriangleMesh& mesh, const VertexTriangles::Range& cone
             side = d.dot(normal);
         }
     }
+    // An edge weighs its two faces alike, so the sum of their unit normals is its pseudonormal up
+    // to a factor, and only the sign is used.
     for (const auto& [end, normal] : edge_normals) {
         const Vec3d along = Vec3d(mesh.points[end]) - origin;
         const double cosine = d.dot(along) / along.length();
@@ -99,7 +115,7 @@ struct Mover {
                 continue;
             const double length = kAttempts[attempt].share *
                                   shortest_edge_at(start, surface.mesh.triangles, around, v);
-            // Into its own solid, or, of two cavities that meet, into its own cavity.
+            // Against the outward normal is into its own solid; along it is into its own cavity.
             point =
                 openvdb::Vec3s(Vec3d(start[v]) - outward[v] * (shrinks_void[v] ? -length : length));
         }
@@ -115,7 +131,9 @@ struct Mover {
     }
 };
 
-/// Where the other copies' triangles are, seen from each copy: beyond its surface or in its solid.
+/// Finds out where the other copies' triangles are, seen from each copy: beyond its surface or in
+/// its solid. One triangle stands for all of a copy, as the sheets of two copies do not cross at
+/// the point if the surface is sound there.
 void find_ways(const std::vector<std::uint32_t>& group, Mover& mover)
 {
     const TriangleMesh& mesh = mover.surface.mesh;
@@ -146,6 +164,7 @@ void note_moves(WorkingSurface& surface, const Mover& mover, RepairReport& repor
             report.largest_move = std::max(
                 report.largest_move, (Vec3d(mesh.points[v]) - Vec3d(mover.start[v])).length());
             for (const std::uint32_t t : mover.around.around(v))
+                // A triangle with a moved corner is no longer the input's bit for bit.
                 surface.source[t] = kNoSource;
         }
 }
@@ -162,7 +181,9 @@ void move_copies_apart(WorkingSurface& surface, RepairReport& report)
     for (const std::vector<std::uint32_t>& group : surface.copies)
         find_ways(group, mover);
     std::vector<std::size_t> attempt(surface.copies.size(), 0);
-    // One round more than there are attempts puts back those that no attempt helped.
+    // One round more than there are attempts, so that groups which no attempt helped are put back
+    // within the loop, and their neighbours are tested with them in place. A group that fails in
+    // this last round only takes its next attempt untested; the check of the result would tell.
     for (std::size_t round = 0; round <= kAttempts.size(); ++round) {
         for (std::size_t g = 0; g < attempt.size(); ++g)
             mover.place(surface.copies[g], attempt[g]);

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes triangles that meet anyhow and makes neighbours run through their common edge opposite
+// ways. Two steps: sheets that bound no solid, such as a partition inside a body or a fin on it,
+// are removed, since an edge with three triangles has no pair of neighbours to agree; then in each
+// piece, which is what hangs together by edges of two triangles, as few triangles as possible are
+// turned. Whether a whole piece is inside out is decided after the holes are closed, when it has an
+// inside. Parity is the idea of the first step: a surface that bounds a solid has an even number of
+// triangles at each edge.
+
 #include "mesh/orientation.h"
 #include "mesh/surface_defects.h"
 #include "mesh/triangle_area.h"
@@ -17,7 +26,8 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-/// An edge at which something is wrong, with how often each piece uses it.
+/// An edge that has not just two triangles, with how often each piece uses it. Pieces end at such
+/// edges, so these are all their rims.
 struct BadEdge {
     std::size_t uses = 0;
     std::map<std::uint32_t, std::size_t> by_piece;
@@ -40,7 +50,9 @@ std::vector<BadEdge> bad_edges(const std::vector<EdgeUse>& uses,
     return bad;
 }
 
-/// Whether `piece` hangs on the rest and every fault of its rim goes with it.
+/// Whether `piece` hangs on the rest and every fault of its rim goes with it: each edge of the rim
+/// has an odd number of triangles, and an even one without the piece. An open piece that meets no
+/// other is no sheet but a surface with a hole.
 bool is_sheet(const std::vector<BadEdge>& bad, std::uint32_t piece)
 {
     bool hangs = false;
@@ -59,7 +71,8 @@ bool is_sheet(const std::vector<BadEdge>& bad, std::uint32_t piece)
 
 void drop_sheets(WorkingSurface& surface, RepairReport& report)
 {
-    // What holds more of the surface than this is no sheet that hangs on it.
+    // A share of the area of what is there at the time. A piece with more than that is taken for a
+    // part of the object, not for a sheet on it.
     constexpr double kLargestShare = 0.25;
     for (bool dropped = true; dropped;) {
         dropped = false;
@@ -75,6 +88,9 @@ void drop_sheets(WorkingSurface& surface, RepairReport& report)
         std::iota(smallest_first.begin(), smallest_first.end(), 0U);
         std::stable_sort(smallest_first.begin(), smallest_first.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return area[a] < area[b]; });
+        // One sheet at a time, as its loss may join pieces or mend the rims of others, and the
+        // smallest first, since of two pieces that would each do the smaller loss is the better
+        // one. Each turn removes triangles, so this ends.
         for (const std::uint32_t piece : smallest_first) {
             if (area[piece] > kLargestShare * all || !is_sheet(bad, piece))
                 continue;
@@ -97,6 +113,7 @@ void orient(WorkingSurface& surface, RepairReport& report)
     const Orientation orientation =
         consistent_orientation(sorted_edge_uses(triangles), triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        // A turned triangle keeps its source: its coordinates are the input's.
         if (!orientation.turn[t])
             continue;
         std::swap(triangles[t][1], triangles[t][2]);

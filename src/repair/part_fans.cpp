@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes oriented triangles that may meet by more than two at an edge and by several fans at a
+// point, and leaves a manifold with open rims: each fan has a point of its own and each pair of
+// sides an edge of its own. The copies stand in the same place until move_copies_apart(). Gueziec,
+// Taubin, Lazarus and Horn 2001, "Cutting and stitching: converting sets of polygons to manifold
+// surfaces", cut surfaces along singular edges in a like manner. The trap is fans that only a hole
+// separates: they have to share their point, for the fill of the hole will join them.
+
 #include "mesh/surface_defects.h"
 #include "repair/hole_walk.h"
 #include "repair/working_surface.h"
@@ -13,7 +21,8 @@ namespace
 
 using openvdb::Vec3I;
 
-/// Points that some rim passes twice.
+/// Points that some rim passes twice. No fill is tried on such a rim, so the fans there are parted
+/// even where they could be linked.
 std::vector<char> pinched_points(const std::vector<Hole>& holes, std::size_t point_count)
 {
     std::vector<char> pinched(point_count);
@@ -40,6 +49,9 @@ void copy_points(WorkingSurface& surface, const Fans& fans,
         at_point[fans.point[fan]].push_back(fan);
     std::vector<std::uint32_t> new_point = fans.point;
     for (std::uint32_t v = 0; v < points; ++v) {
+        // The first fan keeps the point, so its triangles stay as they are, and the group begins
+        // with the copy that may stay in its place. Copies are appended in the order of points and
+        // fans.
         std::vector<std::uint32_t> group{v};
         bool kept = false;
         std::uint32_t open_point = kUnpaired;
@@ -71,8 +83,10 @@ void copy_points(WorkingSurface& surface, const Fans& fans,
             mesh.triangles[t][corner] = new_point[fans.of_corner[3 * t + std::size_t(corner)]];
 }
 
-/// An edge that is still in use by several pairs, because both its ends are one fan each: each pair
-/// gets a point of its own in the middle. Returns how many edges there were.
+/// Parts edges that several pairs of sides have in use although all fans have their own points,
+/// because both ends of the edge are one fan each: each pair gets a point of its own in the middle.
+/// Returns how many such edges there were. A middle is computed once for each edge, so its copies
+/// have equal bits.
 std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
                        RepairReport& report)
 {
@@ -98,13 +112,14 @@ std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>
             mesh.points.emplace_back(middle);
             group.push_back(point);
             middle_of[side] = point;
+            // Both sides of a pair get the same middle, so the surface stays closed between them.
             if (partner[side] != kUnpaired)
                 middle_of[partner[side]] = point;
         }
         report.copies += group.size();
         surface.copies.push_back(std::move(group));
     }
-    // Cut the triangles side by side; a part keeps the sides that are not cut yet.
+    // Each triangle with such sides is a polygon of four to six corners now, and is cut into a fan.
     const std::size_t triangles = mesh.triangles.size();
     for (std::size_t t = 0; t < triangles && edges > 0; ++t) {
         std::vector<std::uint32_t> ring;
@@ -115,7 +130,8 @@ std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>
         }
         if (ring.size() == 3)
             continue;
-        // Start at a middle: no triangle of the fan from there is flat.
+        // The fan starts at a middle, and so none of its triangles is flat; from a corner the first
+        // would be, if the next point is the middle of a side that begins there.
         while (ring.front() < mesh.points.size() &&
                std::none_of(middle_of.begin() + std::ptrdiff_t(3 * t),
                             middle_of.begin() + std::ptrdiff_t(3 * t + 3),
@@ -149,6 +165,8 @@ std::size_t count_crowded(const TriangleMesh& mesh)
 
 void part_fans(WorkingSurface& surface, RepairReport& report)
 {
+    // Counted before anything is parted, since most of these edges are parted by their points
+    // already.
     report.split_edges += count_crowded(surface.mesh);
     const std::vector<std::uint32_t> partner = pair_sides(surface.mesh);
     const Fans fans = find_fans(surface.mesh, partner);

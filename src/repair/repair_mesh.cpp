@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes any triangles with finite points and leaves a closed, oriented manifold where it can, and
+// every triangle that needed no change bit for bit. The order is the idea: equal points first,
+// since all that follows goes by indices; then triangles that are faulty by themselves, repeats and
+// sheets, whose edges of three and more triangles keep neighbours apart; then orientation, which
+// fans and rims need; then fans, then holes, whose fills need fans; at last nesting and contacts,
+// which mean something on closed surfaces only. It proves nothing: the result is checked anew, and
+// the check is in the report.
+
 #include "vdb_shell/repair/repair_mesh.h"
 
 #include "core/stage_progress.h"
@@ -35,6 +44,8 @@ void turn_by_nesting(repair::WorkingSurface& surface, RepairReport& report)
 void close_up(repair::WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
               Interrupter* interrupter)
 {
+    // Copies of an earlier round have been moved, or put back because no move helped: they are not
+    // moved again.
     surface.copies.clear();
     repair::drop_sheets(surface, report);
     repair::orient(surface, report);
@@ -42,7 +53,7 @@ void close_up(repair::WorkingSurface& surface, const RepairOptions& options, Rep
     repair::fill_holes(surface, options, report, interrupter);
     turn_by_nesting(surface, report);
     repair::move_copies_apart(surface, report);
-    // What touched before may be told apart now, and nest otherwise.
+    // Components that touched have been moved apart, so their nesting may come out otherwise now.
     turn_by_nesting(surface, report);
 }
 
@@ -53,6 +64,8 @@ void drop_unused_points(TriangleMesh& mesh, RepairReport& report)
     for (const openvdb::Vec3I& t : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner)
             new_index[t[corner]] = 0;
+    // Marks become new indices. A rim whose first point a later cut has removed keeps kNoSource
+    // here, by which the report says that it was cut out.
     std::uint32_t kept = 0;
     for (std::size_t v = 0; v < new_index.size(); ++v) {
         if (new_index[v] == kNoSource)
@@ -118,6 +131,8 @@ RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
     repair::drop_degenerate(surface, options.sliver_height, report);
     repair::drop_duplicates(surface, report);
     close_up(surface, options, report, interrupter);
+    // Each round cuts a triangle at least, but the fills add others that may cross in their turn,
+    // so that only this bound is sure to end the loop.
     constexpr int kMostCuts = 6;
     for (int round = 0; round < kMostCuts && options.cut_crossings; ++round) {
         if (!repair::cut_crossings(surface, round, report))

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes the report of a repair and says it for people and as JSON. It computes nothing. Numbers are
+// written in the classic locale, so that a program in another locale gets no commas in them. Of
+// each kind of change there is the exact count, but only the first indices are kept, and the text
+// says by dots that there are more.
+
 #include "vdb_shell/repair/repair_mesh.h"
 
 #include <nlohmann/json.hpp>

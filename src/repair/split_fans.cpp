@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes any triangles and gives each fan of triangles at a vertex a vertex of its own, so that
+// growth has one fan around each vertex also on a surface that crosses itself (docs/theory.md, "A
+// surface that crosses itself"). Unlike part_fans() it needs no orientation, keeps edges of three
+// and more triangles as they are, and moves nothing: the copies count as a contact in a point. The
+// first fan keeps the vertex, so a sound surface is not changed at all.
+
 #include "vdb_shell/repair/split_fans.h"
 
 #include "mesh/topology.h"
@@ -28,7 +35,8 @@ bool share_an_edge_at(std::uint32_t vertex, const openvdb::Vec3I& first,
 }
 
 /// The triangles of the star fan by fan, each fan and the list of them in ascending order of their
-/// first triangles.
+/// first triangles. Each member of a fan looks through what is left, so the time grows with the
+/// square of the star, which is small.
 std::vector<std::vector<std::uint32_t>> fans_at(const TriangleMesh& mesh, const Range& star,
                                                 std::uint32_t vertex)
 {

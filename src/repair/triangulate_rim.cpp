@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a rim and leaves its best triangulation without new points, by dynamic programming over the
+// stretches from i to k: the best one of a stretch is a triangle (i, m, k) with the best of its two
+// parts (Barequet and Sharir 1995, "Filling gaps in the boundary of a polyhedron"; with the largest
+// dihedral angle before the area, Liepa 2003, "Filling holes in meshes"). Time grows with the cube
+// of the rim, memory with its square. The trap is that by angles this is not strictly the optimum:
+// a part is chosen before the triangle beyond its chord is known. All in doubles, for the fill is
+// tested afterwards.
+
 #include "repair/fill_patch.h"
 
 #include <algorithm>
@@ -19,7 +28,8 @@ struct Weight {
 };
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// The table of best triangulations of the rim from i to k.
+/// The table of best triangulations of the rim from i to k. Short stretches come before long ones,
+/// so that the parts of a stretch are always there.
 class Table
 {
 public:
@@ -38,6 +48,7 @@ public:
 
     void collect(std::vector<Vec3I>& triangles) const
     {
+        // A list in the place of recursion, whose depth can be the length of the rim.
         std::vector<std::pair<std::uint32_t, std::uint32_t>> open{{0, n_ - 1}};
         while (!open.empty()) {
             const auto [i, k] = open.back();
@@ -69,6 +80,8 @@ private:
         return normal(rim_.points[i], rim_.points[middle_[at(i, k)]], rim_.points[k]);
     }
 
+    /// A chord that is an edge of the surface already would get more than two triangles. Stretches
+    /// of one edge are the rim itself, and so is the chord that closes it.
     bool exists_already(std::uint32_t i, std::uint32_t k) const
     {
         return k > i + 1 && !(i == 0 && k == n_ - 1) && rim_.edges.count({i, k}) > 0;
@@ -104,6 +117,7 @@ private:
         const Vec3d cross =
             (rim_.points[m] - rim_.points[i]).cross(rim_.points[k] - rim_.points[i]);
         const double twice = cross.length();
+        // A triangle without area has no normal, and the test of a fill counts it as a crossing.
         if (!(twice > 0))
             return {kNever, kNever};
         Weight weight{std::max(left.bend, right.bend), left.area + right.area + 0.5 * twice};
@@ -112,6 +126,7 @@ private:
         const Vec3d n = cross / twice;
         weight.bend =
             std::max({weight.bend, 1 - n.dot(normal_beyond(i, m)), 1 - n.dot(normal_beyond(m, k))});
+        // The last triangle is at the rim's closing edge and has a triangle outside there as well.
         if (i == 0 && k == n_ - 1)
             weight.bend = std::max(weight.bend, 1 - n.dot(outside_[k]));
         return weight;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes triangles by index and makes points of equal position one, or points within a tolerance:
+// each becomes the first point within it that stands for itself. So no point moves by more than the
+// tolerance, and chains of near points do not run together, as they would if nearness were passed
+// on. Near points are found in a grid of cells as wide as the tolerance, in 27 of them around each
+// point. Points that are no longer used stay in the list, so that indices keep their meaning for
+// the report, until the repair is done.
+
 #include "repair/working_surface.h"
 
 #include "mesh/equal_points.h"
@@ -26,8 +34,8 @@ Cell cell_of(const openvdb::Vec3s& point, double size)
     return cell;
 }
 
-/// For each point the first point within the tolerance that stands for itself: chains of near
-/// points do not add up.
+/// For each point the first point within the tolerance that stands for itself. Only such points are
+/// put into the grid, which is why a point is never compared with one that has become another.
 std::vector<std::uint32_t> first_near_point(const std::vector<openvdb::Vec3s>& points,
                                             double tolerance)
 {
@@ -79,6 +87,8 @@ void weld_points(WorkingSurface& surface, double tolerance, RepairReport& report
         Vec3I& corner = surface.mesh.triangles[t];
         bool moved = false;
         for (int k = 0; k < 3; ++k) {
+            // Welding points of one position changes indices only, and such a triangle is the
+            // input's as before.
             moved |= points[corner[k]] != points[first[corner[k]]];
             corner[k] = first[corner[k]];
         }

@@ -36,13 +36,13 @@ void orient(WorkingSurface& surface, RepairReport& report);
 void part_fans(WorkingSurface& surface, RepairReport& report);
 void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
                 Interrupter* interrupter);
-/// Moves points that were parted out of each other's way.
 /// Triangles that cross or touch another one, or have no area.
 std::vector<char> crossing_triangles(const TriangleMesh& mesh);
 /// Drops crossing triangles, from round 1 on also those at open rims, from round 2 on with growing
 /// rings of neighbours; and the small pieces that this cuts off. False when there is nothing to
 /// cut.
 bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report);
+/// Moves points that were parted out of each other's way.
 void move_copies_apart(WorkingSurface& surface, RepairReport& report);
 
 } // namespace vdb_shell::repair

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes an embedded surface and a bound on the distance, and keeps the bound. The collapses hold it
+// at sampled points only, so the distance is measured on the result, both ways, and where it is too
+// large all is done anew from the input with a stricter bound. The last resort is the input itself,
+// at distance zero. The trap is that the measure is sampled as well: it can be too small by a share
+// of the spacing (surface_distance.cpp).
+
 #include "vdb_shell/resample/decimate.h"
 
 #include "core/stage_progress.h"
@@ -13,9 +20,6 @@
 #include <string>
 #include <utility>
 
-// Takes a bound on the distance and keeps it: the collapses bound it at sampled points only, so the
-// distance is measured on the result, and where it is too large all is done anew, more strictly.
-
 namespace vdb_shell
 {
 namespace
@@ -24,7 +28,10 @@ namespace
 constexpr double kFewestTriangles = 4; // a tetrahedron
 constexpr int kMostAttempts = 12;
 // By what the tolerance of the collapses is multiplied where the measured distance is too large.
+// The last of twelve attempts then has a fiftieth of the tolerance that was wanted.
 constexpr double kStricter = 0.7;
+// Bounds the work for small tolerances: the spacing of samples is never under the diagonal over
+// this.
 constexpr double kSamplesAlongDiagonal = 256.0;
 
 void measure(DecimateReport& report, const TriangleMesh& input, const TriangleMesh& result,
@@ -71,6 +78,7 @@ DecimateResult decimate(const TriangleMesh& mesh, const DecimateOptions& options
     report.before = mesh.triangles.size();
     report.wanted = *options.triangles;
     const bool bounded = options.tolerance.has_value();
+    // Without a tolerance the collapses keep no samples at all, which saves their time and memory.
     double tried = bounded ? tolerance : std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < kMostAttempts; ++attempt, tried *= kStricter) {
         Simplified left = simplify(

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a closed surface and leaves a closed one of some of its vertices, in their places. Each
+// vertex knows the cheapest of its allowed collapses; a round sorts these and does the cheapest of
+// them that do not touch one done before, so that what was found in parallel holds when it is done
+// in sequence. Costs are those of Garland and Heckbert 1997, "Surface simplification using quadric
+// error metrics", on the edge's own ends. The distance is bounded as in Klein, Liebich and Strasser
+// 1996, "Mesh reduction with error control": by points of the input that each triangle keeps for
+// those that it has replaced. The trap is that triangles which are no neighbours are not compared,
+// so the result may cross itself.
+
 #include "resample/edge_collapse.h"
 
 #include "core/parallel.h"
@@ -10,13 +20,6 @@
 #include <cmath>
 #include <limits>
 
-// Takes a closed surface and leaves one of some of its vertices. Each vertex knows the cheapest of
-// its allowed collapses; a round sorts the cheapest of these and does all that do not touch one
-// done before, so that what was looked at in parallel still holds. Costs are those of Garland and
-// Heckbert 1997, "Surface simplification using quadric error metrics", on the edge's own ends.
-// The distance is bounded as Klein, Liebich, Strasser 1996, "Mesh reduction with error control" do:
-// by points of the input that each triangle keeps for those that it has replaced.
-
 namespace vdb_shell
 {
 namespace
@@ -25,12 +28,15 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// A triangle may turn by 40 degrees in one collapse; more is a fold in the making.
+// A triangle may turn by 40 degrees in one collapse, of which this is the cosine; more is the
+// beginning of a fold.
 constexpr double kLeastCosine = 0.766;
-// No collapse may make a triangle narrower than that, longest edge over height, unless one around
-// was narrower before.
+// No collapse may make a triangle narrower than that, as longest edge over height, unless a
+// triangle around the vertex is narrower before: a vertex in a row of needles could never go
+// otherwise.
 constexpr double kWorstAspect = 8.0;
-// Share of the vertices that may go in one round: the rounds stand for an order by error.
+// Share of the vertices that may go in one round. In sequence each collapse would be the cheapest
+// at its time; rounds of a bounded share stand for that order, and can be looked at in parallel.
 constexpr double kShareOfRound = 0.2;
 
 /// Squared distances from planes, weighted by area: x'Ax + 2 b'x + c, relative to an origin.
@@ -91,6 +97,8 @@ public:
         : limits_(limits), points_(mesh.points.size()), triangles_(mesh.triangles),
           quadric_(mesh.points.size()), best_(mesh.points.size()), touched_(mesh.points.size(), 1)
     {
+        // Relative to a point of the surface: the terms of a quadric are squares of coordinates,
+        // which would cancel far from the origin.
         const Vec3d origin = mesh.points.empty() ? Vec3d(0.0) : Vec3d(mesh.points.front());
         for (std::size_t v = 0; v < points_.size(); ++v)
             points_[v] = Vec3d(mesh.points[v]) - origin;
@@ -136,7 +144,11 @@ private:
     bool bounds_distance() const { return std::isfinite(limits_.distance); }
     bool is_fixed(std::size_t v) const { return !limits_.fixed.empty() && limits_.fixed[v]; }
 
-    /// False where nothing is left to collapse.
+    /// Does one round; false where nothing is left to collapse. A vertex is looked at anew only
+    /// where a collapse of the round before changed a triangle of it or of its target. Elsewhere
+    /// its choice is allowed as before, for the tests read nothing beyond those triangles, though a
+    /// cheaper one may have become possible. Each index writes its own slot, and the collapses
+    /// themselves are done in one order, so threads do not matter.
     bool round()
     {
         around_ = triangles_around_vertices(points_.size(), triangles_);
@@ -148,6 +160,7 @@ private:
         });
         std::fill(touched_.begin(), touched_.end(), 0);
         std::size_t done = 0;
+        // On a closed surface each collapse removes two triangles.
         const std::size_t wanted = (triangles_.size() - limits_.fewest_triangles + 1) / 2;
         for (const std::uint32_t v : cheapest()) {
             const std::uint32_t u = best_[v].onto;
@@ -177,7 +190,9 @@ private:
             samples_of_.resize(left);
     }
 
-    /// Vertices in the order of what their collapses cost, as many as a round may take.
+    /// Vertices in the order of what their collapses cost, as many as a round may take. A closed
+    /// surface has about half as many vertices as triangles. Equal costs go by index, so that the
+    /// order is total and the selection is the same for any standard library.
     std::vector<std::uint32_t> cheapest() const
     {
         std::vector<std::uint32_t> order;
@@ -211,12 +226,15 @@ private:
         }
         if (bounds_distance())
             hand_over_samples(v);
+        // The sum of both quadrics goes on counting every plane that the vertex has stood for;
+        // planes of triangles with both ends count more than once, as in the source of the method.
         quadric_[u] += quadric_[v];
         best_[v] = {};
     }
 
-    /// After v has gone: it and the samples of its triangles go to the nearest of those that are
-    /// left around it.
+    /// After v has gone: it and the samples of its triangles go to the nearest of the triangles
+    /// that are left around it, because later collapses test the samples of the triangles around
+    /// their vertex only.
     void hand_over_samples(std::uint32_t v)
     {
         std::vector<std::uint32_t> samples{v};
@@ -280,6 +298,7 @@ private:
             candidates.push_back(
                 {std::max(0.0, error) + limits_.length_weight * quadric_[v].area * length2, u});
         }
+        // Cheapest first, so the dear tests below are made until the first success only.
         std::sort(candidates.begin(), candidates.end(), [](const Collapse& a, const Collapse& b) {
             return a.cost != b.cost ? a.cost < b.cost : a.onto < b.onto;
         });
@@ -312,8 +331,9 @@ private:
         return true;
     }
 
-    /// The link condition (Dey et al. 1999, "Topology preserving edge contraction"): the two ends
-    /// have the edge's two opposite corners as common neighbours, and no other.
+    /// The link condition (Dey and others 1999, "Topology preserving edge contraction"): the two
+    /// ends have the edge's two opposite corners as common neighbours, and no other. A tetrahedron
+    /// satisfies it too and would collapse to nothing, which the degrees exclude.
     bool keeps_manifold(const std::vector<std::uint32_t>& ring, std::uint32_t u) const
     {
         int common = 0, degree = 0;
@@ -326,7 +346,8 @@ private:
     }
 
     /// Whether v and all samples of the triangles around it are near enough to one of the triangles
-    /// that the collapse would leave.
+    /// that the collapse would leave. Samples are those of the input, not of the surface in
+    /// between, so errors of collapses do not add up.
     bool keeps_distance(std::uint32_t v, std::uint32_t u, Fan& fan) const
     {
         if (!bounds_distance())

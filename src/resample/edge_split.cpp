@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a surface and marks on its edges, halves these edges and cuts the triangles around them.
+// The result conforms without any search, because a mark belongs to the edge and both triangles see
+// the same middle. A middle is computed once, in doubles, and rounded to float32; so the shape
+// moves by that rounding, and tiny triangles may become flat or touch others, which callers have to
+// test. Triangles with one, two or three marks give two, three or four pieces.
+
 #include "resample/edge_split.h"
 
 #include "mesh/topology.h"
@@ -21,7 +28,8 @@ struct MarkedTriangle {
     std::array<std::uint32_t, 3> corner, middle;
 };
 
-/// The same triangle with side `first` as side 0.
+/// The same triangle with side `first` as side 0. It is turned and not mirrored, so its pieces are
+/// oriented as it was.
 MarkedTriangle turned(const MarkedTriangle& t, std::size_t first)
 {
     MarkedTriangle out{};
@@ -32,6 +40,8 @@ MarkedTriangle turned(const MarkedTriangle& t, std::size_t first)
     return out;
 }
 
+/// Cuts at the middle of side 0 first. With two marks this decides the diagonal of the
+/// quadrilateral that is left, which the marks alone would leave open.
 template <typename Add> void cut(const MarkedTriangle& t, const Add& add)
 {
     const auto [a, b, c] = t.corner;
@@ -64,6 +74,7 @@ EdgeList edges_of(const std::vector<Vec3I>& triangles)
 {
     EdgeList list;
     list.triangles.resize(triangles.size());
+    // Uses of one edge stand together, so each edge is entered once, and edges ascend.
     for (const EdgeUse& use : sorted_edge_uses(triangles)) {
         if (list.ends.empty() || list.ends.back() != use.edge)
             list.ends.push_back(use.edge);

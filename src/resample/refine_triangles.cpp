@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes an embedded surface and the triangles that are to be cut, most wanted first, and leaves a
+// conforming, embedded surface. The rule is that of Rivara 1984, "Algorithms for refining
+// triangular grids suitable for adaptive and mixed finite element techniques": no triangle is cut
+// before its longest edge is, so angles stay bounded from below however many rounds there are. The
+// middles are rounded to float32, by which triangles can become flat or touch; exact tests find
+// these, and the edges in question are barred and all is chosen anew. Serial but for the exact
+// tests, and by index, so the result is determined.
+
 #include "vdb_shell/resample/refine_triangles.h"
 
 #include "core/stage_progress.h"
@@ -15,7 +24,8 @@ namespace
 
 using openvdb::Vec3d;
 
-/// What does not change while edges are chosen.
+/// What does not change while edges are chosen. Edges of equal length are ordered by their index,
+/// so that each pair of neighbours agrees which edge is longer.
 struct Plan {
     const TriangleMesh& mesh;
     EdgeList edges;
@@ -61,7 +71,8 @@ struct Choice {
 };
 
 /// Marks an edge and, until the rule of the longest edge holds, those that have to go before it;
-/// returns these with it. Nothing is marked when one of them is barred.
+/// returns these with it. Nothing is marked when one of them is barred, since the edge could not be
+/// halved then without breaking the rule. Each edge is marked once at most, so this ends.
 std::vector<std::uint32_t> mark(const Plan& plan, const std::vector<char>& barred,
                                 std::uint32_t edge, std::vector<char>& marked)
 {
@@ -97,7 +108,7 @@ Choice choose(const Plan& plan, const std::vector<std::uint32_t>& wanted,
             if (!choice.marked[edge])
                 for (const std::uint32_t e : mark(plan, barred, edge, choice.marked))
                     newly.push_back(e);
-        // Each halved edge cuts a piece on either side of it in two.
+        // A halved edge of a closed surface cuts a piece on either side of it in two.
         triangles += 2 * newly.size();
         if (triangles > most_triangles) {
             for (const std::uint32_t e : newly)
@@ -112,6 +123,7 @@ Choice choose(const Plan& plan, const std::vector<std::uint32_t>& wanted,
 }
 
 /// Bars the edges whose halving spoiled pieces that were no part of a spoiled triangle before.
+/// Which of the marked edges of a triangle did it is not known, so all of them are barred.
 bool bar_spoiled(const Plan& plan, const EdgeSplit& split, const std::vector<char>& spoiled_before,
                  const std::vector<char>& marked, std::vector<char>& barred)
 {
@@ -139,7 +151,7 @@ RefinedMesh refine_triangles(const TriangleMesh& mesh, const std::vector<std::ui
     std::vector<char> barred(plan.edges.ends.size());
     RefinedMesh out;
     EdgeSplit split;
-    // Every turn bars an edge at least, so this ends.
+    // Every turn but the last bars an edge at least, and edges are finitely many, so this ends.
     for (bool again = true; again;) {
         progress.stop_if_interrupted(50);
         const Choice choice = choose(plan, wanted, most_triangles, barred);

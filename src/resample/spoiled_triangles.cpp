@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a surface and marks the triangles that keep it from being embedded, exactly on its float32
+// points: those without area, and those that touch another one. The test of contacts is not defined
+// for triangles without area, which are therefore found first and left out. Pairs are tested by
+// several threads and marked by one, so the answer does not depend on their number.
+
 #include "resample/spoiled_triangles.h"
 
 #include "core/box_pairs.h"

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a surface and cuts each triangle into four at the middles of its edges, several times over.
+// The shape stays, but for the rounding of the middles to float32 (edge_split.cpp), which on
+// triangles of a few units in the last place can make the surface touch itself: the result has to
+// be checked again.
+
 #include "vdb_shell/resample/subdivide.h"
 
 #include "resample/edge_split.h"
@@ -23,8 +29,10 @@ OptionList describe(SubdivideOptions& o)
 TriangleMesh subdivide(const TriangleMesh& mesh, const SubdivideOptions& options)
 {
     require_in_range(options, "subdivide");
-    // Indices of tets and points are 32 bits wide, and a tet mesh has about three of them each.
+    // A shell has three tets for a triangle, and their indices are 32 bits wide: 3 * 2^30 is under
+    // 2^32.
     constexpr double kMostTriangles = 1U << 30U;
+    // In double, because four to the number of levels overflows any integer for a careless option.
     const double count = static_cast<double>(mesh.triangles.size()) * std::pow(4.0, options.levels);
     if (count >= kMostTriangles)
         throw InvalidOption("subdivide: levels is " + std::to_string(options.levels) + " for " +
