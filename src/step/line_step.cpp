@@ -36,7 +36,7 @@ constexpr double kIntervalVoxels = 1.0 / 1024;
 // A line that is not inside after this many voxels never will be.
 constexpr double kEntryVoxels = 1.5;
 constexpr double kSmallestStepVoxels = 1e-3;
-// A little less than a right angle, whose cosine is still well above 0.
+// A little less than a right angle, whose cosine is well above 0.
 constexpr double kMostRadians = 1.5;
 // On a crease of the field the interpolated slope swings with the position in the cell (between
 // 0.65 and 0.87 on a box's diagonal). Along one cell diagonal every phase has been seen.

@@ -4,7 +4,7 @@
 // distance to the surface less the squared length is concave, so that one nearest point deep inside
 // bounds the slope at all places before it. The proof is in docs/stages/line_stepping.md, "Skipping
 // ahead". Where this proves too little the slope is sampled, so the result is a good guess and not
-// a theorem; step/march.h still tests the steps just before a stop.
+// a theorem; step/march.h looks at the steps just before a stop.
 
 #include "step/skip_ahead.h"
 
