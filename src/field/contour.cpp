@@ -208,8 +208,7 @@ TriangleMesh contour(const openvdb::FloatGrid& field, const ContourOptions& opti
     TriangleMesh mesh = contour_mapped(
         field, [&](const Vec3d& p) { return transform.indexToWorld(p); }, options,
         report ? *report : own, interrupter);
-    // A transform that mirrors turns all triangles inside out. The tests and the simplification
-    // before this look at shapes and contacts, which a mirror does not change.
+    // A transform that mirrors turns all triangles inside out, so they are turned back at the end.
     if (transform.baseMap()->determinant() < 0)
         for (Vec3I& t : mesh.triangles)
             std::swap(t[1], t[2]);

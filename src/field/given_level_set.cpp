@@ -146,8 +146,6 @@ openvdb::FloatGrid::Ptr read_level_set(const std::filesystem::path& path, const 
     try {
         require_whole_vdb(path);
         grid = read_named(path.string(), name);
-        // Our own errors already say what is wrong. All others come from OpenVDB or the file system
-        // and get the name of the file.
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {

@@ -248,8 +248,7 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
     double box = 1;
     for (int axis = 0; axis < 3; ++axis)
         box *= (bounds.high[axis] - bounds.low[axis]) / voxel_size + 2 * band.exterior + 16;
-    // A surface of many folds has more band by its area than its box has voxels, so the box bounds
-    // it.
+    // Where a surface has many folds, its bands overlap, and the box is the better bound.
     const double voxels = std::min(inside + outside, box);
     // The distance, the index of the nearest triangle and the buffer of the renormalisation take 4
     // bytes each. As much again is for masks, the threads' own trees and what the averages leave

@@ -4,7 +4,7 @@
 // marching_tets.h has the argument. Every point is identified by the grid edge it lies on and not
 // by its coordinates, so neighbouring tets share points without any tolerance. Edges are numbered
 // by sorting, so the result does not depend on the order in which the tree is walked. The cost is
-// that of the sorts, n log n in the number of cubes that the surface crosses.
+// linear in the active voxels, besides the sorts.
 
 #include "field/marching_tets.h"
 

@@ -64,7 +64,6 @@ double SignedDistance::at(const Vec3d& point, std::uint32_t triangle) const
     Vec3d normal(0.0);
     switch (nearest.on) {
     case NearestOnTriangle::On::face:
-        // The length of the normal does not matter to the sign.
         normal = (c[1] - c[0]).cross(c[2] - c[0]);
         break;
     case NearestOnTriangle::On::side:

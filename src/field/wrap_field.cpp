@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The field of a wrap, in voxels and negative inside. It is the smaller of two: a distance to the
 // triangles that bound a solid, with the sign of the winding number (A. Jacobson and others, 2013),
-// and the distance to all other triangles less half the thickness of a plate. Where the triangles
-// leave a gap, the fall of the winding number takes the place of the distance, and its zero closes
-// the gap. Values are computed by many threads and written by one, in sorted order, so the bits are
-// the same for any number. Near the surface the values are about distances, no more: only their
-// zero set is used. docs/stages/wrap.md, "What a wrap is", explains the numbers.
+// and the distance to the sheets less half the thickness of a plate. Where the triangles leave a
+// gap, the fall of the winding number takes the place of the distance, and its zero closes the gap.
+// Values are computed by many threads and written by one, in sorted order, so the bits do not
+// depend on the number of threads. Values are only about distances; their zero set is what counts.
+// docs/stages/wrap.md, "What a wrap is", explains the numbers.
 
 #include "field/wrap_field.h"
 
@@ -152,8 +152,7 @@ template <typename Visit> void for_each_neighbour(const Coord& voxel, const Visi
 
 void sort_and_unite(std::vector<Coord>& voxels)
 {
-    // Sorted, the voxels of a leaf stand close together, and the order does not depend on how they
-    // were found.
+    // Sorted, the order does not depend on how the voxels were found.
     std::sort(voxels.begin(), voxels.end());
     voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
 }
@@ -251,7 +250,6 @@ openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber
             for (std::size_t i = begin; i < end; ++i)
                 computed[i] = at.at(fresh[i]);
         });
-        // A tree has one writer at a time.
         for (std::size_t i = 0; i < fresh.size(); ++i)
             values.setValue(fresh[i], computed[i]);
         fresh = beyond_sign_changes(fresh, *field);

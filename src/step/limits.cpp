@@ -3,8 +3,7 @@
 // stepping did: K. Erleben and H. Dohlmann, "The Thin Shell Tetrahedral Mesh", 2004, with one
 // length for all, and K. Erleben, H. Dohlmann and J. Sporring, "The Adaptive Thin Shell Tetrahedral
 // Mesh", 2005, with one length for each vertex. The limits say nothing of parts of the surface that
-// face each other, nor of pillars of different lengths, so a shell within all limits can
-// overlap.
+// face each other, nor of pillars of different lengths, so a shell within all limits can overlap.
 
 #include "vdb_shell/step/limits.h"
 

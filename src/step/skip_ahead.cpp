@@ -106,8 +106,6 @@ bool SkipAhead::chain_holds(const Line& line, double low, double high, double sl
 template <typename Holds>
 double SkipAhead::search(const Line& line, double from, const Holds& holds) const
 {
-    // The first stride is as long as the line already is, so while strides double the number of
-    // looks grows with the logarithm of the length only.
     const double voxel = field_.voxel(), end = std::min(line.max_length, deepest_);
     double known = from, fails = end, stride = std::max(from, kFirstStrideVoxels * voxel);
     Probe at_known{}, at_fails{}, at_next{};
