@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sets of nested surfaces, for OpenVDB's mesh-to-volume, which takes everything inside the
+// outermost surface for solid. The surfaces are split by their nesting depth, each depth becomes a
+// level set of its own, and these are put together: odd depths are taken out as cavities, even ones
+// added. For surfaces that do not touch, the maximum and the minimum of distances used for this are
+// the exact distances to all surfaces together, because every segment from one side of a surface to
+// the other crosses it.
+
 #include "field/cavities.h"
 
 #include "mesh/components.h"
@@ -18,6 +25,9 @@ namespace
 template <typename Combine>
 void combine_into(openvdb::FloatGrid& out, const openvdb::FloatGrid& other, const Combine& combine)
 {
+    // After this every voxel that is active in one of the two grids exists in `out`. Voxels that
+    // neither has active are not visited, so the caller has to make the bands meet wherever a sign
+    // must change.
     out.tree().topologyUnion(other.tree());
     const float background = out.background();
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(out.tree());
@@ -25,6 +35,8 @@ void combine_into(openvdb::FloatGrid& out, const openvdb::FloatGrid& other, cons
         const auto values = other.getConstAccessor();
         for (auto value = leaf.beginValueOn(); value; ++value) {
             const float combined = combine(*value, values.getValue(value.getCoord()));
+            // Each leaf reads the other grid and writes its own voxels only, so the order of the
+            // leaves and the number of threads do not matter.
             value.setValue(std::min(combined, background));
             if (combined >= background)
                 value.setValueOff();
@@ -45,6 +57,8 @@ std::vector<TriangleMesh> split_by_nesting(const TriangleMesh& mesh)
     const std::vector<Component> components = describe_components(mesh, uses, component_of, {});
     std::vector<TriangleMesh> parts;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        // Components of one depth do not enclose each other, so they can share a level set. The
+        // points are the same for all parts; those that a part does not use do no harm.
         const auto depth = static_cast<std::size_t>(components[component_of[t]].nesting_depth);
         if (parts.size() <= depth)
             parts.resize(depth + 1, {mesh.points, {}});

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// The zero surface of a field, as triangles that pass the exact tests of check_mesh. OpenVDB's
+// volume to mesh is tried first, since it makes fewer triangles. Where it is not manifold or not
+// embedded the surface is made anew by marching_tets, which is both by construction. What comes out
+// is closed, oriented outward and simplified within the given adaptivity. The trap is float32: far
+// from the origin the points of small voxels round onto each other, and then no method helps, so
+// this is an error of its own. docs/stages/wrap.md, "Why it always ends in an accepted surface",
+// has the argument.
+
 #include "vdb_shell/field/contour.h"
 
 #include "core/stage_progress.h"
@@ -34,7 +42,8 @@ double squared(const Vec3s& a, const Vec3s& b)
     return (Vec3d(a) - Vec3d(b)).lengthSqr();
 }
 
-/// Quads cut along their shorter diagonal; OpenVDB's polygons run clockwise.
+/// Quads are cut along their shorter diagonal, which avoids slivers. OpenVDB's polygons run
+/// clockwise seen from outside, ours counter-clockwise, so the corners are taken in reverse.
 void add_polygons(const std::vector<Vec3I>& triangles, const std::vector<openvdb::Vec4I>& quads,
                   TriangleMesh& mesh)
 {
@@ -54,6 +63,8 @@ void add_polygons(const std::vector<Vec3I>& triangles, const std::vector<openvdb
 
 TriangleMesh by_volume_to_mesh(const openvdb::FloatGrid& field, const PointMap& to_world)
 {
+    // Points come out in index space and are mapped here, since the map to the world may be one
+    // that no transform of OpenVDB can hold (voxels under 1.5e-5). The copy shares the tree.
     const auto in_index_space =
         field.copyGridReplacingTransform(openvdb::math::Transform::createLinearTransform(1.0));
     TriangleMesh mesh;
@@ -77,6 +88,8 @@ TriangleMesh by_marching_tets(const openvdb::FloatGrid& field, const PointMap& t
     return mesh;
 }
 
+/// Everything that a closed, manifold and embedded surface must not have. The orientation of whole
+/// components is not among it, since it follows from the signs of the field.
 std::size_t defects_of(const MeshCheck& check)
 {
     return check.boundary_edges.count + check.non_manifold_edges.count +
@@ -103,7 +116,8 @@ std::size_t defects_of(const MeshCheck& check)
                         "voxels");
 }
 
-/// Components that are enclosed by none, in place; unused points are left out.
+/// Keeps the components that no other encloses, in place; points that are then unused are left out.
+/// The numbers of components are those of `check`, since both number them by their first triangle.
 void keep_outermost(TriangleMesh& mesh, const MeshCheck& check, ContourReport& report)
 {
     const std::vector<std::uint32_t> component =
@@ -116,6 +130,7 @@ void keep_outermost(TriangleMesh& mesh, const MeshCheck& check, ContourReport& r
             for (int k = 0; k < 3; ++k)
                 place[mesh.triangles[t][k]] = 1;
         }
+    // Points move to lower places only, so they can be moved within the array, in ascending order.
     std::uint32_t used = 0;
     for (std::size_t v = 0; v < place.size(); ++v)
         if (place[v]) {
@@ -156,6 +171,8 @@ TriangleMesh contour_mapped(const openvdb::FloatGrid& field, const PointMap& to_
                             Interrupter* interrupter)
 {
     require_in_range(options, "contour");
+    // The diagonal of a voxel over sqrt(3): the edge of a voxel that is a cube, however the map
+    // turns it, and some mean where it is none. Only tolerances are measured in it.
     const double voxel = (to_world(Vec3d(1, 1, 1)) - to_world(Vec3d(0.0))).length() / std::sqrt(3);
     TriangleMesh mesh = by_volume_to_mesh(field, to_world);
     if (mesh.triangles.empty())
@@ -166,6 +183,8 @@ TriangleMesh contour_mapped(const openvdb::FloatGrid& field, const PointMap& to_
         report.method = ContourMethod::marching_tets;
         mesh = by_marching_tets(field, to_world);
         check = check_mesh(mesh);
+        // The surface of tetrahedra can fail for two reasons only, an open end of the active voxels
+        // or the rounding of its points to float32, and fail_for tells which.
         if (defects_of(check) > 0)
             fail_for(check, mesh, voxel);
     }
@@ -189,6 +208,7 @@ TriangleMesh contour(const openvdb::FloatGrid& field, const ContourOptions& opti
     TriangleMesh mesh = contour_mapped(
         field, [&](const Vec3d& p) { return transform.indexToWorld(p); }, options,
         report ? *report : own, interrupter);
+    // A transform that mirrors turns all triangles inside out, so they are turned back at the end.
     if (transform.baseMap()->determinant() < 0)
         for (Vec3I& t : mesh.triangles)
             std::swap(t[1], t[2]);

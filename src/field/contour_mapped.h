@@ -12,7 +12,7 @@ using PointMap = std::function<openvdb::Vec3d(const openvdb::Vec3d&)>;
 
 /// contour() with a map from index space to the world of its own: a transform of OpenVDB cannot
 /// hold voxels under 1.5e-5. Precondition: the map keeps handedness and is a similarity or at
-/// least linear. `voxel` is its mean scale.
+/// least linear.
 TriangleMesh contour_mapped(const openvdb::FloatGrid& field, const PointMap& to_world,
                             const ContourOptions& options, ContourReport& report,
                             Interrupter* interrupter);

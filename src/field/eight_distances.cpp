@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Distances from eight points at a time to triangles that were prepared beforehand, in float32,
+// with Highway (core/simd.h says how sources like this are laid out). Each lane computes what it
+// would compute alone, so the results have the same bits for vectors of any width. Where several
+// triangles are equally near, the first of the list is chosen. Coordinates have to be relative to a
+// place nearby: the error of floats is in proportion to them.
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,6 +26,9 @@ namespace
 
 using namespace simd::HWY_NAMESPACE;
 
+/// Both answers are computed in all lanes, without a branch: the distance to the three sides, and
+/// the height over the plane for a point that projects into the triangle. A point exactly over a
+/// side gets the same distance from both, so rounding in the choice between them does no harm.
 HWY_INLINE void distances(const PreparedTriangle& t, const FloatPoint& p, Floats& squared,
                           Floats& height)
 {
@@ -30,7 +39,10 @@ HWY_INLINE void distances(const PreparedTriangle& t, const FloatPoint& p, Floats
         const Floats along = clamped((x * s.ex + y * s.ey + z * s.ez) * s.inverse, zero, one);
         const Floats dx = x - along * s.ex, dy = y - along * s.ey, dz = z - along * s.ez;
         lower_to(nearest, dx * dx + dy * dy + dz * dz);
+        // The normals of the sides are not of unit length, since only the sign of the largest
+        // product matters.
         raise_to(outside, x * s.mx + y * s.my + z * s.mz);
+        // Any corner will do for the height over the plane; the last one's stays.
         over = x * t.nx + y * t.ny + z * t.nz;
     }
     const auto beside = outside > zero;
@@ -50,6 +62,7 @@ void nearest_of(const PreparedTriangle* triangles, const std::uint32_t* list, st
         distances(triangles[list[i]], p, d, over);
         if (squared != nullptr)
             store(d, squared + i * kLanes);
+        // The comparison is strict, so that of equally near triangles the first one stays.
         const auto nearer = d < least;
         triangle =
             select(for_integers(nearer), Integers(static_cast<std::int32_t>(list[i])), triangle);

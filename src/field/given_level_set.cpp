@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Reads a level set that some other tool has written, refuses what cannot be meshed, and says
+// whether lines can step through the field itself or need a new one. What passes has finite values
+// of both signs, a positive background and a linear transform; nothing else is taken for granted.
+// Messages name the file, the grid and the property, since the file is somebody else's.
+// docs/stages/wrap.md, "Level sets as input", has the table of what is refused and what is made
+// anew.
+
 #include "vdb_shell/field/given_level_set.h"
 
 #include "field/field_sampler.h"
@@ -25,9 +32,11 @@ namespace
 
 // Three voxels of band, less what rounding takes of them.
 constexpr double kExteriorVoxels = 2.99;
-// Sides of a voxel may differ by what float32 matrices leave.
+// By how much the squares of a voxel's sides and their products may differ from those of a cube, as
+// a share: matrices are often written from float32.
 constexpr double kCubeTolerance = 1e-5;
-// The median slope at the surface of a distance field; less at creases, so the median.
+// A distance has slope 1. At creases the sampled slope is less, so it is the median over the
+// surface that has to lie between these.
 constexpr double kLeastSlope = 0.8, kMostSlope = 1.25;
 
 template <typename... Parts> std::string text(const Parts&... parts)
@@ -73,12 +82,14 @@ std::string only_level_set(const openvdb::GridPtrVec& grids, const std::string& 
 FloatGrid::Ptr read_named(const std::string& file, const std::string& name)
 {
     openvdb::io::File in(file);
-    // Delayed loading would keep the file mapped, and faults late where it is damaged.
+    // Delayed loading would keep the file mapped, and a damaged file would fail only later, where
+    // no message could name it.
     in.open(/*delayLoad=*/false);
     const openvdb::GridPtrVecPtr grids = in.readAllGridMetadata();
     const std::string chosen = name.empty() ? only_level_set(*grids, file) : name;
     if (!in.hasGrid(chosen))
         throw ReadError(text(file, ": has no grid \"", chosen, "\"; it has ", list_of(*grids)));
+    // The type is looked at before the voxels are read: a wrong grid may be a large one.
     const GridBase::Ptr metadata = in.readGridMetadata(chosen);
     if (!metadata->isType<FloatGrid>())
         throw ReadError(text(file, ": grid \"", chosen, "\" holds ", metadata->valueType(),
@@ -105,6 +116,8 @@ bool has_cubic_voxels(const FloatGrid& grid)
     return true;
 }
 
+/// Inactive voxels and tiles inside stand for any depth beyond the band. Where there are none, the
+/// deepest value there is tells how deep the solid is, and no line can go deeper.
 bool all_inside_is_active(const FloatGrid& grid)
 {
     for (auto value = grid.cbeginValueOff(); value; ++value)
@@ -156,6 +169,7 @@ void require_level_set(const openvdb::FloatGrid& grid, const std::string& where)
     if (!(std::isfinite(grid.background()) && grid.background() > 0))
         refuse("background is ", grid.background(), ", must be positive and finite");
     bool inside = false, outside = false;
+    // Inactive values count as well, since the flood-filled inside and outside are made of them.
     for (auto value = grid.cbeginValueAll(); value; ++value) {
         if (!std::isfinite(*value))
             refuse("value at voxel ", value.getCoord(), " is ", *value, ", must be finite");
@@ -181,6 +195,7 @@ std::string why_not_steppable(const openvdb::FloatGrid& grid, const TriangleMesh
     if (grid.background() < kExteriorVoxels * voxel)
         return text("its band outside is ", grid.background() / voxel,
                     " voxels wide, 3 are wanted");
+    // No point of the solid is deeper than half the diagonal of its box, so no more is wanted.
     const double deepest = 0.5 * diagonal_of(bounds_of(surface.points));
     const double wanted = std::min(options.interior_depth.value_or(deepest), deepest);
     const double depth = -double(openvdb::tools::minMax(grid.tree()).min());

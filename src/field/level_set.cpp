@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// The dense route to the field: OpenVDB's mesh-to-volume (K. Museth, "VDB: High-Resolution Sparse
+// Volumes with Dynamic Topology", 2013) with the inside active as deep as lines may go, in world
+// units and negative inside. All that could make it fail is looked at first, because a conversion
+// that runs out of memory may end the process without a message. The order of the tests matters:
+// the memory is estimated last, from sizes that are known to be sound. field/narrow_band.cpp is the
+// route that is usually taken, without the dense inside.
+
 #include "vdb_shell/field/level_set.h"
 
 #include "core/stage_progress.h"
@@ -31,13 +38,13 @@ namespace
 
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
-// A point at most `interior_depth` deep reads voxels up to one cell diagonal and one voxel of the
-// central difference away, 2.74 voxels.
+// The stencil of a point that is at most `interior_depth` deep reads voxels up to a cell diagonal
+// and the one voxel of the central difference away, 1.73 + 1 voxels.
 constexpr double kStencilVoxels = 3.0;
-// Below it the stencil of a vertex on the surface would reach over the end of the band.
+// With less, the stencil of a vertex on the surface would reach beyond the band.
 constexpr double kSmallestExteriorVoxels = 3.0;
 constexpr double kLargestExteriorVoxels = 1e4;
-// With fewer voxels along its longest side an object has no field to speak of.
+// With fewer voxels along its longest side an object has no field that lines could step through.
 constexpr double kFewestVoxels = 8.0;
 
 template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
@@ -127,12 +134,14 @@ openvdb::FloatGrid::Ptr convert(const TriangleMesh& mesh, const openvdb::math::T
     auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
         tool, transform, mesh.points, mesh.triangles, {}, static_cast<float>(band.exterior),
         static_cast<float>(band.interior));
+    // OpenVDB returns an unfinished grid when it is stopped and does not say that it did.
     if (latched.stopped())
         throw Cancelled();
     return grid;
 }
 
-/// How far the surfaces so far leave room for another one, with a voxel to spare.
+/// The depth of the solid so far in voxels, and one voxel more, so that a cavity's inactive
+/// background is beyond every value of the solid.
 double deepest_voxels(const openvdb::FloatGrid& grid)
 {
     return 1.0 - openvdb::tools::minMax(grid.tree()).min() / grid.voxelSize()[0];
@@ -149,6 +158,9 @@ openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
     constexpr double kAllOfIt = std::numeric_limits<float>::max();
     for (std::size_t depth = 1; depth < parts.size(); ++depth) {
         const bool is_cavity = depth % 2 == 1;
+        // Outside, a cavity's grid has to reach as deep as the solid so far, since its background
+        // would cut off the depth of the solid otherwise. Inside it has to be active everywhere,
+        // since only active voxels are taken out of the solid.
         const BandVoxels part_band = is_cavity ? BandVoxels{deepest_voxels(*grid), kAllOfIt}
                                                : BandVoxels{band.exterior, band.interior};
         const auto part = convert(parts[depth], transform, part_band, interrupter);
@@ -160,6 +172,8 @@ openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
     return grid;
 }
 
+/// Leaves are enough to look at: wherever there is an inside, there are active voxels on both sides
+/// of the surface, and those stand in leaves.
 bool has_inside(const openvdb::FloatGrid& grid)
 {
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
@@ -213,7 +227,8 @@ double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& optio
     if (!(std::isfinite(size) && size > 0))
         fail<GeometryError>("the mesh's longest side is ", size,
                             ", must be positive and finite to derive a voxel size from");
-    // Objects of less than a few millimetres get fewer voxels than asked for, rather than none.
+    // Objects of less than a few millimetres get fewer voxels than the options say, rather than
+    // none.
     return std::max(size / options.resolution, std::min(kSmallestVoxelSize, size / kFewestVoxels));
 }
 
@@ -233,12 +248,14 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
     double box = 1;
     for (int axis = 0; axis < 3; ++axis)
         box *= (bounds.high[axis] - bounds.low[axis]) / voxel_size + 2 * band.exterior + 16;
+    // Where a surface has many folds, its bands overlap, and the box is the better bound.
     const double voxels = std::min(inside + outside, box);
-    // Distance, index of the nearest triangle and the buffer of the renormalisation, 4 bytes each;
-    // as much again for masks, the threads' own trees and what the averages leave out. Measured
-    // peaks of the process were between a half and four fifths of the whole estimate.
+    // The distance, the index of the nearest triangle and the buffer of the renormalisation take 4
+    // bytes each. As much again is for masks, the threads' own trees and what the averages leave
+    // out. Measured peaks of the process were between a half and four fifths of the whole estimate.
     constexpr double kBytesPerVoxel = 24.0;
-    // The root's children of both grids, and a few leaves more than the averages say.
+    // For the children of both grids' roots, and for small surfaces, which have more leaves than
+    // the averages say.
     constexpr double kFixed = 32.0 * 1024 * 1024;
     return voxels * kBytesPerVoxel + kFixed;
 }
@@ -283,6 +300,7 @@ void negate_level_set(openvdb::FloatGrid& level_set)
     openvdb::tools::foreach (level_set.beginValueAll(),
                              [](const auto& value) { value.setValue(-*value); });
     openvdb::FloatTree::RootNodeType& root = level_set.tree().root();
+    // The loop has already negated inactive values, so the root must not replace them once more.
     root.setBackground(-root.background(), false);
 }
 

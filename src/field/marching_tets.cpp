@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// The zero surface of a grid, on six tetrahedra a cube (the split of H. Freudenthal and H. W.
+// Kuhn), so that it is manifold and embedded by construction, in index space and in doubles.
+// marching_tets.h has the argument. Every point is identified by the grid edge it lies on and not
+// by its coordinates, so neighbouring tets share points without any tolerance. Edges are numbered
+// by sorting, so the result does not depend on the order in which the tree is walked. The cost is
+// linear in the active voxels, besides the sorts.
+
 #include "field/marching_tets.h"
 
 #include <algorithm>
@@ -14,9 +21,12 @@ namespace
 using openvdb::Coord;
 using openvdb::Vec3d;
 
+// How far points stay away from the ends of their edge, as a share of it. A zero exactly on a grid
+// point would otherwise put the points of all edges around it in one place.
 constexpr double kClearance = 0.05;
 
-/// Corners of a cube by three bits, x lowest; the tets run from corner 0 to corner 7. All positive.
+/// The corners of a cube are numbered by three bits, x lowest. All tets run from corner 0 to corner
+/// 7, and all are positive. Every cube is cut alike, so the diagonals of a common face agree.
 constexpr std::array<std::array<int, 4>, 6> kTets{
     {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 5, 1, 7}}};
 
@@ -35,7 +45,8 @@ struct GridEdge {
     bool operator==(const GridEdge& other) const { return tied() == other.tied(); }
 };
 
-/// Corners of one tet are nested sets of bits, so of two the smaller number is the lower end.
+/// The corners of one tet are nested sets of bits. So of two corners the smaller number is the
+/// lower end, and the difference of the numbers is the set of axes that the edge runs along.
 GridEdge edge_between(const Coord& base, int a, int b)
 {
     const int low = std::min(a, b), high = std::max(a, b);
@@ -61,6 +72,8 @@ std::vector<Cube> crossed_cubes(const openvdb::FloatGrid& field)
     const auto values = field.getConstAccessor();
     std::vector<Coord> bases;
     for (auto value = field.cbeginValueOn(); value; ++value) {
+        // A tile has one value throughout. A cube across its border is found from the active voxels
+        // on the other side.
         if (!value.isVoxelValue())
             continue;
         for (int c = 0; c < 8; ++c) {
@@ -89,6 +102,9 @@ void cut_tet(const Cube& cube, const std::array<int, 4>& tet, std::vector<EdgeTr
     const auto count = std::count_if(tet.begin(), tet.end(), is_inside);
     if (count == 0 || count == 4)
         return;
+    // Each corner in turn first, in an even permutation of all four. The three points of the
+    // triangle are then in the order that turns outward for a corner inside, and in reverse for a
+    // corner outside.
     constexpr std::array<std::array<int, 4>, 4> kFirst{
         {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}}};
     const auto edge = [&](int a, int b) {
@@ -105,6 +121,8 @@ void cut_tet(const Cube& cube, const std::array<int, 4>& tet, std::vector<EdgeTr
             }
         return;
     }
+    // Each pair of corners first, again in even permutations. The four points make a quad inside
+    // the tet, so neighbours need not agree on its diagonal.
     constexpr std::array<std::array<int, 4>, 6> kPairs{
         {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
     for (const auto& [i, j, k, l] : kPairs)
@@ -119,6 +137,7 @@ Vec3d place_on(const GridEdge& edge, const openvdb::FloatGrid::ConstAccessor& va
 {
     const double a = values.getValue(edge.low);
     const double b = values.getValue(corner_of(edge.low, edge.direction));
+    // One of the values is negative and the other is not, so the difference is not zero.
     const double t = std::clamp(a / (a - b), kClearance, 1.0 - kClearance);
     return edge.low.asVec3d() + t * corner_of(Coord(0), edge.direction).asVec3d();
 }

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// The signed distance to a closed mesh in a band to both sides of it, by leaves of 8 x 8 x 8
+// voxels. The list of triangles near a leaf is thinned for smaller and smaller blocks;
+// docs/stages/level_set.md, "How the narrow band is made", has the idea. Signs come from
+// pseudo-normals ([15] of the paper), so cavities need nothing special, but the mesh must be
+// closed, oriented and free of crossings, else signs are wrong. The nearest triangle is chosen in
+// float32 relative to the middle of the leaf; ties go to the triangle with the lower number. Each
+// leaf is filled by itself, so the bits are the same for any number of threads. Lengths are in
+// voxels until values are stored.
+
 #include "vdb_shell/field/narrow_band.h"
 
 #include "core/bucket_sort.h"
@@ -29,10 +38,13 @@ using openvdb::Vec3d;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr double kHalfLeaf = 3.5; // from a leaf's middle to its outermost voxel centres
-// Floats relative to a leaf's middle are good to far less than this.
+// By how much float32 may be wrong in coordinates relative to a leaf's middle. Triangles may reach
+// far out of their leaf; for those of up to a thousand voxels the rounding is below this.
 constexpr double kSlackVoxels = 1e-3;
 
-/// A triangle that comes near a leaf.
+/// A triangle that comes near a leaf. Voxel indices are limited to 2^22 (kLargestVoxelIndex), hence
+/// those of leaves to 2^19, so 21 bits and an offset hold any leaf of the band as a number that
+/// sorts by x, y, z.
 struct LeafTriangle {
     std::uint64_t place; ///< of the leaf, 21 bits for each axis
     std::uint32_t triangle;
@@ -64,13 +76,16 @@ struct LeafTriangle {
     }
 };
 
-/// False only where the triangle is farther than `reach` from all of a leaf's voxel centres: by
-/// the planes of the triangle and through its sides.
+/// False only where the triangle is farther than `reach` from all of a leaf's voxel centres. Tested
+/// are the two sides of its plane, and the planes square to it through its sides. It may be true
+/// for a leaf that is out of reach: that costs time and changes nothing.
 class LeafFilter
 {
 public:
     LeafFilter(const std::array<Vec3d, 3>& corner, double reach)
     {
+        // A triangle without area has no planes. Without planes the filter holds nothing back, and
+        // the bounding box alone decides.
         Vec3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
         if (!(n.normalize()))
             return;
@@ -94,6 +109,9 @@ public:
 private:
     void add(const Vec3d& n, const Vec3d& on, double reach)
     {
+        // How far the cube of a leaf's voxel centres reaches from its middle against the plane's
+        // normal. If even its nearest point is more than `reach` beyond a plane that has the
+        // triangle behind it, so is every voxel.
         const double box = kHalfLeaf * (std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]));
         planes_[static_cast<std::size_t>(count_++)] = {n, n.dot(on) + reach + box};
     }
@@ -107,6 +125,8 @@ void for_each_leaf_near(const std::array<Vec3d, 3>& corner, double reach, const 
     Coord low, high;
     for (int axis = 0; axis < 3; ++axis) {
         const auto [least, most] = std::minmax({corner[0][axis], corner[1][axis], corner[2][axis]});
+        // The shift is a division by 8 that rounds down for negative numbers too, as the numbers of
+        // leaves need it.
         low[axis] = static_cast<int>(std::ceil(least - reach)) >> 3;
         high[axis] = static_cast<int>(std::floor(most + reach)) >> 3;
     }
@@ -130,6 +150,8 @@ std::array<Vec3d, 3> index_corners(const SignedDistance& surface, std::uint32_t 
 std::vector<LeafTriangle> leaf_triangles(const SignedDistance& surface, std::size_t count,
                                          double voxel, double reach)
 {
+    // Parts have a fixed size, whatever the number of threads. The sort has a total order, so the
+    // list would be the same for any parts.
     constexpr std::size_t kTrianglesInPart = 256;
     std::vector<std::vector<LeafTriangle>> parts((count + kTrianglesInPart - 1) / kTrianglesInPart);
     for_each_index(
@@ -192,6 +214,7 @@ private:
             points.z[i] = static_cast<float>(least[2]) + to_middle;
         }
         EightNearest nearest;
+        // At this level the blocks are single voxels, and their middles are the voxel centres.
         if (level == 2) {
             nearest_of(prepared_.data(), list.data(), list.size(), points, nullptr, nearest);
             store(corner, nearest);
@@ -199,13 +222,17 @@ private:
         }
         squared_.resize(list.size() * kLanes);
         nearest_of(prepared_.data(), list.data(), list.size(), points, squared_.data(), nearest);
-        // From an eighth's middle to its farthest voxel centre.
+        // From the middle of a block to its farthest voxel centre.
         const float radius = std::sqrt(3.0F) * 0.5F * static_cast<float>(eighth - 1);
         std::array<float, kLanes> limit;
         for (std::size_t i = 0; i < kLanes; ++i) {
             const float closest = std::sqrt(nearest.squared[i]);
+            // A voxel of the block is at most `radius` from its middle, so its nearest triangle is
+            // at most closest + 2 radius from the middle. Triangles beyond reach + radius are out
+            // of reach of all its voxels.
             const float most =
                 std::min(closest + 2 * radius, reach_ + radius) + static_cast<float>(kSlackVoxels);
+            // No squared distance is below -1, so a block that is out of reach gets an empty list.
             limit[i] = closest > reach_ + radius ? -1.0F : most * most;
         }
         std::array<List, kLanes>& of_eighth = lists_[level];
@@ -241,14 +268,20 @@ private:
                 continue;
             const Coord in_leaf = corner_of_eighth(corner, 1, i);
             double d = nearest.height[i] * voxel_;
-            // At sides and corners, and too near to the plane for floats to tell the side of it.
+            // The height is 0 at sides and corners, where the sign needs a pseudo-normal. Near the
+            // plane floats cannot tell its two sides apart. In both cases distance and sign are
+            // computed in doubles.
             if (std::abs(nearest.height[i]) < kSlackVoxels) {
                 const auto pair = static_cast<std::size_t>(nearest.triangle[i]);
                 d = surface_.at(voxel_ * (origin_ + in_leaf).asVec3d(), pairs_[pair].triangle);
             }
+            // The slack in `reach_` was for floats only. A voxel is active when its distance is
+            // less than the background.
             if (!(std::abs(d) < (reach_ - kSlackVoxels) * voxel_))
                 continue;
             if (!leaf_)
+                // Inactive voxels get their sign and the background's magnitude from the flood
+                // fill.
                 leaf_ = std::make_unique<Leaf>(origin_, 0.0F, false);
             leaf_->setValueOn(Leaf::coordToOffset(in_leaf), static_cast<float>(d));
         }
@@ -262,7 +295,7 @@ private:
     std::unique_ptr<Leaf> leaf_;
     std::vector<PreparedTriangle> prepared_;
     List all_;
-    std::array<std::array<List, kLanes>, 2> lists_; ///< by level, of each eighth
+    std::array<std::array<List, kLanes>, 2> lists_; ///< by level, of each of the eight blocks
     std::vector<float> squared_;
     std::vector<std::uint8_t> within_;
 };
@@ -274,6 +307,8 @@ void fill_leaves(openvdb::FloatTree& tree, const SignedDistance& surface, double
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (i == 0 || pairs[i].place != pairs[i - 1].place)
             starts.push_back(i);
+    // Leaves are made by many threads and put into the tree by one, since the tree is not made for
+    // several writers.
     std::vector<std::unique_ptr<Leaf>> leaves(starts.size());
     starts.push_back(pairs.size());
     for_each_range(
@@ -306,6 +341,8 @@ openvdb::FloatGrid::Ptr mesh_to_narrow_band(const TriangleMesh& mesh,
 {
     const StageProgress progress(interrupter, "level set");
     LevelSetOptions narrow = options;
+    // The tests of size and memory are those of the dense route. They get the depth of the band
+    // that is really made, so that they do not refuse a grid that fits.
     narrow.exterior_depth.reset();
     if (!mesh.points.empty())
         narrow.interior_depth = narrow.exterior_voxels * resolve_voxel_size(mesh, narrow);

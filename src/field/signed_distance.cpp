@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// The distance from a point to one triangle, with the sign that says whether the point is inside
+// the surface, provided that this triangle is the nearest one. The sign is that of the offset along
+// the pseudo-normal of the face, edge or vertex that the nearest point lies on: J. A. Baerentzen
+// and H. Aanaes, "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005, prove
+// that this is right for a closed oriented surface that does not cross itself. The normal of the
+// nearest triangle alone would be wrong behind sharp edges. A point on the surface counts as
+// outside, with distance 0.
+
 #include "field/signed_distance.h"
 
 #include "mesh/nearest_on_triangle.h"
@@ -34,6 +42,9 @@ Vec3d SignedDistance::unit_normal(std::uint32_t triangle) const
 
 Vec3d SignedDistance::edge_normal(std::uint32_t triangle, int side) const
 {
+    // Both faces count alike whatever their area, because the angle of a face at a point of its
+    // edge is half a turn. Only the sign of a product with the sum is used, so it is not divided by
+    // two.
     Vec3d normal = unit_normal(triangle);
     const std::uint32_t from = mesh_.triangles[triangle][side];
     const std::uint32_t to = mesh_.triangles[triangle][(side + 1) % 3];

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// A closed surface around any triangles, whatever their faults: open, crossing, turned the wrong
+// way. The solid is where the winding number says inside, with plates around all that bounds no
+// solid (field/wrap_field.cpp); its contour passes the exact tests (field/contour.cpp). So whatever
+// comes in, what leaves is closed, manifold and embedded. All fields are in voxels about the middle
+// of the bounding box, which keeps numbers small and spares the transform, since OpenVDB's cannot
+// hold tiny voxels. The report measures how far input and wrap are apart, both ways, because
+// neither distance bounds the other.
+
 #include "vdb_shell/field/wrap.h"
 
 #include "core/stage_progress.h"
@@ -21,10 +29,12 @@ namespace
 
 using openvdb::Vec3d;
 
-// With less the voxels of one sheet would not hang together.
+// More than half the diagonal of a voxel, 0.866. So every point of a sheet has a voxel centre
+// within this distance, and no sheet passes between the voxels.
 constexpr double kThinnestSheet = 0.9;
 constexpr double kMostWrapVoxels = 1e3;
-// The field takes some ten voxels for each voxel of area: 4096^2 are beyond any memory's pleasure.
+// The field takes some ten voxels for each voxel of area, so 4096^2 voxels of area are 170 million
+// of them.
 constexpr double kMostVoxelsAlong = 4096.0;
 constexpr double kDistanceSpacingVoxels = 1.0;
 
@@ -42,6 +52,8 @@ double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
     if (!(longest > 0 && std::isfinite(longest)))
         fail<GeometryError>("the mesh's longest side is ", longest, ", must be positive");
     const double voxel = options.voxel_size.value_or(longest / options.resolution);
+    // The range of the options bounds the resolution only, not what a voxel size comes to for this
+    // mesh.
     if (longest / voxel > kMostVoxelsAlong)
         fail<InvalidOption>("voxel size ", voxel, " gives ", longest / voxel,
                             " voxels along the longest side ", longest, ", over the limit ",
@@ -49,7 +61,8 @@ double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
     return voxel;
 }
 
-/// Triangles in voxels around the middle of the box: small numbers whatever the mesh's own are.
+/// Triangles in voxels about the middle of the box, so that the numbers are small wherever the mesh
+/// stands.
 std::vector<TriangleCorners> in_voxels(const TriangleMesh& mesh, const Vec3d& centre, double voxel)
 {
     std::vector<TriangleCorners> triangles;
@@ -79,6 +92,8 @@ openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
     const WindingNumber winding(triangles);
     WrapPieces pieces = sort_pieces(triangles, winding, progress);
     auto field = wrap_field(pieces, winding, options.sheet_voxels, progress);
+    // A solid that is smaller than a voxel can slip between the voxel centres. As plates its
+    // triangles cannot, so there always is a surface.
     if (!(openvdb::tools::minMax(field->tree()).min() < 0)) {
         pieces = all_sheets(triangles);
         field = wrap_field(pieces, winding, options.sheet_voxels, progress);
@@ -133,6 +148,7 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     const auto to_world = [&](const Vec3d& index) { return centre + voxel * index; };
     result.mesh = contour_mapped(*field, to_world, {options.adaptivity, !options.keep_voids},
                                  result.report.contour, interrupter);
+    // Samples a voxel apart: features between them are smaller than what the wrap can show.
     const double spacing = kDistanceSpacingVoxels * voxel;
     result.report.input_to_wrap = surface_distance(mesh, result.mesh, spacing, interrupter);
     result.report.wrap_to_input = surface_distance(result.mesh, mesh, spacing, interrupter);

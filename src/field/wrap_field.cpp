@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// The field of a wrap, in voxels and negative inside. It is the smaller of two: a distance to the
+// triangles that bound a solid, with the sign of the winding number (A. Jacobson and others, 2013),
+// and the distance to the sheets less half the thickness of a plate. Where the triangles leave a
+// gap, the fall of the winding number takes the place of the distance, and its zero closes the gap.
+// Values are computed by many threads and written by one, in sorted order, so the bits do not
+// depend on the number of threads. Values are only about distances; their zero set is what counts.
+// docs/stages/wrap.md, "What a wrap is", explains the numbers.
+
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
@@ -19,25 +27,27 @@ using openvdb::Coord;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-// Above the half that single sheets reach on their own face, with room for the error of the far
-// dipoles; closed surfaces jump from 0 to 1 and do not care.
+// More than the half that the winding number reaches on the face of a single sheet, with room for
+// the error of the far dipoles. For closed surfaces any value between does, since it jumps from 0
+// to 1 there.
 constexpr double kInsideWinding = 0.6;
-// A deeper solid than this can be stepped into and meshed without help.
+// Lines can step into a solid that is deeper than this, and it can be meshed without help.
 constexpr double kSolidVoxels = 1.5;
-// There the winding number has to be clear of doubt: beside a triangle that is turned the wrong way
-// it is not, and a wall without thickness of its own would leak.
+// At that depth the winding number has to be clear of doubt. Beside a triangle that is turned the
+// wrong way it is not, and a part without a thickness of its own would leak there.
 constexpr double kSureWinding = 0.75;
-// Just off the surface, to see what is on either side of it.
+// The distance from the surface at which the two sides of a piece are looked at.
 constexpr double kBesideVoxels = 0.3;
 constexpr double kPieceVoxels = 2.0;
 constexpr double kBandVoxels = 3.0;
-// Makes the winding number's fall across a gap a field about as steep as a distance; times
-// 1 - kInsideWinding it is no less than the band.
+// Turns the fall of the winding number across a gap into a field about as steep as a distance.
+// Times 1 - kInsideWinding it is no less than the band, so closed solids reach their full depth.
 constexpr double kVoxelsPerTurn = 8.0;
 
 enum class Part : char { boundary, sheet, interior };
 
-/// Turns over the inside; negative in the solid.
+/// By how much the winding number is short of the inside, in turns; negative in the solid. The
+/// absolute value lets a component be inside out.
 double winding_field(const WindingNumber& winding, const Vec3d& point)
 {
     return kInsideWinding - std::abs(winding.at(point));
@@ -46,6 +56,7 @@ double winding_field(const WindingNumber& winding, const Vec3d& point)
 Part part_of(const TriangleCorners& piece, const WindingNumber& winding)
 {
     Vec3d normal = (piece[1] - piece[0]).cross(piece[2] - piece[0]);
+    // A piece without area has no sides to look at. As a sheet it at least leaves a trace.
     if (!normal.normalize())
         return Part::sheet;
     const Vec3d centre = (piece[0] + piece[1] + piece[2]) / 3.0;
@@ -63,6 +74,8 @@ Part part_of(const TriangleCorners& piece, const WindingNumber& winding)
     return below && surely_inside(-kSolidVoxels) ? Part::boundary : Part::sheet;
 }
 
+/// A large triangle may bound the solid in one part and stick out of it in another, so it is judged
+/// in pieces of no more than two voxels.
 std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles)
 {
     std::vector<TriangleCorners> pieces;
@@ -85,6 +98,7 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
         return openvdb::FloatGrid::create(static_cast<float>(band));
     std::vector<Vec3s> points;
     std::vector<openvdb::Vec3I> triangles;
+    // Pieces do not share points, since the distance does not need it.
     for (const TriangleCorners& piece : pieces) {
         const auto first = static_cast<openvdb::Vec3I::ValueType>(points.size());
         for (const Vec3d& corner : piece)
@@ -97,7 +111,8 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
         static_cast<float>(band));
 }
 
-/// What the field is made of, for use by many threads: an object each.
+/// The parts of the field at a voxel. An accessor must not be shared, so each range of voxels has
+/// an object of its own.
 class FieldValues
 {
 public:
@@ -111,6 +126,9 @@ public:
     float at(const Coord& voxel)
     {
         const double turns = winding_field(winding_, voxel.asVec3d());
+        // On a triangle that bounds a solid the winding number jumps and the distance is 0. In a
+        // gap the distance is not small, but the winding number passes its threshold continuously.
+        // So the smaller of both has its zero set on the triangles and across the gaps.
         const double depth = std::min(
             {double(boundary_.getValue(voxel)), kVoxelsPerTurn * std::abs(turns), kBandVoxels});
         const double solid = turns < 0 ? -depth : depth;
@@ -134,6 +152,7 @@ template <typename Visit> void for_each_neighbour(const Coord& voxel, const Visi
 
 void sort_and_unite(std::vector<Coord>& voxels)
 {
+    // Sorted, the order does not depend on how the voxels were found.
     std::sort(voxels.begin(), voxels.end());
     voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
 }
@@ -149,7 +168,8 @@ std::vector<Coord> band_voxels(const openvdb::FloatGrid& boundary, const openvdb
     return voxels;
 }
 
-/// Voxels without a value beside those where the sign changes at one of `fresh`.
+/// Voxels without a value beside those where the sign changes at one of `fresh`. Both ends of a
+/// change count, so that the contour finds all eight corners of every cube that it crosses.
 std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
                                        const openvdb::FloatGrid& field)
 {
@@ -188,6 +208,8 @@ WrapPieces sort_pieces(const std::vector<TriangleCorners>& triangles, const Wind
     WrapPieces pieces;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const double area = area_of(all[i]);
+        // Pieces inside the solid are left out of the field: the distance to them would bring
+        // values near zero into the solid.
         if (parts[i] == Part::interior) {
             pieces.interior_area += area;
             continue;
@@ -216,8 +238,9 @@ openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber
     auto field = openvdb::FloatGrid::create(static_cast<float>(kBandVoxels));
     field->setGridClass(openvdb::GRID_LEVEL_SET);
     auto values = field->getAccessor();
-    // A surface of constant winding number ends on the triangles only, so what follows it from
-    // their band misses none.
+    // The winding number is harmonic away from the triangles, so a surface on which it is constant
+    // ends on triangles only. Followed from their band, no part of it is missed. Each pass computes
+    // voxels that had no value before, so the loop ends when the surface is closed.
     std::vector<Coord> fresh = band_voxels(*boundary, *sheet);
     while (!fresh.empty()) {
         progress.stop_if_interrupted(50);

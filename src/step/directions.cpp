@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Gives each vertex the direction of its line: the angle-weighted pseudo-normal of the mesh
+// (Baerentzen and Aanaes, "Signed Distance Computation Using the Angle Weighted Pseudonormal",
+// 2005) or the gradient of the field, tilted at random if the user wants that. Both depend on mesh,
+// field and seed only. A vertex where the source gives no direction keeps the zero vector, which
+// line stepping reports as "no_direction". Normals and gradients point outward; what is returned
+// points inward.
+
 #include "vdb_shell/step/directions.h"
 
 #include "core/counter_random.h"
@@ -23,6 +30,9 @@ namespace
 // A little less than a right angle, whose tangent is finite.
 constexpr double kMostRadians = 1.5;
 
+/// The upper 53 bits, all that a double holds, as a number from -1 up to but not including 1. The
+/// standard library's distributions are not used, because each library may compute them in another
+/// way.
 double signed_unit(std::uint64_t bits)
 {
     return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0;
@@ -36,6 +46,9 @@ struct Disk {
 /// mathematics libraries.
 Disk disk_point(std::uint64_t seed, std::size_t vertex)
 {
+    // The numbers are a function of seed and vertex alone, without a state that threads would have
+    // to share. The seed is hashed first, so that seeds that differ by one do not merely exchange
+    // the numbers of two vertices.
     const std::uint64_t stream = splitmix64(splitmix64(seed) ^ vertex);
     for (std::uint64_t draw = 0;; draw += 2) {
         const Disk p{signed_unit(splitmix64(stream + draw)),

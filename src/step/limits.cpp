@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bounds the lengths of lines by the local shape of the surface, as the two papers before line
+// stepping did: K. Erleben and H. Dohlmann, "The Thin Shell Tetrahedral Mesh", 2004, with one
+// length for all, and K. Erleben, H. Dohlmann and J. Sporring, "The Adaptive Thin Shell Tetrahedral
+// Mesh", 2005, with one length for each vertex. The limits say nothing of parts of the surface that
+// face each other, nor of pillars of different lengths, so a shell within all limits can overlap.
+
 #include "vdb_shell/step/limits.h"
 
 #include "core/parallel.h"
@@ -44,15 +50,22 @@ double smallest_positive_root(double a, double b, double c)
         discriminant = 0;
     if (!(discriminant >= 0))
         return kNoLimit;
-    // The sum that does not cancel; the other root follows from the product of both (c / a).
+    // This sum does not cancel, since the root has the sign of b. The textbook's other sum would
+    // cancel, so the second root comes from the product of both roots, which is c / a.
     const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
     double smallest = kNoLimit;
     for (const double root : {q / a, c / q})
+        // Where a or q is zero, a quotient is infinite or not a number, and then one of the two
+        // comparisons fails. So linear and constant polynomials need no branch of their own.
         if (root > 0 && root < smallest)
             smallest = root;
     return smallest;
 }
 
+/// The triangle at length e has the edges edge + e turn, so its area vector is a quadratic in e.
+/// Its product with the outward direction of pillar i is the Jacobian of the prism's map on that
+/// pillar. The Jacobian is linear in the barycentric coordinates, so the first zero in the prism is
+/// on one of the three pillars. Lengths are in world units.
 double triangle_limit(const TriangleMesh& mesh, const Directions& directions,
                       const openvdb::Vec3I& t)
 {

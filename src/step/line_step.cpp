@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Steps a line inward from each vertex until its stop test fails, and leaves the length, the number
+// of steps and the reason for each. This is the method of K. Erleben and J. Sporring,
+// "Line-Stepping for Shell Meshes"; docs/stages/line_stepping.md lists the tests. Two routes share
+// everything but the field: the dense one reads a grid, the sparse one a narrow band whose deeper
+// voxels are computed when they are read. A line writes its own entries only, so the lengths are
+// the same for any number of threads.
+
 #include "vdb_shell/step/line_step.h"
 
 #include "core/parallel.h"
@@ -24,12 +31,12 @@ namespace vdb_shell
 namespace
 {
 
-// Bisection to a thousandth of a voxel: far below what the grid can resolve.
+// Bisection ends at a thousandth of a voxel, which is far below what the grid can resolve.
 constexpr double kIntervalVoxels = 1.0 / 1024;
 // A line that is not inside after this many voxels never will be.
 constexpr double kEntryVoxels = 1.5;
 constexpr double kSmallestStepVoxels = 1e-3;
-// A little less than a right angle, whose cosine is still well above 0.
+// A little less than a right angle, whose cosine is well above 0.
 constexpr double kMostRadians = 1.5;
 // On a crease of the field the interpolated slope swings with the position in the cell (between
 // 0.65 and 0.87 on a box's diagonal). Along one cell diagonal every phase has been seen.
@@ -50,6 +57,8 @@ MarchRules rules_of(const TriangleMesh& mesh, const openvdb::FloatGrid& level_se
     rules.reference = options.reference_voxels * voxel;
     rules.period = kPeriodVoxels * voxel;
     rules.entry = kEntryVoxels * voxel;
+    // No point of a solid is farther from its surface than half the diagonal of its bounding box,
+    // so bisection on the depth needs to look no deeper.
     rules.search_depth = 0.5 * diagonal_of(bounds_of(mesh.points));
     rules.interval = kIntervalVoxels * voxel;
     rules.bisection_iterations = options.bisection_iterations;
@@ -100,6 +109,8 @@ LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
     const std::size_t lines = job.only ? job.only->size() : count;
     const auto vertex = [&](std::size_t i) { return job.only ? (*job.only)[i] : i; };
     for (std::size_t block = 0; block < lines; block += kBlock) {
+        // The interrupter may be used from the stage's own thread only, so the work is cut into
+        // blocks and it is polled between them.
         progress.stop_if_interrupted(static_cast<int>(100 * block / lines));
         for_each_range(
             std::min(kBlock, lines - block),
@@ -218,8 +229,8 @@ LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid&
     return step_all(job, [&](const MarchRules& rules) {
         const auto deep = std::make_shared<const DeepField>(mesh, narrow_band);
         const SkipAhead skip(*deep, 2 * rules.search_depth);
-        // What a thread remembers is a pure function of the mesh: it saves time and changes
-        // nothing.
+        // A thread remembers the deep voxels that it has computed, from one block to the next. They
+        // are a pure function of the mesh, so this saves time and changes no length.
         using PerThread = tbb::enumerable_thread_specific<DeepSampler>;
         const auto fields = std::make_shared<PerThread>(
             [deep] { return DeepSampler(deep->band().transform(), DeepVoxels(*deep)); });

@@ -20,7 +20,7 @@ struct MarchRules {
     double sheet_cosine = 0.985;
     double step = 0;
     double distance_threshold = 0;
-    double reference = 0;    ///< relative_normal measures s0 from here on, own_sheet compares;
+    double reference = 0;    ///< from here on relative_normal measures s0 and own_sheet compares
     double period = 0;       ///< s0 is taken over this distance
     double entry = 0;        ///< a line that is not inside by here has missed the solid
     double search_depth = 0; ///< bisection looks no deeper: half the diagonal

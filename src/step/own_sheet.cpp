@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// For each vertex, the slope that the distance to the surface has along its line as long as nothing
+// is nearer than the vertex's own triangles. The triangles are taken as infinite sectors from the
+// vertex. They form a cone, and distances in a cone grow in proportion to the length of the line;
+// so the slope is the distance of the unit vector from the cone. It comes from the mesh alone and
+// is free of the field's interpolation. docs/measurements/symmetry_lines.md has the reasons and the
+// limits of the stop test that uses it.
+
 #include "core/parallel.h"
 #include "mesh/topology.h"
 #include "vdb_shell/step/line_step.h"
@@ -13,7 +20,8 @@ namespace
 
 using openvdb::Vec3d;
 
-/// Distance from a unit vector to the half line along `edge`.
+/// Distance from a unit vector to the half line along `edge`. Where the two are at a right angle or
+/// more, the nearest point is the apex, at distance 1.
 double distance_to_ray(const Vec3d& d, const Vec3d& edge)
 {
     return d.dot(edge) > 0 ? d.cross(edge.unit()).length() : 1.0;
@@ -44,6 +52,8 @@ std::vector<double> own_sheet_slopes(const TriangleMesh& mesh, const Directions&
         if (d.lengthSqr() == 0)
             return;
         const Vec3d apex(mesh.points[v]);
+        // The apex is in all sectors and at distance 1 from the end of the unit vector, so no slope
+        // exceeds 1.
         double nearest = 1;
         for (const std::uint32_t t : around.around(v)) {
             const auto& corners = mesh.triangles[t];

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+// Says up to which length a stop test holds along a line, from the nearest points of a few places
+// instead of a look at each step. What makes it possible is that, along a line, the squared
+// distance to the surface less the squared length is concave, so that one nearest point deep inside
+// bounds the slope at all places before it. The proof is in docs/stages/line_stepping.md, "Skipping
+// ahead". Where this proves too little the slope is sampled, so the result is a good guess and not
+// a theorem; step/march.h looks at the steps just before a stop.
+
 #include "step/skip_ahead.h"
 
 namespace vdb_shell
@@ -6,18 +13,20 @@ namespace vdb_shell
 namespace
 {
 
-// The stencil sees a sheet that the line has not reached yet: up to two voxels ahead when they meet
-// head on, farther when they graze. A jump that ends less far before one fails more often at its
-// first look, and then goes back.
+// The stencil sees a sheet of the medial axis that the line has not reached yet: up to two voxels
+// ahead when they meet head on, farther when the line grazes it. A jump that ends closer to a sheet
+// than the first number fails more often at its first look. It then goes back by the second one.
 constexpr double kAheadVoxels = 1.5;
 constexpr double kBackVoxels = 3.0;
-// Where a link of the chain proves less than this, slopes this far apart are held against each
-// other instead.
+// Where a link of the chain proves less than this, places this far apart are sampled and the mean
+// slope between them is compared with the threshold instead. The number of links bounds the cost of
+// a look.
 constexpr double kLinkVoxels = 4.0;
 constexpr int kMostLinks = 8;
-// Lines that begin with less of a stride than this look more often than it saves.
+// A line that begins with a shorter stride than this spends more looks than it saves.
 constexpr double kFirstStrideVoxels = 6.0;
-// The search ends when it knows the place this well; it looks this far before where it expects it.
+// The search ends when it knows the place to the first number. It looks the second one before the
+// place where it expects the test to fail, because a place where the test holds is of more use.
 constexpr double kNearVoxels = 0.5, kShyVoxels = 0.25;
 // Interpolation across a sheet makes a distance shorter by less than this.
 constexpr double kBlurVoxels = 0.5;
@@ -28,6 +37,9 @@ constexpr double kLeastSlope = 0.25;
 /// The slope from which on the stencil's swing (sheet_threshold) cannot bring it under a threshold.
 double safe_slope(double threshold)
 {
+    // With the true slope cos(a), the sampled one is at least cos(a) - swing sin(a), which is
+    // length cos(a + atan(swing)). It reaches the threshold at the angle below. When no angle is
+    // left, 2 says that no slope is safe.
     const double length = std::sqrt(1 + kStencilSwing * kStencilSwing);
     const double angle = std::acos(std::min(1.0, threshold / length)) - std::atan(kStencilSwing);
     return angle > 0 ? std::cos(angle) : 2.0;
@@ -58,6 +70,8 @@ SkipAhead::Probe SkipAhead::probe(const Line& line, double length, TriangleTree:
 bool SkipAhead::chain_holds(const Line& line, double low, double high, double slope,
                             TriangleTree::Seed& seed, Probe& at_high) const
 {
+    // The caller has made sure that the slope is below 1. The chain runs backwards, from `high`
+    // down to `low`, because a nearest point only bounds the slopes before its place.
     const double cotangent = slope / std::sqrt(1 - slope * slope);
     double at = high, gap = 0, above = 0;
     for (int link = 0; link < kMostLinks; ++link) {
@@ -66,8 +80,9 @@ bool SkipAhead::chain_holds(const Line& line, double low, double high, double sl
             at_high = p;
         if (p.slope < slope)
             return false;
-        // From a sampled gap: the mean slope over it, and room enough that the line has not left
-        // the solid and come back.
+        // After a sampled gap two things are needed: the mean slope over the gap, and a distance of
+        // at least the gap, since a ball of that radius then holds the whole gap inside the solid
+        // and the line cannot have left the solid and come back.
         if (gap > 0 && (above - p.distance < slope * gap || p.distance < gap))
             return false;
         if (at <= low)
@@ -84,8 +99,10 @@ bool SkipAhead::chain_holds(const Line& line, double low, double high, double sl
     return false;
 }
 
-/// Strides that double while they hold; then to where the point nearest to the last place that held
-/// and the one nearest to the first that did not are equally far, which is mostly the end already.
+/// The strides double while the test holds. The next place is then where the point nearest to the
+/// last place that held and the one nearest to the first that did not are equally far, which is
+/// where the line crosses the sheet of the medial axis between the two; mostly the search ends
+/// there.
 template <typename Holds>
 double SkipAhead::search(const Line& line, double from, const Holds& holds) const
 {
@@ -116,13 +133,18 @@ double SkipAhead::search(const Line& line, double from, const Holds& holds) cons
 double SkipAhead::holds_up_to(const Line& line, const MarchRules& rules, const RunningTest& test,
                               double from) const
 {
-    // Of this line alone, so that lengths do not depend on which thread steps which lines.
+    // The seed belongs to this line alone. A query with a tolerance may give another answer for
+    // another seed, so a seed shared between lines would make lengths depend on which thread steps
+    // which lines.
     TriangleTree::Seed seed = TriangleTree::kNoSeed;
-    // Length less distance never falls along a line, for distances grow by no more than lengths.
+    // Length less distance never falls along a line, because a distance grows by no more than the
+    // length. So for this test one look answers for all that lies before it.
     const double limit = rules.distance_threshold - kBlurVoxels * field_.voxel();
     if (rules.test == StopTest::distance)
         return search(line, from, [&](double, double high, Probe& at_high) {
             at_high = probe(line, high, seed);
+            // The test compares the length with the sampled distance, which may be shorter by the
+            // blur, so the limit is smaller by that amount.
             return high - at_high.distance < limit;
         });
     const double slope = std::max(kLeastSlope, safe_slope(test.slope_wanted()));

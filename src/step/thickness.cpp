@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// The largest length of each vertex: the user's thickness, the value of a painted grid at the
+// vertex, or the smaller of the two. Both are in world units. Later stages rely on each being a
+// number and not negative; infinity stands for "no bound" and only ever comes from a thickness that
+// was not given.
+
 #include "step/thickness.h"
 
 #include "core/parallel.h"
@@ -26,6 +31,8 @@ std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::Fl
             sampled[v] = static_cast<double>(openvdb::tools::BoxSampler::sample(accessor, index));
         }
     });
+    // This is a loop of its own after the parallel one, so that the vertex in the message is always
+    // the first faulty one.
     for (std::size_t v = 0; v < sampled.size(); ++v)
         if (!(std::isfinite(sampled[v]) && sampled[v] >= 0)) {
             std::ostringstream message;
