@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: tets. Gives: which of them are inverted or flat, by exact signs, and the sum of their
+// volumes in doubles. The two are separate because a volume in doubles near nought has no certain
+// sign. Signs are computed in parallel and listed in index order; the sum runs in index order in
+// one thread, so that its last bit does not depend on the number of threads.
+
 #include "vdb_shell/certify/tet_signs.h"
 
 #include "core/exact.h"
