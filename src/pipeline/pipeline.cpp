@@ -55,7 +55,8 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
-/// The surface to work with, repaired when asked: in r.surface, looked at and found usable.
+/// Puts the surface to work with into r.surface: repaired if the options say so, checked and found
+/// usable, and resampled.
 void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
                      StageClock& clock, Interrupter* interrupter)
 {

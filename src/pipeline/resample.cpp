@@ -137,8 +137,8 @@ RefineReport refine(ShellResult& result, const ShellOptions& options,
 void decimate_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
 {
     const std::string& name = result.report.source;
-    // Collapses are tested for new contacts; a surface that touches itself to begin with would not
-    // allow any conclusion from that.
+    // Decimation takes each contact in its result for its own doing and fixes the vertices around
+    // it. Contacts of the input would remain whatever was fixed.
     if (!result.report.mesh.embedded())
         throw GeometryError(name + ": decimation needs a surface that does not cross itself; " +
                             std::to_string(result.report.mesh.self_intersections.count) +

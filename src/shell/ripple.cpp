@@ -151,8 +151,8 @@ private:
                 set_rising(triangle, side, code >> side & 1U);
     }
 
-    /// Whether flipping the edge would make a triangle other than `triangle` cyclic. One that still
-    /// has an open side cannot be.
+    /// Whether flipping the edge would make a triangle other than `triangle` cyclic. A triangle
+    /// with an open side cannot be, as its open sides are set later to suit the others.
     bool flip_harms(std::uint32_t edge, std::uint32_t triangle)
     {
         flip(edge);
