@@ -108,7 +108,8 @@ PointIndex index_points(const FreeSurfaces& free, const TetMesh& mesh)
     return index;
 }
 
-/// Offending owners, listed once each, counted face by face.
+/// The owners of offending faces. The count is of faces, and the list names each owner once,
+/// however many of its faces offend.
 class Offenders
 {
 public:

@@ -89,7 +89,7 @@ void visit_runs_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
                HalfSpaces::of_tet(corners, scene.sign[tet], scene.span), visit);
 }
 
-/// The inside of a tet, for many points.
+/// The inside of one tet, for tests of many points: what depends on the tet alone is computed once.
 class TetInside
 {
 public:
@@ -288,7 +288,8 @@ SortedPoints sort_points(const std::vector<Point>& points, const Bounds& bounds)
     return sorted;
 }
 
-/// The tet by floats: which points lie outside for certain.
+/// The four planes of the tet in floats, moved outward so far that a point beyond one of them lies
+/// outside the tet for certain.
 FloatPlanes float_planes(const std::array<Vec3s, 4>& corners, int sign, const Vec3d& middle,
                          double span)
 {
@@ -315,14 +316,16 @@ FloatPlanes float_planes(const std::array<Vec3s, 4>& corners, int sign, const Ve
     return planes;
 }
 
-/// The points near one tet after the other. Kept, for its memory serves all.
+/// The points near one tet. One of these serves all tets of a range in turn, so that its memory is
+/// allocated once.
 struct NearPoints {
     std::vector<PointRun> runs;
     std::vector<std::uint32_t> place; ///< in SortedPoints; the first `count` count
     std::size_t count = 0;
 };
 
-/// The points in a box of cells that may lie in the tet.
+/// Lists the points in a box of cells that may lie in the tet. Cells one above the other stand
+/// together, so a column gives one run.
 void list_near(const SortedPoints& sorted, const CellRange& box, const FloatPlanes& planes,
                NearPoints& near)
 {

@@ -161,7 +161,8 @@ void check_regions(const PrismShell& shell, const std::vector<std::uint32_t>& co
         pairs.size(),
         [&](std::size_t i) {
             const Piece &first = pieces[pairs[i][0]], &second = pieces[pairs[i][1]];
-            // A contact has failed the pair already, and leaves no side to speak of.
+            // A contact has failed the pair already, and of surfaces that touch no single point
+            // tells on which side the rest lies.
             if (first.closed && second.closed &&
                 !std::binary_search(touching.begin(), touching.end(), pairs[i]))
                 nested[i] =

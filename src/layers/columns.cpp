@@ -142,7 +142,8 @@ std::vector<Vec3s> candidates(const Columns& c, std::size_t j, std::uint32_t v)
 bool mend_point(Columns& c, std::size_t j, std::uint32_t v)
 {
     Vec3s& point = c.surface[j][v];
-    // What is pinned from end to end has no place of its own to move to.
+    // A pillar without length has no place of its own between its ends: its points are the vertex
+    // itself.
     if (c.surface.front()[v] == c.surface.back()[v])
         return false;
     Vec3s best = point;

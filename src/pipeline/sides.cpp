@@ -48,7 +48,8 @@ double sparse_voxels(std::size_t lines)
     return kVoxelsPerLine * static_cast<double>(lines);
 }
 
-/// The voxels inside down to the depth of the lines, about.
+/// An estimate of the voxels inside, down to the depth of the lines. It only has to tell which of
+/// two ways is less work.
 double dense_voxels(const ShellOptions& options, const TriangleMesh& surface,
                     const openvdb::FloatGrid* thickness_grid)
 {

@@ -85,8 +85,8 @@ ShellStack turn_back(const ShellStack& reversed)
 ShellStack join_sides(ShellStack outside, ShellStack inside)
 {
     assert(outside.skin == outside.layers.size() && inside.skin == 0);
-    // Both sides were grown from the same points. Equal coordinates would not be enough to number
-    // the points of the skin once if they stood in another order.
+    // Neither reversing a surface nor growing under it moves an outer point, so both sides have the
+    // skin bit by bit, and its points are numbered once.
     assert(outside.layers.back().inner == inside.layers.front().outer);
     assert(outside.triangles() == inside.triangles());
     for (std::size_t k = 0; k < inside.layers.size(); ++k) {
