@@ -76,8 +76,6 @@ void list_columns(const CellGrid& grid, const TriangleMesh& surface,
     result.column_shadow.resize(result.column_offset.back());
     std::vector<std::uint32_t> next(result.column_offset.begin(), result.column_offset.end() - 1);
     for (std::size_t t = 0; t < cells.size(); ++t) {
-        // The extents stand in the list itself, so that a ray can pass over a triangle without
-        // reading its corners from elsewhere.
         const Shadow shadow = shadow_of(surface, static_cast<std::uint32_t>(t));
         for (const std::uint32_t column : cells[t])
             result.column_shadow[next[column]++] = shadow;
@@ -128,8 +126,6 @@ bool inside_solid(const SolidCells& cells, const TriangleMesh& surface, std::uin
     bool on_surface = false;
     for (std::uint32_t i = cells.column_offset[column]; i < cells.column_offset[column + 1]; ++i) {
         const Shadow& shadow = cells.column_shadow[i];
-        // Strict comparisons of float32: a triangle is passed over only where the ray misses it for
-        // certain.
         if (shadow.high_x < point[0] || shadow.low_x > point[0] || shadow.high_y < point[1] ||
             shadow.low_y > point[1] || shadow.high_z < point[2])
             continue;

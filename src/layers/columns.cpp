@@ -75,7 +75,6 @@ std::vector<std::uint8_t> bad_prisms(const Columns& c)
 {
     const std::size_t triangles = c.triangles->size();
     std::vector<std::uint8_t> bad(c.layers() * triangles);
-    // Each prism writes its own flag, so threads do not bear on the result.
     for_each_index(bad.size(), [&](std::size_t i) {
         bad[i] = bad_tets(c, i / triangles, i % triangles) > 0 ? 1 : 0;
     });

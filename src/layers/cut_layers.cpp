@@ -106,7 +106,6 @@ LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, Pri
         const PrismShell& whole = stack.layers[k];
         const bool above_skin = k < stack.skin;
         Columns columns = cut_pillars(whole, stack.splits[k], shares, above_skin, test);
-        // The report compares with where the grading alone would have put the points.
         const std::vector<std::vector<openvdb::Vec3s>> nominal = columns.surface;
         mend_columns(columns, progress);
         result.report.uncut += keep_whole_where_bad(columns);

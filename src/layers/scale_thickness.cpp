@@ -29,7 +29,6 @@ using growth::GrowState;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-/// Lengths are in world units; directions are unit vectors from the outer to the inner point.
 struct Pillars {
     Directions directions;
     std::vector<double> length;

@@ -75,8 +75,6 @@ void measure_lines(LineReport& report, const Directions& directions, const LineL
     report.length_voxels = spread_of(std::move(lengths));
 }
 
-/// All points are copied, those of other layers too: tets keep their corners, and what is measured
-/// reads points through tets alone.
 TetMesh tets_of_layer(const TetMesh& all, std::size_t layer)
 {
     TetMesh part;

@@ -174,8 +174,6 @@ TetMesh tets_of_layers(const PrismShell* layers, const PrismSplit* splits, std::
         pinned.push_back(pinned_vertices(layers[k]));
     TetMesh mesh;
     const std::vector<PointIndex> index = number_points(layers, pinned, mesh);
-    // Memory is reserved for the case without pins. A stack of many layers would otherwise be moved
-    // several times while it grows.
     const std::size_t most = 3 * count * layers->triangles.size();
     mesh.tets.reserve(most);
     mesh.prism.reserve(most);
