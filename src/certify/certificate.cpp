@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: any shell with a split of its prisms. Gives: everything that stands against its being free
+// of inverted and overlapping tets; an empty list is a proof, by docs/theory.md, "The whole shell".
+// This file calls the tests of the single conditions in turn and does no geometry itself. It
+// includes nothing of growth, so that a mistake there cannot hide here; and no test relies on
+// another's having passed, because shells that fail are common input too and are to be described as
+// fully as possible. Findings are listed in index order, whatever the number of threads. The idea
+// of deciding by the degree of the map is that of Lipman, "Bijective Mappings of Meshes with
+// Boundary and the Degree in Mesh Processing", 2014.
+
 #include "vdb_shell/certify/certificate.h"
 
 #include "certify/certificate_findings.h"
@@ -21,6 +31,9 @@ bool Certificate::certified() const
 
 bool Certificate::locally_valid() const
 {
+    // Contacts are left out on purpose: these five kinds speak of tets and their common faces, so
+    // they can be empty on a surface that crosses itself. Orders that are no permutation count, for
+    // nothing is known of the tets of such a prism.
     return bad_prisms.count + non_conforming_edges.count + cyclic_prisms.count + open_edges.count +
                split_vertices.count ==
            0;
@@ -48,6 +61,8 @@ Certificate certify_shell(const PrismShell& shell, const PrismSplit& split, Pris
     check_prisms(shell, split, pinned, certificate);
     progress.stop_if_interrupted(20);
 
+    // Sorted once for three tests: edges, fans of vertices and components all read the uses of an
+    // edge one after the other.
     const std::vector<EdgeUse> uses = sorted_edge_uses(shell.triangles);
     std::vector<char> open_triangle(shell.triangles.size());
     check_edges(split, pinned, uses, certificate, open_triangle);
@@ -57,6 +72,8 @@ Certificate certify_shell(const PrismShell& shell, const PrismSplit& split, Pris
     const auto contacts = check_surfaces(shell, pinned, certificate);
     progress.stop_if_interrupted(90);
 
+    // Last, because it needs what the others found: a component with an open edge encloses nothing,
+    // and components that touch are not on any side of each other.
     check_regions(shell, component_of_triangles(uses, shell.triangles.size()), open_triangle,
                   contacts, certificate);
     return certificate;

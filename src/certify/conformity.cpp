@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: tets, and the shell or the stack that they were made of. Gives: every face that has other
+// than two sides, a free face that is no triangle of a free surface, and a triangle that no tet
+// has. It compares indices only, so it says nothing of space and holds for inverted tets as well;
+// it is a second way to what the certificate finds at edges (docs/theory.md, "Splits"), by the tets
+// that are written and not by the orders that they were made from. All sides of all faces are
+// sorted, by buckets of their smallest corner: nearly linear time. The comparison tells all
+// different sides apart, so the order does not depend on how threads sorted the buckets.
+
 #include "vdb_shell/certify/conformity.h"
 
 #include "certify/tet_faces.h"
@@ -26,7 +35,9 @@ struct FaceSide {
     bool even; ///< whether ascending order is an even permutation of the outward order
 };
 
-/// Among sides with one smallest corner.
+/// Compares sides that have the same smallest corner: the bucket sort has separated them by it
+/// before. Tets come before surfaces, as judge_face expects, and two corners are compared as one
+/// 64-bit number.
 bool operator<(const FaceSide& x, const FaceSide& y)
 {
     const auto pair = [](std::uint64_t high, std::uint64_t low) { return high << 32U | low; };
@@ -46,6 +57,8 @@ FaceSide side_of(const Vec3I& face, std::uint32_t owner, bool of_surface)
         std::swap(side.corners[i], side.corners[j]);
         side.even = !side.even;
     };
+    // Three exchanges sort three corners, and each of them turns the permutation from even to odd
+    // or back.
     order(0, 1);
     order(1, 2);
     order(0, 1);
@@ -65,6 +78,8 @@ FreeSurfaces free_surfaces(const PrismShell* layers, std::size_t count)
     FreeSurfaces free{&layers->triangles, std::vector<std::uint8_t>(layers->outer.size(), 1)};
     for (std::size_t k = 0; k < count; ++k)
         for (std::size_t v = 0; v < free.pinned.size(); ++v)
+            // A vertex that is pinned in some layers and not in others has two different ends, so
+            // it counts as free.
             free.pinned[v] = free.pinned[v] && layers[k].pinned(v);
     return free;
 }
@@ -73,8 +88,9 @@ struct PointIndex {
     std::vector<std::uint32_t> outer, inner;
 };
 
-/// The inner point of a pillar is its last one: where it is pinned in the last layer that of a
-/// surface above.
+/// The inner point of a pillar is its last one. Points stand in the order of their surfaces, so the
+/// last that is written wins; a pillar that is pinned in the last layer ends in the point of a
+/// surface above, and that is the last one listed for its vertex.
 PointIndex index_points(const FreeSurfaces& free, const TetMesh& mesh)
 {
     PointIndex index;
@@ -92,7 +108,8 @@ PointIndex index_points(const FreeSurfaces& free, const TetMesh& mesh)
     return index;
 }
 
-/// Offending owners, listed once each, counted face by face.
+/// The owners of offending faces. The count is of faces, and the list names each owner once,
+/// however many of its faces offend.
 class Offenders
 {
 public:
@@ -132,6 +149,8 @@ void append_surface_sides(const FreeSurfaces& free, const TetMesh& mesh,
         const Vec3I& v = (*free.triangles)[t];
         if (free.pinned[v[0]] && free.pinned[v[1]] && free.pinned[v[2]])
             continue;
+        // Each side is given as seen from outside of what owns it. The surfaces own what is not
+        // shell, so the outer triangle is turned round and the inner one is not.
         append({index.outer[v[0]], index.outer[v[2]], index.outer[v[1]]}, t);
         append({index.inner[v[0]], index.inner[v[1]], index.inner[v[2]]}, t);
     }
@@ -143,6 +162,7 @@ void judge_face(const FaceSide* first, const FaceSide* last, Findings& findings)
     const FaceSide* surface =
         std::find_if(first, last, [](const FaceSide& side) { return side.of_surface; });
     const auto tets = surface - first, surfaces = last - surface;
+    // The owner of the first side is the tet of the smallest index, as sides are sorted by it.
     if (tets >= 3)
         findings.crowded.add(first->owner);
     if (tets == 1 && surfaces == 0)
@@ -150,7 +170,8 @@ void judge_face(const FaceSide* first, const FaceSide* last, Findings& findings)
     const bool paired = (tets == 2 && surfaces == 0) || (tets == 1 && surfaces >= 1);
     if (paired && first[0].even == first[1].even)
         findings.misoriented.add(first->owner);
-    // A surface triangle wants a free face of its own.
+    // Every surface triangle needs a free face of its own. With one tet and a surface the first of
+    // the surfaces has it; any more of them, and all where two tets share the face, have none.
     for (const FaceSide* side = surface + (tets == 1 && surfaces >= 1 ? 1 : 0); side < last; ++side)
         findings.missing.add(side->owner);
 }

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a closed surface and any tets. Gives: for random points in the solid, how many lie in no
+// tet, in one and in several. It is a second opinion on the certificate and shares none of its code
+// but the exact predicates: no prism and no split bears on the count, and inverted tets count like
+// others. Point k is a function of the seed and of k alone, and the points that count are the first
+// ones up to the wanted number inside, so the result does not depend on batches or threads. Floats
+// and cells only exclude what lies outside for certain; an exact sign decides the rest. Shares are
+// those of volume because all drawn cells are equally likely and have the same size, up to the
+// rounding of their planes to float32.
+
 #include "vdb_shell/certify/coverage.h"
 
 #include "vdb_shell/options/option.h"
@@ -66,7 +76,8 @@ FloatBox box_of(const std::array<Vec3s, 4>& p)
             maxComponent(maxComponent(p[0], p[1]), maxComponent(p[2], p[3]))};
 }
 
-/// visit(first, last) for all runs of cells that the tet may meet; none for a flat tet.
+/// visit(first, last) for all runs of cells that the tet may meet. There are none for a flat tet:
+/// it has no inside, and its half-spaces would be turned by a sign of 0.
 template <typename Visit>
 void visit_runs_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
 {
@@ -78,7 +89,7 @@ void visit_runs_of_tet(const Scene& scene, std::size_t tet, const Visit& visit)
                HalfSpaces::of_tet(corners, scene.sign[tet], scene.span), visit);
 }
 
-/// The inside of a tet, for many points.
+/// The inside of one tet, for tests of many points: what depends on the tet alone is computed once.
 class TetInside
 {
 public:
@@ -90,6 +101,9 @@ public:
     bool strictly_holds(const Vec3s& point) const
     {
         for (std::size_t face = 0; face < 4; ++face) {
+            // The filter gives 0 where doubles do not decide, and the exact sign is computed for
+            // those alone. A point on a face has the sign 0 and is in neither of the tets there, so
+            // no point is counted twice for lying on a common face.
             const int side = planes_[face].side(Vec3d(point));
             if ((side != 0 ? side : exact_side(face, point)) != -sign_)
                 return false;
@@ -127,14 +141,16 @@ Bounds bounds_of_both(const TriangleMesh& surface, const TetMesh& tets)
     return bounds;
 }
 
-/// Finer for more samples, so that laying out the cells stays a small part of the work.
+/// Four cells a sample, within bounds: finer for more samples, so that laying out the cells remains
+/// a small part of the work.
 std::size_t cells_for(std::uint64_t samples)
 {
     constexpr std::uint64_t kFewest = 4096, kMost = 1U << 21;
     return static_cast<std::size_t>(std::clamp(4 * std::min(samples, kMost), kFewest, kMost));
 }
 
-/// How many cells up to each lie outside the solid.
+/// How many cells before each lie outside the solid: with these sums one difference tells whether a
+/// whole run has any.
 std::vector<std::uint32_t> count_outside_before(const SolidCells& solid)
 {
     std::vector<std::uint32_t> before(solid.kind.size() + 1, 0);
@@ -143,7 +159,8 @@ std::vector<std::uint32_t> count_outside_before(const SolidCells& solid)
     return before;
 }
 
-/// Whether the box of the tet meets a cell outside.
+/// Whether the box of the tet meets a cell outside. A tet for which it does not need not be matched
+/// with cells one by one, for cells that are not outside are drawn in any case.
 bool may_leave_solid(const Scene& scene, std::size_t tet,
                      const std::vector<std::uint32_t>& outside_before)
 {
@@ -170,6 +187,8 @@ Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t
     });
     scene.solid = classify_cells(scene.grid, surface);
     const std::vector<std::uint32_t> outside_before = count_outside_before(scene.solid);
+    // Threads may mark the same cell, all with the same value, and nothing is read before they have
+    // ended: relaxed order is enough, and the result is a set. Atomics of a vector begin as false.
     std::vector<std::atomic<bool>> met_by_tet(scene.grid.cells());
     for_each_index(tets.tets.size(), [&](std::size_t i) {
         if (!may_leave_solid(scene, i, outside_before))
@@ -189,6 +208,7 @@ Scene make_scene(const TriangleMesh& surface, const TetMesh& tets, std::uint64_t
 /// Point `number` of the sequence: all its random numbers come from that number.
 Point draw(const Scene& scene, const CounterRandom& random, std::uint64_t number)
 {
+    // One random number for the cell and three for the place in it.
     const std::uint64_t counter = 4 * number;
     Point point;
     point.cell = scene.drawn_cells[random.below(counter, scene.drawn_cells.size())];
@@ -203,7 +223,9 @@ Point draw(const Scene& scene, const CounterRandom& random, std::uint64_t number
     return point;
 }
 
-/// Points `first` and on, up to and with the one that is the `wanted`-th inside the solid.
+/// Points `first` and on, up to and with the one that is the `wanted`-th inside the solid. More are
+/// drawn than are wanted, because some fall outside; the cut is made by their order in the
+/// sequence, so it is the same for batches of any size.
 std::vector<Point> draw_batch(const Scene& scene, const CounterRandom& random, std::uint64_t first,
                               std::uint64_t wanted)
 {
@@ -232,12 +254,16 @@ struct SortedPoints {
 
 SortedPoints sort_points(const std::vector<Point>& points, const Bounds& bounds)
 {
+    // The grid of the points is another one than that of the cells: it is laid out for the number
+    // of points in the batch, not of samples in all.
     constexpr std::size_t kPointsInCell = 2;
     SortedPoints sorted;
     sorted.grid = make_cell_grid(bounds, points.size() / kPointsInCell + 1);
     sorted.middle = 0.5 * (bounds.low + bounds.high);
     std::vector<std::uint32_t> cell(points.size());
     for_each_index(cell.size(), [&](std::size_t i) {
+        // A point on a plane meets several cells and is listed in the first of them. That is
+        // enough, as a tet that holds it has a closed box, which meets all of them.
         const CellRange at = sorted.grid.overlapped(points[i].position, points[i].position);
         cell[i] = sorted.grid.cell(at.first[0], at.first[1], at.first[2]);
     });
@@ -254,6 +280,7 @@ SortedPoints sort_points(const std::vector<Point>& points, const Bounds& bounds)
         const std::uint32_t slot = next[cell[i]]++;
         sorted.point[slot] = static_cast<std::uint32_t>(i);
         sorted.enough[slot] = points[i].in_solid ? 2 : 1;
+        // Relative to the middle, so that floats keep their digits for a mesh far from the origin.
         const Vec3s off(Vec3d(points[i].position) - sorted.middle);
         for (int a = 0; a < 3; ++a)
             sorted.off[std::size_t(a)][slot] = off[a];
@@ -261,13 +288,16 @@ SortedPoints sort_points(const std::vector<Point>& points, const Bounds& bounds)
     return sorted;
 }
 
-/// The tet by floats: which points lie outside for certain.
+/// The four planes of the tet in floats, moved outward so far that a point beyond one of them lies
+/// outside the tet for certain.
 FloatPlanes float_planes(const std::array<Vec3s, 4>& corners, int sign, const Vec3d& middle,
                          double span)
 {
-    // A normal's rounding is that of doubles times the edges over the area; then floats round a
-    // dozen terms that are not longer than the span. Four times as much each, and no less than
-    // floats can tell from nought.
+    // The rounding of a normal is that of doubles times the lengths of the edges over the area.
+    // Floats then round a dozen terms, none longer than the span. Both bounds are taken four times
+    // as large or more, and the sum is no less than what floats can tell from nought. A tet whose
+    // normal is lost in doubles gives planes that are not numbers or lie infinitely far away: no
+    // point is outside of those.
     constexpr double kOfNormal = 0x1p-48, kOfFloats = 0x1p-18;
     constexpr double kLeast = std::numeric_limits<float>::min();
     FloatPlanes planes;
@@ -286,14 +316,16 @@ FloatPlanes float_planes(const std::array<Vec3s, 4>& corners, int sign, const Ve
     return planes;
 }
 
-/// The points near one tet after the other. Kept, for its memory serves all.
+/// The points near one tet. One of these serves all tets of a range in turn, so that its memory is
+/// allocated once.
 struct NearPoints {
     std::vector<PointRun> runs;
     std::vector<std::uint32_t> place; ///< in SortedPoints; the first `count` count
     std::size_t count = 0;
 };
 
-/// The points in a box of cells that may lie in the tet.
+/// Lists the points in a box of cells that may lie in the tet. Cells one above the other stand
+/// together, so a column gives one run.
 void list_near(const SortedPoints& sorted, const CellRange& box, const FloatPlanes& planes,
                NearPoints& near)
 {
@@ -315,8 +347,10 @@ void list_near(const SortedPoints& sorted, const CellRange& box, const FloatPlan
                          near.runs.data(), near.runs.size(), planes, near.place.data());
 }
 
-/// In how many tets each point lies, as far as it matters. Integer increments, and no point that
-/// falls short of `enough` is skipped: the order of the tets does not change what is reported.
+/// In how many tets each point lies, as far as it matters. Counts only grow, by integers, and a
+/// point is skipped only once it has `enough`. So whether a count ends as 0, as 1 or as more is the
+/// same in whatever order threads come to the tets; the exact number above `enough` is not, and is
+/// not reported.
 std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
                                                    const std::vector<Point>& points)
 {
@@ -332,6 +366,8 @@ std::vector<std::atomic<std::uint32_t>> count_tets(const Scene& scene,
             const FloatBox box = box_of(corners);
             list_near(sorted, sorted.grid.overlapped(box.low, box.high),
                       float_planes(corners, sign, sorted.middle, scene.span), near);
+            // Made when a point first needs it: a tet without candidates, or with none that is not
+            // counted out already, does without.
             std::optional<TetInside> inside;
             for (std::size_t n = 0; n < near.count; ++n) {
                 const std::uint32_t k = near.place[n];
@@ -408,7 +444,9 @@ Coverage estimate_coverage(const TriangleMesh& surface, const TetMesh& tets,
     const StageProgress progress(interrupter, "Coverage");
     const Scene scene = make_scene(surface, tets, options.samples);
     const CounterRandom random(options.seed);
-    // Only a solid that fills next to nothing of the cells it passes through comes near this.
+    // Only a solid that fills next to nothing of the cells it passes through comes near this bound.
+    // It is there so that the loop ends for a solid in which no float32 point lies, however many
+    // are drawn.
     constexpr std::uint64_t kMostDrawsPerSample = 1000, kFewestMostDraws = 1U << 22;
     const std::uint64_t most_draws =
         std::max(kFewestMostDraws, kMostDrawsPerSample * options.samples);

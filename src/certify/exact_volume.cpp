@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: triangles that close up. Gives: the sign of the volume that they enclose, always the right
+// one. Doubles with a bound on their error decide it unless the volume is about as small as that
+// bound; exact rationals decide the rest, at many times the cost. No triangle has to be embedded or
+// sound: the sum over the cones is the volume for any closed list. Doubles alone would not do,
+// because condition 4 of docs/theory.md, "The whole shell", is one of those that the proof rests
+// on.
+
 #include "certify/exact_volume.h"
 
 #include <CGAL/Exact_rational.h>
@@ -22,13 +30,17 @@ Number cone(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s& c)
     const std::array<const Vec3s*, 3> corner{&a, &b, &c};
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = 0; k < 3; ++k)
+            // In rationals the difference is exact; in doubles it is rounded once, as coordinates
+            // of very different size need more digits than a double has.
             m[i][k] = Number(double((*corner[i])[int(k)])) - Number(double(apex[int(k)]));
     return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
            m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-/// An upper bound, up to its own rounding, on the sum of the absolute products in cone().
+/// An upper bound, up to its own rounding, on the sum of the absolute products in cone(): there are
+/// six, and none is larger than the product of the largest coordinates of the three corners as seen
+/// from the apex.
 double cone_bound(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s& c)
 {
     double product = 6;
@@ -48,6 +60,8 @@ int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& tria
 {
     if (chosen.empty())
         return 0;
+    // Any apex gives the same volume for a closed surface. One of the surface's own corners keeps
+    // the cones small, and the bound with them, far from the origin.
     const Vec3s& apex = points[triangles[chosen.front()][0]];
     auto sum_over = [&](auto& sum, const auto& term) {
         for (const std::uint32_t t : chosen) {
@@ -55,9 +69,10 @@ int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& tria
             sum += term(apex, points[v[0]], points[v[1]], points[v[2]]);
         }
     };
-    // A term takes part in fewer than n + 8 roundings, each of at most 2^-53 of it; twice that for
-    // the roundings of the bound itself. Products of float32 differences do not underflow far
-    // enough to matter beside the absolute guard.
+    // A term takes part in fewer than n + 8 roundings, each of at most 2^-53 of it, and the factor
+    // of two is for the roundings of the bound itself. Differences of float32 values are nought or
+    // at least 2^-149, so no product of three underflows; the absolute term is a guard that no such
+    // sum depends on.
     double six_volumes = 0, bound = 0;
     sum_over(six_volumes, cone<double>);
     sum_over(bound, cone_bound);

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: any tets. Gives: all pairs whose interiors have a common point, and which tets and prisms
+// are positive and in no pair. It is for shells that the certificate refuses as a whole, those of
+// surfaces that cross themselves and of the raw method among them: what is certified here is
+// certified tet by tet (docs/theory.md, "A surface that crosses itself"). Pairs are looked for by
+// bounding boxes in a tree, and each is decided by exact signs of corners, without any constructed
+// point. Pairs come sorted, so no finding depends on the number of threads.
+
 #include "vdb_shell/certify/overlaps.h"
 
 #include "vdb_shell/certify/tet_signs.h"
@@ -46,7 +54,8 @@ std::vector<FloatBox> boxes_of(const TetMesh& mesh)
     return boxes;
 }
 
-/// Boxes that only touch belong to tets that do no more.
+/// Boxes that only touch belong to tets that do no more than touch. The comparison is exact on
+/// float32 and far cheaper than the signs.
 bool interiors_overlap(const FloatBox& a, const FloatBox& b)
 {
     for (int k = 0; k < 3; ++k)
@@ -55,6 +64,8 @@ bool interiors_overlap(const FloatBox& a, const FloatBox& b)
     return true;
 }
 
+/// Flat tets have no interior, and the exact test has no answer for them. They are excluded by
+/// their exact sign, before it.
 std::vector<TetPair> overlapping_tets(const TetMesh& mesh, const std::vector<int>& sign)
 {
     const std::vector<FloatBox> boxes = boxes_of(mesh);
@@ -69,7 +80,8 @@ PrismIndex prism_of(const TetMesh& mesh, std::size_t tet)
     return {mesh.prism[tet], mesh.prism_layer.empty() ? 0U : mesh.prism_layer[tet]};
 }
 
-/// By layer, then by triangle, whatever the order of the tets.
+/// Counts by layer, then by triangle, whatever the order of the tets, so that each prism is named
+/// once.
 void count_prisms(const TetMesh& mesh, Overlaps& found)
 {
     std::vector<std::array<std::uint32_t, 3>> uses; // layer, triangle, certified
@@ -95,7 +107,8 @@ template <typename Element> std::string first_of(const Defect<Element>& defect)
     return text + ")";
 }
 
-/// Prisms of a single layer by triangle alone.
+/// Where all listed prisms are of layer 0, as in every shell of a single layer, their triangles
+/// alone are named.
 std::string first_prisms(const Defect<PrismIndex>& defect)
 {
     Defect<std::uint32_t> triangles;
@@ -107,6 +120,8 @@ std::string first_prisms(const Defect<PrismIndex>& defect)
     return first_of(triangles);
 }
 
+/// Certified tets have no interior point in common, so the sum of their volumes is the volume of
+/// the space that they cover.
 double certified_volume(const TetMesh& mesh, const std::vector<std::uint8_t>& certified)
 {
     TetMesh part;
@@ -141,6 +156,8 @@ Overlaps find_overlaps(const TetMesh& mesh, Interrupter* interrupter)
     found.tets = mesh.tets.size();
     const std::vector<int> sign = signs_of(mesh);
     for (const int s : sign)
+        // An inverted tet is not certified but remains in the search: as a set of points it may lie
+        // in others, and then those are not certified either.
         found.certified.push_back(s > 0);
     for (const TetPair& pair : overlapping_tets(mesh, sign)) {
         add_to(found.pairs, pair);

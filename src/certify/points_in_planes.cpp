@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: points in one array for each axis, runs of them, and four planes. Gives: the places of the
+// points that no plane excludes. It is the inner loop of coverage, so it is compiled once for each
+// kind of processor (core/simd.h), and eight points are looked at together. Floats decide nothing
+// here but what may be left out: the planes have been moved outward by more than the rounding of
+// this very expression, term by term without contraction, so the result has the same bits on every
+// processor.
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -28,9 +36,13 @@ std::size_t points_in_planes(const std::array<const float*, 3>& points, const Po
                          z = Floats::load(points[2] + k);
             const auto beyond = [&](std::size_t face) HWY_ATTR {
                 const auto& [nx, ny, nz] = planes.outward[face];
+                // A comparison with something that is not a number is false: a plane that was lost
+                // in the rounding excludes no point.
                 return nx * x + ny * y + nz * z > planes.most[face];
             };
             const unsigned outside = bits_of((beyond(0) | beyond(1)) | (beyond(2) | beyond(3)));
+            // The last group of a run reads points of the next run, or the room behind the last of
+            // them. Those lanes are masked, so what stands there is of no consequence.
             const std::uint32_t left = run->end - k;
             const unsigned valid = left < kLanes ? (1U << left) - 1 : 0xFFU;
             for (unsigned bits = ~outside & valid; bits != 0; bits &= bits - 1)

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: prisms, the orders of their corners, and the uses of the edges. Gives: conditions 1 and 2
+// of docs/theory.md, "The whole shell": a closed oriented manifold, tets that are positive, and
+// diagonals on which the prisms at an edge agree. Signs are exact on the stored float32; all the
+// rest compares indices. Flags are raised in parallel, each by its own prism, and listed in index
+// order afterwards. Orders come from files too, so an entry may be anything: nothing is concluded
+// from an order that is no permutation.
+
 #include "certify/prism_checks.h"
 
 #include "certify/certificate_findings.h"
@@ -34,8 +42,10 @@ bool comes_before(const Order& order, std::uint8_t corner, std::uint8_t other)
     return false;
 }
 
-/// Each tet of each split holds one whole pillar and one end of either other pillar: four of the
-/// pillar, twelve of the prism. One determinant gives the sign of all.
+/// Each tet of each split holds one whole pillar and one end of either other pillar: four tets a
+/// pillar, twelve a prism (docs/theory.md, "One prism: the twelve tets"). With the corners in this
+/// order a single formula gives the sign of all of them, whether the split's permutation is even or
+/// odd. Only the whole pillar has to be un-pinned: the tet of a pinned pillar does not exist.
 class Prism
 {
 public:
@@ -44,7 +54,8 @@ public:
         for (std::size_t i = 0; i < 3; ++i)
             pillar_[i] = {&shell.outer[triangle[int(i)]], &shell.inner[triangle[int(i)]]};
     }
-    /// The tet of pillar `i`; the next and the previous pillar's inner end where asked.
+    /// The tet of pillar `i`, with the inner ends of the next and of the previous pillar where the
+    /// flags say so.
     bool positive(std::size_t i, bool next_inner, bool previous_inner) const
     {
         return exact::orient3d(*pillar_[i][0], *pillar_[i][1],
@@ -56,6 +67,8 @@ public:
         return positive(i, false, false) && positive(i, true, false) && positive(i, false, true) &&
                positive(i, true, true);
     }
+    /// The diagonal over an edge ends at the inner end of the later corner, so the pillar's own tet
+    /// has the inner ends of just those corners that come after its own.
     bool chosen_positive(std::size_t i, const Order& order) const
     {
         const auto corner = static_cast<std::uint8_t>(i);
@@ -71,6 +84,8 @@ private:
 
 bool once_each_way(const EdgeUse* first, const EdgeUse* last)
 {
+    // An edge from a vertex to itself, of a triangle that names a corner twice, is no edge, however
+    // often it is used.
     return last - first == 2 && first->edge[0] != first->edge[1] &&
            first[0].forward != first[1].forward;
 }
@@ -98,6 +113,8 @@ void check_prisms(const PrismShell& shell, const PrismSplit& split, const std::v
     const bool all = certificate.test == PrismTest::twelve_tets;
     for_each_index(bad.size(), [&](std::size_t t) {
         cyclic[t] = !is_permutation(split.order[t]);
+        // Without an order there are no chosen tets to look at. The twelve do not depend on the
+        // order, so they are tested all the same.
         if (cyclic[t] && !all)
             return;
         const Prism prism(shell, shell.triangles[t]);
@@ -124,6 +141,8 @@ void check_edges(const PrismSplit& split, const std::vector<char>& pinned,
                 open_triangle[uses[i].triangle] = 1;
             continue;
         }
+        // With a pinned end the quad is a triangle or an edge, the same for both prisms, and no
+        // diagonal is left to disagree on (docs/theory.md, "Pins").
         const bool quad = !pinned[edge[0]] && !pinned[edge[1]];
         if (quad && is_permutation(split.order[uses[begin].triangle]) &&
             is_permutation(split.order[uses[begin + 1].triangle]) &&
@@ -135,7 +154,9 @@ void check_edges(const PrismSplit& split, const std::vector<char>& pinned,
 void check_vertices(const PrismShell& shell, const std::vector<EdgeUse>& uses,
                     Certificate& certificate)
 {
-    // Corners of triangles, united across common edges; two classes at a vertex are two fans.
+    // Corners of triangles are united across common edges; two classes at one vertex are two fans.
+    // At an edge of more than two triangles all of them are united, so that such an edge is
+    // reported as an open edge and not as a split vertex besides. Time is nearly linear.
     std::vector<std::uint32_t> parent(3 * shell.triangles.size());
     std::iota(parent.begin(), parent.end(), 0U);
     auto root_of = [&](std::uint32_t i) {

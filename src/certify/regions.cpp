@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a shell, its components and the triangles that touch. Gives: conditions 4 and 6 of
+// docs/theory.md, "The whole shell": the two surfaces of a component enclose volumes of one sign,
+// and no component has a surface in the region of another. Both are decided exactly, by the sign of
+// the volume and by crossings of an upward ray. One point of each surface stands for all of it,
+// which is true only where the surfaces do not touch: hence pairs in contact, which have failed
+// already, are left out. A component with an open edge encloses nothing and has failed likewise.
+// Each component and each pair writes its own flag, so threads do not change the result; pairs come
+// from a tree of boxes.
+
 #include "certify/regions.h"
 
 #include "certify/certificate_findings.h"
@@ -32,6 +42,7 @@ std::vector<Piece> gather_pieces(const PrismShell& shell,
     std::vector<Piece> pieces;
     for (std::uint32_t t = 0; t < component_of.size(); ++t) {
         const std::uint32_t c = component_of[t];
+        // Components are numbered by their first triangle, so a new number is always the next one.
         if (c == pieces.size()) {
             pieces.emplace_back();
             pieces[c].box = FloatBox::around(shell.outer[shell.triangles[t][0]]);
@@ -46,7 +57,8 @@ std::vector<Piece> gather_pieces(const PrismShell& shell,
     return pieces;
 }
 
-/// A triangle that the upward ray from `point` cannot meet.
+/// A triangle that the upward ray from `point` cannot meet. The comparisons are exact and strict,
+/// so nothing that the ray touches is excluded.
 bool misses_ray(const Vec3s& point, const Vec3s& a, const Vec3s& b, const Vec3s& c)
 {
     for (int k = 0; k < 2; ++k)
@@ -64,6 +76,9 @@ int winding_number(const std::vector<Vec3s>& points, const PrismShell& shell, co
     for (const std::uint32_t t : piece.triangles) {
         const Vec3I& v = shell.triangles[t];
         const Vec3s &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
+        // The half-open rule of crossing_above counts a ray through an edge or a corner once, so no
+        // ray has to be tried again in another direction. A point on the surface would be a
+        // contact, and pairs in contact do not come here.
         if (!misses_ray(at, a, b, c))
             winding += exact::crossing_above(at, a, b, c, on_surface);
     }
@@ -72,6 +87,8 @@ int winding_number(const std::vector<Vec3s>& points, const PrismShell& shell, co
 
 bool in_region(const PrismShell& shell, const Piece& piece, const Vec3s& at)
 {
+    // Outside the box of both surfaces both winding numbers are nought, and the region is where
+    // they differ.
     return piece.box.contains(at) && winding_number(shell.outer, shell, piece, at) !=
                                          winding_number(shell.inner, shell, piece, at);
 }
@@ -113,6 +130,8 @@ void check_orientation(const PrismShell& shell, const std::vector<Piece>& pieces
                 return;
             const int outer = exact::volume_sign(shell.outer, shell.triangles, piece.triangles);
             const int inner = exact::volume_sign(shell.inner, shell.triangles, piece.triangles);
+            // Two volumes of nought have equal signs too, but a surface without volume has no
+            // inside that prisms could fill.
             inside_out[c] = outer == 0 || inner != outer;
         },
         1);
@@ -142,7 +161,8 @@ void check_regions(const PrismShell& shell, const std::vector<std::uint32_t>& co
         pairs.size(),
         [&](std::size_t i) {
             const Piece &first = pieces[pairs[i][0]], &second = pieces[pairs[i][1]];
-            // A contact has failed the pair already, and leaves no side to speak of.
+            // A contact has failed the pair already, and of surfaces that touch no single point
+            // tells on which side the rest lies.
             if (first.closed && second.closed &&
                 !std::binary_search(touching.begin(), touching.end(), pairs[i]))
                 nested[i] =

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a closed surface and a grid of cells around it. Gives: which cells lie inside, which
+// outside, and which the surface may pass through; and whether a single point is inside, exactly. A
+// point in a cell of the first two kinds needs no test of its own. One in a cell of the third kind
+// is decided by the crossings of a vertical ray with the triangles of its column alone. Inside is
+// where the winding number is not nought, so a surface that crosses itself has an inside as well.
+// Cells are listed by triangle in parallel, and put together in index order.
+
 #include "certify/solid_cells.h"
 
 #include "core/exact.h"
@@ -46,8 +54,9 @@ Shadow shadow_of(const TriangleMesh& surface, std::uint32_t triangle)
             std::max({p[0][2], p[1][2], p[2][2]}), triangle};
 }
 
-/// A vertical line meets a triangle only in cells that the triangle meets, so the columns of those
-/// cells are all that matter.
+/// Lists the triangles of each column of cells. A vertical line meets a triangle only in cells that
+/// the triangle meets, so the columns of those cells are all that matter. Cells are closed: a
+/// triangle that ends on the plane between two columns is listed in both.
 void list_columns(const CellGrid& grid, const TriangleMesh& surface,
                   std::vector<std::vector<std::uint32_t>> cells, SolidCells& result)
 {
@@ -88,7 +97,9 @@ SolidCells classify_cells(const CellGrid& grid, const TriangleMesh& surface)
             result.kind[cell] = CellKind::surface;
     list_columns(grid, surface, std::move(cells), result);
     for_each_index(grid.columns(), [&](std::size_t column) {
-        // No surface passes between neighbours that it does not touch: one exact test for each run.
+        // Cells one above the other that the surface does not touch lie on the same side of it, as
+        // they have a common face: one exact test is enough for each run of them. Columns do not
+        // depend on each other.
         bool known = false, inside = false;
         for (std::uint32_t k = 0; k < grid.count(2); ++k) {
             const auto cell = static_cast<std::uint32_t>(column * grid.count(2) + k);

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a stack of layers. Gives: the certificate of each layer, and whether different components
+// as wholes keep clear of each other. Nothing more is needed for one component: its layers cannot
+// overlap when each of them is certified (docs/theory.md, "Layers do not overlap one another"). Two
+// components do need more, because a layer of one is held against the same layer of the other only
+// (docs/theory.md, "Several components").
+
 #include "vdb_shell/certify/stack_certificate.h"
 
 #include "certify/certificate_findings.h"
@@ -21,8 +28,8 @@ bool of_one_component(const std::vector<std::uint32_t>& component_of)
                        [&](std::uint32_t c) { return c == component_of.front(); });
 }
 
-/// Whether different components keep clear of each other as wholes. What the layers say of one
-/// component needs no second look: only contacts between components are taken over.
+/// Whether different components keep clear of each other as wholes. Contacts within one component
+/// are not taken over: the certificates of its layers speak of those.
 void check_hull(const ShellStack& stack, StackCertificate& certificate)
 {
     const PrismShell hull = hull_of(stack);
@@ -33,6 +40,8 @@ void check_hull(const ShellStack& stack, StackCertificate& certificate)
     const std::vector<char> pinned = pinned_flags(hull);
     Certificate found;
     std::vector<char> open_triangle(hull.triangles.size());
+    // Called for the open triangles. What it says of diagonals means nothing here, as no tet runs
+    // through all layers; it goes into `found` and is dropped.
     check_edges(stack.splits.front(), pinned, uses, found, open_triangle);
     const auto contacts = check_surfaces(hull, pinned, found);
     for (const TrianglePair& pair : contacts)

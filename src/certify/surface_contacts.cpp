@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a shell. Gives: all pairs of triangles of its two surfaces that meet in more than what
+// they share, sorted by kind: condition 3 of docs/theory.md, "The whole shell", and condition 5, as
+// pairs of different components are among them. Both surfaces are put into one list, so that one
+// search finds the contacts of each with itself and with the other. Corners are shared by index and
+// never by coordinate: two vertices in the same place are a contact, while a pinned inner corner is
+// its outer one. The search is a tree of boxes, the decision exact; pairs come sorted, for any
+// number of threads.
+
 #include "certify/surface_contacts.h"
 
 #include "certify/certificate_findings.h"
@@ -51,6 +60,8 @@ TwoSurfaces lay_together(const PrismShell& shell, const std::vector<char>& pinne
     return both;
 }
 
+/// Two inner triangles with a common corner that touch elsewhere are listed as a fold, those
+/// without one as a contact.
 int shared_corners(const Vec3I& first, const Vec3I& second)
 {
     int shared = 0;
@@ -76,6 +87,8 @@ void list_contact(const TwoSurfaces& both, std::uint32_t first, std::uint32_t se
     const std::uint32_t s = both.source[first], t = both.source[second];
     if (!both.inner(first) && !both.inner(second))
         add_to(certificate.outer_contacts, {s, t});
+    // Pairs come with the smaller face first, and outer faces stand before inner ones, so of a
+    // mixed pair the first is the outer one. The finding names the inner triangle first.
     else if (!both.inner(first))
         add_to(certificate.inner_through_outer, {t, s});
     else if (shared_corners(both.faces[first], both.faces[second]) > 0)

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: tets. Gives: which of them are inverted or flat, by exact signs, and the sum of their
+// volumes in doubles. The two are separate because a volume in doubles near nought has no certain
+// sign. Signs are computed in parallel and listed in index order; the sum runs in index order in
+// one thread, so that its last bit does not depend on the number of threads.
+
 #include "vdb_shell/certify/tet_signs.h"
 
 #include "core/exact.h"
@@ -41,7 +47,8 @@ double tet_volume(const TetMesh& mesh)
 {
     double six_volumes = 0;
     for (const openvdb::Vec4I& tet : mesh.tets) {
-        // Relative to the tet's own first corner: nothing is lost far from the origin.
+        // Relative to the tet's own first corner: differences of near float32 points are exact in
+        // doubles, so the volume is as accurate far from the origin.
         const openvdb::Vec3d a(mesh.points[tet[0]]);
         const openvdb::Vec3d ab = openvdb::Vec3d(mesh.points[tet[1]]) - a;
         const openvdb::Vec3d ac = openvdb::Vec3d(mesh.points[tet[2]]) - a;

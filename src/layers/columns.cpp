@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a shell and the shares at which to cut its pillars. Leaves: points between the layers in
+// float32, with all tets of all layers positive if those of the shell were. Cutting alone keeps the
+// twelve tets of a prism positive (docs/theory.md, "A piece of a prism"); rounding may spoil them,
+// and for three chosen tets there is no such lemma. So every prism is tested exactly, points of bad
+// ones are moved, and as a last resort pillars stay whole, which always works. Signs suffice,
+// without any test of the surfaces between (docs/theory.md, "Cutting needs no surface test"). The
+// trap is `upside_down`: surfaces run from the skin, which is the inner surface of an outward
+// layer, so outer and inner change places there.
+
 #include "layers/columns.h"
 
 #include "core/parallel.h"
@@ -19,14 +29,19 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
+// Rounds end with the first that mends nothing. The bound makes sure that they end soon, and
+// validity does not depend on it: what they leave bad is made whole afterwards.
 constexpr int kMostRounds = 20;
 
-/// Tets of triangle t's prism in layer k that are not positive.
+/// Tets of triangle t's prism in layer k that are not positive. The number, and not only whether
+/// there is one, because a point that mends one of two bad tets is progress. The tet of a pillar
+/// that is pinned in this layer does not exist and is not counted.
 int bad_tets(const Columns& c, std::size_t k, std::size_t t)
 {
     const Vec3I& triangle = (*c.triangles)[t];
     const auto& upper = c.surface[c.upside_down ? k + 1 : k];
     const auto& lower = c.surface[c.upside_down ? k : k + 1];
+    // Doubles that hold float32 values: the signs are those of the stored points.
     std::array<Vec3d, 6> corner;
     std::array<bool, 3> pinned{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -66,7 +81,9 @@ std::vector<std::uint8_t> bad_prisms(const Columns& c)
     return bad;
 }
 
-/// The points between the layers that are corners of bad prisms: by surface, then by vertex.
+/// The points that are corners of bad prisms: by surface, then by vertex. Those on the two given
+/// surfaces are flagged as well, but are never moved: they are certified, and neighbouring layers
+/// share them.
 std::vector<std::vector<std::uint8_t>> movable_corners(const Columns& c,
                                                        const std::vector<std::uint8_t>& bad)
 {
@@ -87,11 +104,14 @@ Vec3d mean_of_neighbours(const Columns& c, std::size_t j, std::uint32_t v)
         for (int k = 0; k < 3; ++k)
             if ((*c.triangles)[t][k] != v)
                 sum += Vec3d(c.surface[j][(*c.triangles)[t][k]]);
+    // On a closed surface each neighbour is in two triangles of the fan and is counted twice.
     return sum / (2.0 * double(c.around.around(v).size()));
 }
 
-/// Where point v of surface j might go, nearest places first: floats next to it, up and down its
-/// pillar, and towards its neighbours.
+/// Where point v of surface j might go, nearest places first, so that it stays close to the wanted
+/// share: floats next to it (the first of them is the point itself, which is never an improvement),
+/// then up and down its pillar, and towards its neighbours. The places next to it are for tets that
+/// only rounding has spoiled, the others for those that the cut itself has.
 std::vector<Vec3s> candidates(const Columns& c, std::size_t j, std::uint32_t v)
 {
     const Vec3s here = c.surface[j][v];
@@ -121,12 +141,16 @@ std::vector<Vec3s> candidates(const Columns& c, std::size_t j, std::uint32_t v)
 bool mend_point(Columns& c, std::size_t j, std::uint32_t v)
 {
     Vec3s& point = c.surface[j][v];
-    // What is pinned from end to end has no place of its own to move to.
+    // A pillar without length has no place of its own between its ends: its points are the vertex
+    // itself.
     if (c.surface.front()[v] == c.surface.back()[v])
         return false;
     Vec3s best = point;
     const int before = bad_tets_around(c, j, v);
     int fewest = before;
+    // Only the prisms above and below the point change, so counting around it is enough, and the
+    // number of bad tets in all falls with each accepted move. Fewest first: a place is taken for
+    // being strictly better, so ties go to the nearest.
     for (const Vec3s& place : candidates(c, j, v)) {
         if (fewest == 0)
             break;
@@ -157,6 +181,8 @@ Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
     const auto& far = upside_down ? shell.outer : shell.inner;
     c.surface.push_back(skin);
     for (const double share : shares) {
+        // Every surface begins as the skin, so that a pillar without length keeps its bits: the sum
+        // could turn a -0 into 0.
         c.surface.push_back(skin);
         std::vector<Vec3s>& cut = c.surface.back();
         for_each_index(cut.size(), [&](std::size_t v) {
@@ -176,6 +202,8 @@ void mend_columns(Columns& c, const StageProgress& progress)
         progress.stop_if_interrupted(100 * round / kMostRounds);
         improved = false;
         const auto corners = movable_corners(c, bad_prisms(c));
+        // One point after the other in index order, in one thread: each move sees those before it,
+        // and the result does not depend on threads.
         for (std::size_t j = 1; j < c.layers(); ++j)
             for (std::uint32_t v = 0; v < corners[j].size(); ++v)
                 if (corners[j][v])
@@ -185,6 +213,10 @@ void mend_columns(Columns& c, const StageProgress& progress)
 
 std::size_t keep_whole_where_bad(Columns& c)
 {
+    // A pillar that becomes whole changes all prisms around it, which may turn bad in their turn;
+    // hence rounds, until one adds no pillar. Each adds one at least, so there are no more rounds
+    // than vertices. If all pillars are whole, the farthest layer is the given shell and the others
+    // have no tets.
     std::vector<std::uint8_t> whole(c.surface[0].size(), 0);
     for (bool any = true; any;) {
         any = false;
@@ -192,7 +224,8 @@ std::size_t keep_whole_where_bad(Columns& c)
         for (std::size_t i = 0; i < bad.size(); ++i)
             for (int k = 0; bad[i] && k < 3; ++k) {
                 const std::uint32_t v = (*c.triangles)[i % c.triangles->size()][k];
-                // A pinned pillar has nothing to give.
+                // A pillar without length is whole already. Counting it would report a pillar that
+                // nobody could have cut.
                 if (whole[v] || c.surface.front()[v] == c.surface.back()[v])
                     continue;
                 whole[v] = 1;

@@ -33,9 +33,9 @@ Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
 /// Moves points between the layers while that leaves fewer tets that are not positive.
 void mend_columns(Columns& columns, const StageProgress& progress);
 
-/// Pillars of prisms that still have such a tet become whole again, and so on from prism to prism,
-/// until there is none. Gives back how many pillars became whole. At worst all do, and the shell is
-/// the one that was cut.
+/// Makes the pillars of prisms that have such a tet after all whole again, and so on from prism to
+/// prism, until there is no such tet. Gives back how many pillars became whole. At worst all do,
+/// and the shell is the one that was cut.
 std::size_t keep_whole_where_bad(Columns& columns);
 
 std::size_t points_that_differ(const std::vector<std::vector<openvdb::Vec3s>>& a,

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a valid stack and the wanted number of layers. Leaves: a valid stack, in which every layer
+// has been cut into so many, and a count of what had to give way. Surfaces of the given stack keep
+// their bits, triangles and diagonals are those of the layer that was cut; so tets meet face to
+// face across the new surfaces without any search. Each given layer is cut by itself, in terms of
+// the skin: shares are counted from there, on both sides of it (docs/theory.md, "Layers, and shells
+// scaled down").
+
 #include "vdb_shell/layers/cut_layers.h"
 
 #include "vdb_shell/core/error.h"
@@ -19,11 +27,14 @@ namespace vdb_shell
 namespace
 {
 
-/// Shares of the pillar above each of the n - 1 cuts, from the skin.
+/// Shares of the pillar that lie between the skin and each of the n - 1 cuts, ascending. Shares may
+/// coincide where a grading is so steep that a layer is lost in the rounding; that layer is then
+/// pinned and has no tets, which is valid.
 std::vector<double> shares_of(const LayerOptions& options)
 {
     const bool growing = options.grading > 1.0;
-    // Thickest first, so that only underflow can happen: an overflow would give NaN shares.
+    // Thickest first, so that only underflow can happen, which gives layers of no thickness;
+    // overflow would give an infinite sum and shares that are not numbers.
     const double ratio = growing ? 1.0 / options.grading : options.grading;
     std::vector<double> thickness(1, 1.0);
     for (int i = 1; i < options.layers; ++i)
@@ -39,7 +50,8 @@ std::vector<double> shares_of(const LayerOptions& options)
     return sums;
 }
 
-/// The stack of one layer of the input, from the columns that it was cut into.
+/// Appends the layers that one layer of the input was cut into. Stacks run from the outermost to
+/// the innermost layer, columns from the skin: above the skin the order is turned round.
 void append_layers(const PrismShell& whole, const PrismSplit& split, bool above_skin,
                    Columns columns, ShellStack& result)
 {
@@ -83,6 +95,8 @@ LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, Pri
     const StageProgress progress(interrupter, "layers");
     LayerResult result;
     if (options.layers == 1) {
+        // Not through the code below: it would give the same points, but count the pillars of
+        // prisms that were bad before as uncut.
         result.stack = stack;
         return result;
     }

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a valid shell and a factor. Leaves: the shell with every pillar that share of its length,
+// valid again, and a count of what had to become shorter. With twelve positive tets in each prism
+// every factor is valid but for the rounding (docs/theory.md, "Layers, and shells scaled down");
+// with the chosen three it need not be. So all tests of growth's own start run on the scaled
+// pillars, and what fails is shortened further, at last to nothing. Growth lends its state and its
+// tests, not its moves: no pillar changes its direction, and the certificate decides afterwards as
+// always. A factor of 1 changes no bit.
+
 #include "vdb_shell/layers/scale_thickness.h"
 
 #include "vdb_shell/core/error.h"
@@ -33,6 +42,7 @@ Pillars scaled_pillars(const PrismShell& shell, double factor)
     pillars.directions.visibility.assign(count, 0.0);
     pillars.length.assign(count, 0.0);
     for (std::size_t v = 0; v < count; ++v) {
+        // A pinned pillar has no direction. A visibility of nought makes the start pin it again.
         if (shell.pinned(v))
             continue;
         const Vec3d arm = Vec3d(shell.inner[v]) - Vec3d(shell.outer[v]);
@@ -46,6 +56,7 @@ Pillars scaled_pillars(const PrismShell& shell, double factor)
 GrowState state_of(const growth::Connectivity& connectivity, const PrismShell& shell,
                    const PrismSplit& split, const Pillars& pillars, PrismTest test)
 {
+    // The scaled lengths are the caps too, so no test can be passed by a longer pillar.
     GrowState s = growth::make_state(connectivity, shell.outer, pillars.length);
     s.twelve = test == PrismTest::twelve_tets;
     for (std::size_t f = 0; f < split.order.size(); ++f)
@@ -84,7 +95,10 @@ ScaleReport scale_thickness(PrismShell& shell, const PrismSplit& split, const Sc
     for (std::size_t v = 0; v < shell.outer.size(); ++v) {
         if (shell.pinned(v))
             continue;
+        // The state holds float32 values in doubles, so nothing is rounded here.
         const Vec3s inner(s.b[v]);
+        // Compared with the point and not with the length: two lengths may round to the same
+        // float32 point, and then nothing had to give way.
         report.shortened +=
             inner != end_of_pillar(shell.outer[v], pillars.directions.inward[v], pillars.length[v]);
         shell.inner[v] = s.pinned[v] ? shell.outer[v] : inner;

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the finished shell with its lines, tets and field. Leaves: the figures of the report
+// filled in, coverage aside. Everything is measured on the float32 that will be written, after the
+// last stage that could change them, so a figure cannot speak of another shell than the file does.
+// All is computed in doubles and decides nothing; what is proven stands in the certificate. Sums
+// run in index order. Lengths and volumes are in world units, unless a name says voxels.
+
 #include "pipeline/figures.h"
 
 #include "core/parallel.h"
@@ -18,6 +25,7 @@ void measure_field(FieldReport& report, const openvdb::FloatGrid& level_set)
     report.voxel_size = level_set.voxelSize()[0];
     report.active_voxels = level_set.activeVoxelCount();
     report.memory_bytes = level_set.memUsage();
+    // The field is negative inside, so the deepest voxel is the smallest.
     report.interior_depth = -double(openvdb::tools::minMax(level_set.tree()).min());
 }
 
@@ -48,10 +56,14 @@ void measure_lines(LineReport& report, const Directions& directions, const LineL
     report.min_visibility = *std::min_element(visibility.begin(), visibility.end());
     report.blind_vertices = static_cast<std::size_t>(
         std::count_if(visibility.begin(), visibility.end(), [](double v) { return v <= 0.0; }));
+    // Lines that were stepped. Growth that begins on coarser surfaces needs those of a few vertices
+    // only, and the others have the reason none.
     report.lines = lines.reason.size() -
                    static_cast<std::size_t>(
                        std::count(lines.reason.begin(), lines.reason.end(), StopReason::none));
     report.steps = std::accumulate(lines.steps.begin(), lines.steps.end(), std::size_t(0));
+    // These are the reasons after growth, if there was one: they tell what holds the pillar, and
+    // not what ended its line.
     for (const StopReason reason : hull.stop)
         ++report.stops[static_cast<std::size_t>(reason)];
 
@@ -85,7 +97,8 @@ LayerFigures measure_layer(const PrismShell& layer, const TetMesh& tets)
     return figures;
 }
 
-/// Each side has lines of its own.
+/// Each side has lines of its own, and its pillars end at the skin. For one side alone the hull is
+/// that side; for both the hull's pillars run through the skin and have no single line.
 void measure_sides(ShellResult& result)
 {
     ShellReport& report = result.report;
@@ -104,6 +117,8 @@ void measure_sides(ShellResult& result)
 
 double volume_outside(const ShellStack& stack, const TetMesh& tets, double all)
 {
+    // With one side the answer is nothing or all, without a further sum; so the fill of an inward
+    // shell is that of its tets to the last bit.
     if (stack.skin == 0 || stack.skin == stack.layers.size())
         return stack.skin == 0 ? 0.0 : all;
     double volume = 0;
@@ -122,6 +137,8 @@ void measure_result(ShellResult& result)
     report.prisms = stack.layers.size() * stack.triangles().size();
     report.pinned_vertices = zeros_in(lengths_of(hull_of(stack)));
     report.ripples = stack.splits.front().ripples;
+    // Both jobs are serial in part, so they fill each other's gaps. They write different fields of
+    // the report, and neither reads what the other writes.
     run_together([&] { report.conformity = check_conformity(stack, result.tets); },
                  [&] {
                      report.signs = count_tet_signs(result.tets);

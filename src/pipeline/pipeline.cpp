@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a mesh or a level set, and the options of all stages. Gives: the shell with everything
+// that was made on the way, and its report. Here alone do stages meet: each takes const references
+// and returns a value, and this file says in which order and under which names they are timed
+// (docs/architecture.md). The certificate comes after the last stage that moves a point, so it
+// speaks of what is written. Options are validated before the first stage, so that no run fails
+// late for a reason that was known at the start.
+
 #include "vdb_shell/pipeline.h"
 
 #include "vdb_shell/core/error.h"
@@ -17,14 +25,16 @@ namespace
 {
 
 /// Copies of vertices make sense only where nothing else stands in the way: at an edge of three or
-/// more triangles the fans are no fans of one surface.
+/// more triangles the fans are no fans of one surface. They count as contacts of the surface with
+/// itself, so self-intersections have to be allowed.
 bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
 {
     return options.allow_self_intersections && check.non_manifold_vertices.count > 0 &&
            check.non_manifold_edges.count == 0;
 }
 
-/// Looks at r.surface and splits its fans where that is allowed.
+/// Looks at r.surface and splits its fans where that is allowed. After a repair the check has been
+/// made already, of the surface that the repair gives.
 void look_at_surface(ShellResult& r, const CheckOptions& options)
 {
     r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface);
@@ -45,7 +55,8 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
-/// The surface to work with, repaired when asked: in r.surface, looked at and found usable.
+/// Puts the surface to work with into r.surface: repaired if the options say so, checked and found
+/// usable, and resampled.
 void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
                      StageClock& clock, Interrupter* interrupter)
 {
@@ -53,6 +64,8 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
     r.surface = mesh;
     if (options.repair) {
         RepairOptions repair = *options.repair;
+        // Whoever allows the surface to cross itself is better served by a closed surface with a
+        // crossing patch than by one that is refused for its hole.
         repair.keep_crossing_fills |= options.check.allow_self_intersections;
         clock.run("repair", [&] {
             RepairResult repaired = repair_mesh(mesh, repair, interrupter);
@@ -64,12 +77,15 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
         look_at_surface(r, options.check);
         require_usable(r.report.mesh, options.check,
                        r.report.repair ? name + " after --repair" : name);
+        // After the check, whose findings say which components are inside out.
         r.surface = turn_outward(std::move(r.surface), r.report.mesh);
     });
     resample_surface(r, options, clock, interrupter);
 }
 
-/// The level set that the lines step through: the given one where it is fit for that.
+/// Makes the level set that the lines step through; a given one is taken where it is fit for that.
+/// In every other case the report says why not, for the lengths then come from another field than
+/// the user's own.
 void make_field(ShellResult& r, const ShellOptions& options, const GrowStart& start,
                 const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
                 Interrupter* interrupter)
@@ -80,12 +96,15 @@ void make_field(ShellResult& r, const ShellOptions& options, const GrowStart& st
     origin = dense_for.empty() ? "a narrow band made of the surface, deeper where lines end"
                                : "made of the surface, dense for " + dense_for;
     if (given) {
-        // A given band outside is as wide as its maker needed, not as the lines do.
+        // A given band outside is as wide as its maker needed, which need not be as deep as lines
+        // outward go, and beyond it no distance is known.
         const std::string hindrance = options.side == Side::inward
                                           ? why_not_steppable(*given, r.surface, band)
                                           : "nothing is known outside its band";
         if (hindrance.empty()) {
             origin = "as given";
+            // A copy, because smoothing changes the level set in place and the given one is the
+            // caller's.
             r.level_set = given->deepCopy();
             return;
         }
@@ -117,11 +136,14 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     clock.run("certificate", [&] {
         r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
     });
+    // What is certified as a whole has no overlaps, so the search would only cost time. It serves
+    // surfaces that cross themselves, and the raw method.
     if (!r.report.certificate->certified())
         clock.run("overlaps", [&] { r.report.overlaps = find_overlaps(r.tets, interrupter); });
     clock.run("figures", [&] { measure_result(r); });
     clock.run("coverage", [&] {
-        // Layers outside are held against what the outermost surface encloses.
+        // Layers outside are held against what the outermost surface encloses, since the input's
+        // own volume holds none of them.
         const TriangleMesh solid = options.side == Side::inward
                                        ? r.surface
                                        : TriangleMesh{r.stack.surface(0), r.stack.triangles()};

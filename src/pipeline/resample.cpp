@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the surface of a result, before or after its shell was built. Leaves: the surface
+// decimated and subdivided as the options say, or refined in rounds together with its shell. A
+// round cuts the triangles whose cutting is predicted to gain most, and growth goes on from the
+// shell there is. The best round is kept and not the last, as a round may lose fill. The report's
+// check is made anew for the surface that results, because coordinates have been rounded.
+
 #include "pipeline/resample.h"
 
 #include "vdb_shell/core/error.h"
@@ -15,6 +22,8 @@ namespace
 
 using openvdb::Vec3d;
 
+/// Triangles that the bound on tets leaves room for, if no pillar were pinned: three tets a prism,
+/// in each layer on each side.
 std::size_t most_triangles(const ShellOptions& options)
 {
     if (!options.refine.max_tets)
@@ -37,6 +46,7 @@ RefineRound figures_of(const ShellResult& result, const ShellOptions& options)
     // Layers are cut later, each into as many tets.
     round.tets =
         make_tets(result.stack).tets.size() * static_cast<std::size_t>(options.layers.layers);
+    // Of the layer inside alone: layers outside do not fill the solid.
     const double shell = tet_volume(make_tets(inward_layer(result), result.stack.splits.back()));
     round.fill = shell / signed_volume(result.surface.points, result.surface.triangles);
     return round;
@@ -57,7 +67,9 @@ std::optional<RefineEnd> end_of(const RefineReport& report, const RefineOptions&
     return std::nullopt;
 }
 
-/// The old pillars, and between them those in the middles of the halved edges.
+/// The old pillars, and between them those in the middles of the halved edges. Their inner ends are
+/// the middles of the old inner edges, rounded; growth mends what is not valid in that before it
+/// goes on.
 GrowStart start_on(const RefinedMesh& refined, const PrismShell& shell)
 {
     GrowStart start{GrowFrom::shell, shell.inner, {}};
@@ -88,10 +100,14 @@ bool cut_triangles(ShellResult& result, const ShellOptions& options, RefineRepor
 RefineReport refine(ShellResult& result, const ShellOptions& options,
                     const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
 {
-    // A raw shell's fill counts overlaps twice, so a higher one need not be better.
+    // A raw shell's fill counts overlaps twice, so a higher one need not be better. Its last round
+    // is kept.
     const bool fill_tells = options.grow.method != Method::raw;
     RefineReport report;
     report.rounds.push_back(figures_of(result, options));
+    // A copy of all but the level set, which is shared: no round changes it, as lines outward
+    // restore it after use. The report is copied as well, so that its figures are those of the
+    // round that is kept.
     ShellResult best = result;
     while (true) {
         if (const std::optional<RefineEnd> end = end_of(report, options.refine)) {
@@ -101,10 +117,14 @@ RefineReport refine(ShellResult& result, const ShellOptions& options,
         GrowStart start;
         if (!cut_triangles(result, options, report, start, interrupter))
             break;
+        // The stages of a round have a clock of their own, whose costs are dropped: in the report
+        // they are one stage, "refine", and would be counted twice otherwise.
         std::vector<StageCost> costs;
         StageClock clock(costs);
         build_sides(result, options, thickness_grid, clock, interrupter, start);
         report.rounds.push_back(figures_of(result, options));
+        // The next round goes on from this one all the same: its triangles are finer, and a later
+        // round may gain from that.
         if (fill_tells && report.rounds.back().fill <= report.rounds[report.kept].fill)
             continue;
         report.kept = report.rounds.size() - 1;
@@ -117,6 +137,8 @@ RefineReport refine(ShellResult& result, const ShellOptions& options,
 void decimate_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
 {
     const std::string& name = result.report.source;
+    // Decimation takes each contact in its result for its own doing and fixes the vertices around
+    // it. Contacts of the input would remain whatever was fixed.
     if (!result.report.mesh.embedded())
         throw GeometryError(name + ": decimation needs a surface that does not cross itself; " +
                             std::to_string(result.report.mesh.self_intersections.count) +

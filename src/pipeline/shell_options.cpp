@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the struct of all options. Gives: their sections in the order of the data, from which the
+// command line, JSON and the help page are made, and the validation that no single stage can make,
+// because it compares options of several. Keys are stored in files with the shell, so a key is
+// never used for another meaning. Ranges are those of the stages' own descriptions.
+
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/section.h"
 #include "vdb_shell/pipeline.h"
@@ -54,6 +60,8 @@ OptionSections describe(ShellOptions& o)
 
 void require_sensible(const ShellOptions& options, bool thickness_grid)
 {
+    // A description binds to the fields of a struct and could write them; a copy keeps the caller's
+    // const.
     ShellOptions copy = options;
     for (const OptionSection& section : describe(copy))
         require_in_range(section.options, section.key);
@@ -62,6 +70,8 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
                             " (--refine-rounds), but an outward shell has no solid to fill");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
+    // A line outward always has a thickness: a tenth of the diagonal where the user gives none
+    // (shell/sides.h).
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&
         options.limits.limit == Limit::none && !options.line_step.thickness && !thickness_grid)
         throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "

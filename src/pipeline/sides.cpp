@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the surface, its level set and the options. Leaves: lines, shell and their reports, for
+// one side of the surface or for both. The stages know of one side only, the one behind the
+// triangles in a field that is negative there; for the other side they get the reversed surface and
+// the negated field (docs/theory.md, "Outward shells, and shells on both sides"). It is also
+// decided here which field the lines need: how deep, and whether a narrow band will do. Such
+// decisions change time and memory, but no proof: lines only propose lengths.
+
 #include "pipeline/sides.h"
 
 #include "mesh/triangle_area.h"
@@ -14,7 +22,9 @@ namespace vdb_shell
 namespace
 {
 
-/// What the user's thickness allows at most; nothing where it sets no bound.
+/// What the user's thickness allows at most; nothing where it sets no bound. A painted grid is
+/// sampled outside its active voxels too, where it has its background, so that counts as well. In
+/// world units.
 std::optional<double> longest_line(const LineStepOptions& options,
                                    const openvdb::FloatGrid* thickness_grid)
 {
@@ -38,11 +48,14 @@ double sparse_voxels(std::size_t lines)
     return kVoxelsPerLine * static_cast<double>(lines);
 }
 
-/// The voxels inside down to the depth of the lines, about.
+/// An estimate of the voxels inside, down to the depth of the lines. It only has to tell which of
+/// two ways is less work.
 double dense_voxels(const ShellOptions& options, const TriangleMesh& surface,
                     const openvdb::FloatGrid* thickness_grid)
 {
     const double voxel = resolve_voxel_size(surface, options.level_set);
+    // Both bounds hold: there are no more voxels than the solid has, and a layer along the surface
+    // has about area times depth.
     const double solid = std::abs(signed_volume(surface.points, surface.triangles));
     const std::optional<double> longest = longest_line(options.line_step, thickness_grid);
     const double area = surface_area(surface.points, surface.triangles);
@@ -70,7 +83,8 @@ struct SideResult {
     std::optional<ScaleReport> scale;
 };
 
-/// The prisms straight from the lengths: nothing is promised, so nothing is mended.
+/// The prisms straight from the lengths. The raw method is the paper's, for comparison: nothing is
+/// promised, so nothing is mended, and the scale is applied to the lengths without any test.
 void make_raw_shell(const SideJob& job, SideResult& side)
 {
     LineLengths lengths = side.lines.lengths;
@@ -95,7 +109,8 @@ void grow_and_scale(const SideJob& job, SideResult& side)
     side.stack = one_layer(std::move(grown.shell), std::move(grown.split));
 }
 
-/// Growth that goes on from a shell has no use for lines; a raw shell is made of nothing else.
+/// Growth that goes on from a shell reads no lengths of lines, and growth on levels those of the
+/// coarsest surface only; a raw shell is made of all of them.
 std::vector<std::uint32_t> vertices_to_step(const SideJob& job)
 {
     if (job.options.grow.method == Method::raw)
@@ -113,6 +128,8 @@ SideResult build_side(const SideJob& job)
         lines.directions = compute_directions(job.surface, job.level_set, options.directions);
     });
     job.clock.run(job.prefix + "line stepping", [&] {
+        // A narrow band is read by the sparse stepper alone: the other one would take its inner rim
+        // for the deepest that lines can go.
         const auto step = job.sparse ? line_step_sparse : line_step;
         const std::vector<std::uint32_t> only = vertices_to_step(job);
         lines.lengths = step(job.surface, job.level_set, lines.directions, options.line_step,
@@ -136,8 +153,11 @@ SideResult build_outside(const ShellResult& result, ShellOptions options,
     if (!options.line_step.thickness && !thickness_grid)
         options.line_step.thickness = default_outward_thickness(result.surface);
     const TriangleMesh reversed = reversed_surface(result.surface);
-    // In place, for a copy would double the memory.
+    // In place, for a copy would double the memory; twice negated, every bit is as before. If a
+    // stage throws in between, the field stays negated, but then there is no result that holds it.
     negate_level_set(*result.level_set);
+    // Coarser surfaces are for a side with bounds; outside, growth begins with the lines of the
+    // surface itself.
     const GrowStart from_lines;
     SideResult side =
         build_side({reversed, *result.level_set, false, options, thickness_grid, clock,
@@ -165,12 +185,15 @@ std::string why_not_sparse(const ShellOptions& options, const ShellResult& resul
         return "lines outward";
     if (options.smooth.iterations > 0)
         return "smoothing";
-    // The narrow band is as wide inside as outside.
+    // The narrow band is as wide inside as outside, so a wide one outside would be computed inside
+    // as well.
     constexpr double kWidestBandVoxels = 8;
     if (options.level_set.exterior_voxels > kWidestBandVoxels)
         return "a wide band outside";
     if (options.level_set.interior_depth || options.level_set.exterior_depth)
         return "a band of the depth asked for";
+    // The signs of the narrow band come from the nearest triangle alone, which is not enough where
+    // the surface crosses itself.
     if (result.report.mesh.self_intersections.count > 0)
         return "a surface that crosses itself";
     if (options.field == FieldRoute::automatic &&
@@ -192,7 +215,8 @@ LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surfac
             band.exterior_depth = default_outward_thickness(surface);
     }
     if (!band.interior_depth)
-        // The stencil of the vertices is all that lines outward read inside.
+        // Lines outward read nothing inside but the stencils of their first points, so one voxel of
+        // depth is enough, with the spare voxels that every band gets.
         band.interior_depth =
             options.side == Side::outward ? resolve_voxel_size(surface, band) : longest;
     return band;
@@ -216,6 +240,7 @@ void build_sides(ShellResult& result, const ShellOptions& options,
                           thickness_grid, clock, "", interrupter, start});
     result.directions = std::move(main.lines.directions);
     result.lengths = std::move(main.lines.lengths);
+    // For both sides the main report is that of the side inside, and the other one stands apart.
     result.report.grow = main.grow;
     result.report.scale = main.scale;
     result.stack = std::move(main.stack);

@@ -8,8 +8,8 @@
 namespace vdb_shell
 {
 
-/// What growth inward begins with: coarser surfaces where they are worth it. Only their lines are
-/// stepped then.
+/// What growth inward begins with: coarser surfaces where the surface has triangles enough
+/// (GrowOptions::coarse_from). Only their lines are stepped then.
 GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surface);
 
 /// Why the lines need a dense field, or an empty string when a narrow band will do. Reads the

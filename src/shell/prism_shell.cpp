@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: a point, a unit direction and a length. Gives: the end of the pillar as a float32 point,
+// so that the pillar is not longer than the length, in exact arithmetic and by the double formula
+// that reports use. Rounding to the nearest point can make a pillar longer than its bound by the
+// last bit, and a user's thickness, or a cap, is a promise; so a point that is too far is stepped
+// back by single floats. Lengths are in world units. Each vertex is by itself, so the number of
+// threads changes nothing.
+
 #include "vdb_shell/shell/prism_shell.h"
 
 #include "core/exact.h"
@@ -22,6 +30,7 @@ void step_back(const Vec3s& outer, const Vec3d& target, Vec3s& inner)
     int worst = -1;
     double worst_excess = 0;
     for (int axis = 0; axis < 3; ++axis) {
+        // A component that has come back to the outer point cannot shorten the pillar any more.
         if (inner[axis] == outer[axis])
             continue;
         const double excess =
@@ -31,6 +40,7 @@ void step_back(const Vec3s& outer, const Vec3d& target, Vec3s& inner)
             worst_excess = excess;
         }
     }
+    // Some component differs, for the caller steps back only while the two points are different.
     assert(worst >= 0);
     inner[worst] = std::nextafter(inner[worst], outer[worst]);
 }
@@ -45,7 +55,8 @@ Vec3s end_of_pillar(const Vec3s& outer, const Vec3d& inward, double length)
     // last bit of the direction's own norm can be left, so this ends within a few steps.
     while (inner != outer && exact::longer_than(outer, inner, length))
         step_back(outer, target, inner);
-    // The bits of the outer point even where the sum turned -0 into 0.
+    // A coordinate of -0 may have become 0 in the sum. Both compare equal, but shell/pillar.h
+    // promises the bits of the outer point.
     return inner == outer ? outer : inner;
 }
 

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean ratio: Liu, Joe, "On the shape of tetrahedra from bisection", 1994.
+
+// Takes: tets in float32. Gives: order statistics of four measures of their shape, computed in
+// doubles. Nothing is decided by them: an angle or a ratio near its limit is a matter of opinion,
+// and whether a tet is inverted is for the exact signs (certify/tet_signs.h). The mean ratio is
+// that of Liu and Joe, "On the shape of tetrahedra from bisection", 1994; the aspect is the usual
+// one turned over, so that a flat tet gets nought and not infinity. Every tet writes its own place
+// in a list and sums run in index order, so no bit depends on the number of threads. Time is linear
+// in the number of tets.
+
 #include "vdb_shell/shell/quality.h"
 
 #include "core/parallel.h"
@@ -27,7 +35,10 @@ double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& 
 /// The angle at an edge between the two faces that meet there, 0 to pi whatever the orientation.
 struct Dihedral {
     double sine, cosine; ///< times any length
-    /// Falls where the angle grows, and is sooner found.
+    /// Falls from 1 to -1 while the angle grows from 0 to pi, and needs no arctangent: six angles
+    /// of each tet are compared by it, and only the two extreme ones are computed. Without sine and
+    /// cosine (a face without area) the rank is that of the angle 0, which is what angle() gives
+    /// there too.
     double rank() const
     {
         const double both = sine + std::abs(cosine);
@@ -38,6 +49,10 @@ struct Dihedral {
 
 Dihedral dihedral(const Vec3d& from, const Vec3d& to, const Vec3d& left, const Vec3d& right)
 {
+    // The length of the edge and the areas of both faces are factors of the sine and of the cosine
+    // alike, so nothing is normalised, and there is nothing to divide by where a face has no area.
+    // The length of a cross product is never negative, which is why the angle does not tell the
+    // orientation.
     const Vec3d edge = to - from;
     const Vec3d first = edge.cross(left - from), second = edge.cross(right - from);
     return {first.cross(second).length(), first.dot(second)};
@@ -71,6 +86,8 @@ double height_ratio(const Corners& p)
     }
     if (largest_double_area == 0)
         return 0;
+    // Each face times its height gives the same volume, so the largest face has the smallest
+    // height.
     const double smallest_height =
         std::abs(six_volumes(p[0], p[1], p[2], p[3])) / largest_double_area;
     constexpr double kRegular = 0.81649658092772603; // height of the regular tet of edge 1
@@ -87,9 +104,13 @@ Spread spread_of(std::vector<double> values)
     for (const double value : values)
         spread.mean += value;
     spread.mean /= static_cast<double>(values.size());
+    // Nearest rank: the result is always one of the values, so nothing is interpolated and rounding
+    // cannot differ between machines.
     const auto last = static_cast<double>(values.size() - 1);
     auto from = values.begin();
-    // Shares in ascending order: what lies before the one looked for is settled.
+    // Shares have to come in ascending order: after each call no value before `from` is larger than
+    // any behind it, so the next call partitions the remaining part only, and all six together take
+    // linear time on average.
     auto at = [&](double share) {
         const auto place =
             values.begin() + static_cast<std::ptrdiff_t>(std::floor(share * last + 0.5));
@@ -113,6 +134,8 @@ double mean_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d
                                  (c - b).lengthSqr() + (d - b).lengthSqr() + (d - c).lengthSqr();
     if (squared_edges == 0)
         return 0;
+    // The root of a negative volume is negative and its square is not, so the sign is put back
+    // afterwards: an inverted tet has the value of its mirror image with a minus.
     const double root = std::cbrt(half_six_volumes);
     return std::copysign(12 * root * root, half_six_volumes) / squared_edges;
 }

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Based on: Erleben, Dohlmann, "The Thin Shell Tetrahedral Mesh", 2004, as the line-stepping paper
-// and later readers describe it: each prism has one bit a side, "rising" or "falling"; neighbours
-// have complementary bits across their common edge; all three alike cannot be split into tets.
+
+// Takes: triangles and a seed. Gives: an order of the corners of each prism, chosen at random where
+// there is a choice. Based on Erleben, Dohlmann, "The Thin Shell Tetrahedral Mesh", 2004, as the
+// line-stepping paper and later readers describe it: each prism has one bit a side, "rising" or
+// "falling"; neighbours have complementary bits across their common edge; all three alike cannot be
+// split into tets. It is here for comparison: a conflict is passed on from prism to prism, and
+// nothing proves that this ends, so the number of passes is bounded. One thread does it all, since
+// each choice depends on those before; the result depends on the seed only.
+
 #include "shell/ripple.h"
 
 #include "core/counter_random.h"
@@ -19,8 +25,8 @@ namespace
 
 using Three = std::array<std::uint32_t, 3>;
 
-/// The bits are kept once per edge, as the corner that comes first: neighbours cannot disagree, and
-/// only prisms with a cycle (the bits 000 and 111) are left to be avoided.
+/// The bits are kept once per edge, as the corner that comes first. So neighbours cannot disagree,
+/// and only prisms with a cycle (the bits 000 and 111) remain to be avoided.
 enum class Arc : std::uint8_t { unset, from_smaller, from_larger };
 
 struct Sides {
@@ -97,7 +103,8 @@ private:
 
     std::uint64_t choose(std::uint64_t count) { return random_.below(draws_++, count); }
 
-    /// Breadth first over the triangle's component.
+    /// Breadth first over the triangle's component, neighbours in the order of the sides and of the
+    /// uses, which are sorted: so the order of the draws is the same on every machine.
     void spread_from(std::uint32_t start, std::vector<std::uint8_t>& seen)
     {
         std::vector<std::uint32_t> queue{start};
@@ -116,8 +123,9 @@ private:
         }
     }
 
-    /// One of the legal codes that agree with the sides that visited neighbours have fixed; where
-    /// there is none, the conflict is carried away.
+    /// One of the legal codes that agree with the sides that visited neighbours have fixed. A side
+    /// that is open can always be set to differ from another, so there is no legal code only where
+    /// all three sides are fixed and alike; that conflict is passed on.
     void choose_code(std::uint32_t triangle)
     {
         std::array<bool, 3> open{};
@@ -125,6 +133,7 @@ private:
             open[side] = arcs_[sides_.edge[triangle][side]] == Arc::unset;
         std::array<unsigned, 6> legal{};
         std::size_t count = 0;
+        // Bit i of a code is side i; the codes 0 and 7 are the two cycles.
         for (unsigned code = 1; code < 7; ++code) {
             bool fits = true;
             for (std::size_t side = 0; side < 3; ++side)
@@ -142,8 +151,8 @@ private:
                 set_rising(triangle, side, code >> side & 1U);
     }
 
-    /// Whether flipping the edge would make a triangle other than `triangle` cyclic. One that still
-    /// has an open side cannot be.
+    /// Whether flipping the edge would make a triangle other than `triangle` cyclic. A triangle
+    /// with an open side cannot be, as its open sides are set later to suit the others.
     bool flip_harms(std::uint32_t edge, std::uint32_t triangle)
     {
         flip(edge);
@@ -163,7 +172,9 @@ private:
         return true;
     }
 
-    /// Flips sides until no triangle with all its sides set is cyclic, starting at one that is.
+    /// Flips sides until no triangle with all its sides set is cyclic, starting at one that is. A
+    /// flip mends the triangle at hand, since two equal bits and a different one are no cycle, and
+    /// can spoil only those beside the edge, so the list holds every triangle that may be cyclic.
     void carry_away(std::uint32_t start)
     {
         struct Conflict {
@@ -174,6 +185,7 @@ private:
         while (!conflicts.empty()) {
             const Conflict here = conflicts.back();
             conflicts.pop_back();
+            // A later flip may have mended a triangle that waits in the list.
             if (!cyclic(here.triangle))
                 continue;
             const std::uint32_t edge = way_out(here.triangle, here.entered_by);
@@ -206,7 +218,9 @@ private:
 
     void count_ripple()
     {
-        // Random walks on the surface die out after a few triangles; this bound is far beyond.
+        // A conflict walks at random over the surface and ends at the first triangle where a flip
+        // does no harm, which takes a few steps as a rule. The bound is far beyond that; it is
+        // there because the method has no proof that it ends.
         const std::size_t most = 1000 + 100 * triangles_.size();
         if (++ripples_ > most)
             throw GeometryError("ripple split: still inconsistent after passing on " +
@@ -220,6 +234,8 @@ private:
         assert(!cyclic(triangle));
         std::array<std::uint8_t, 3> order{};
         for (std::uint8_t corner = 0; corner < 3; ++corner) {
+            // The place of a corner is the number of corners before it, which is a permutation
+            // because there is no cycle.
             const bool after_last = rising(triangle, (corner + 2U) % 3);
             const bool after_next = !rising(triangle, corner);
             order[static_cast<std::size_t>(after_last) + static_cast<std::size_t>(after_next)] =

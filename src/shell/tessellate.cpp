@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: prisms. Gives: the order of the corners of each prism, which fixes its diagonals, and the
+// tets of that order. Any total order of all vertices makes neighbouring prisms agree, so there is
+// nothing to repair afterwards (docs/theory.md, "Splits"; Dompierre, Labbe, Vallet, Camarero, "How
+// to Subdivide Pyramids, Prisms and Hexahedra into Tetrahedra", 1999). No coordinate is computed or
+// compared here but for the pins: points are copied bit by bit. The trap is the pinned pillar: its
+// two ends are one point with one index, and the tet that would stand on it must not be made.
+
 #include "vdb_shell/shell/tessellate.h"
 
 #include "vdb_shell/options/option.h"
@@ -21,8 +29,10 @@ using openvdb::Vec4I;
 
 constexpr std::uint32_t kNoPoint = ~std::uint32_t(0);
 
-/// Smallest key first, ties by vertex index. A strict order of all vertices has no cycle inside any
-/// triangle, so it always gives a consistent split.
+/// Smallest key first, ties by vertex index. The tie makes it a strict order of all vertices, which
+/// has no cycle inside any triangle, and both triangles at an edge compare the same two pairs: so
+/// the split is always consistent. Keys are lengths of pillars, which are finite, so no comparison
+/// meets a NaN.
 PrismSplit split_by_key(const PrismShell& shell, const std::vector<double>& key)
 {
     PrismSplit split;
@@ -39,6 +49,8 @@ PrismSplit split_by_key(const PrismShell& shell, const std::vector<double>& key)
     return split;
 }
 
+/// A factor of -1 turns the order round without a second comparison. It makes -0.0 of a pinned
+/// pillar's length, which compares equal to 0.0, so pinned vertices are ties all the same.
 std::vector<double> scaled_lengths(const PrismShell& shell, double factor)
 {
     std::vector<double> lengths(shell.outer.size());
@@ -63,9 +75,10 @@ bool has_tets(const Vec3I& triangle, const Flags& pinned)
 /// Index of each vertex's point on one surface.
 using PointIndex = std::vector<std::uint32_t>;
 
-/// Marks the corners of the prisms that have tets: each is a corner of one of them, for an
-/// un-pinned pillar's ends are both in the pillar's own tet, which also holds one end of each other
-/// pillar.
+/// Marks the corners of the prisms that have tets. Each of them is a corner of a tet: both ends of
+/// an un-pinned pillar are in the pillar's own tet, which also holds one end of each other pillar;
+/// the other end of that pillar is either in its own tet or, if the pillar is pinned, the same
+/// point.
 void mark_used(const PrismShell& layer, const Flags& pinned, Flags& used)
 {
     for (const Vec3I& triangle : layer.triangles)
@@ -74,8 +87,9 @@ void mark_used(const PrismShell& layer, const Flags& pinned, Flags& used)
                 used[triangle[corner]] = 1;
 }
 
-/// A point for each vertex in use on each surface, but that of the surface above where the pillar
-/// between them is pinned.
+/// A point for each vertex in use on each surface; where the pillar between two surfaces is pinned,
+/// the lower one has no point of its own and uses that of the surface above. Points that no tet
+/// uses are left out: TetMesh promises that each point is a corner of some tet.
 std::vector<PointIndex> number_points(const PrismShell* layers, const std::vector<Flags>& pinned,
                                       TetMesh& mesh)
 {
@@ -85,7 +99,9 @@ std::vector<PointIndex> number_points(const PrismShell* layers, const std::vecto
         mark_used(layers[k], pinned[k], used[k]);
         mark_used(layers[k], pinned[k], used[k + 1]);
     }
-    // A point that is shared is in use when any of the surfaces that share it uses it.
+    // A shared point is in use when any of the surfaces that share it uses it. From the innermost
+    // surface outward, because a pillar may be pinned in several layers one above the other, and
+    // the mark has to reach the topmost of them.
     for (std::size_t k = count; k-- > 0;)
         for (std::size_t v = 0; v < vertices; ++v)
             if (pinned[k][v])
@@ -118,6 +134,8 @@ std::array<Vec4I, 3> tets_of(const Vec3I& triangle, const std::array<std::uint8_
     const std::uint32_t x = triangle[order[0]], y = triangle[order[1]], z = triangle[order[2]];
     std::array<Vec4I, 3> tets{Vec4I(a[x], a[y], a[z], b[z]), Vec4I(a[x], a[y], b[y], b[z]),
                               Vec4I(a[x], b[x], b[y], b[z])};
+    // Of the six orders just the three rotations of 0, 1, 2 are even, and in them alone the second
+    // entry follows the first.
     const bool even = (order[0] + 1) % 3 == order[1];
     if (even) {
         std::swap(tets[0][1], tets[0][2]);
@@ -137,6 +155,9 @@ void append_tets(const PrismShell& layer, const PrismSplit& split, const Flags& 
         const Vec3I& triangle = layer.triangles[t];
         const std::array<Vec4I, 3> tets = tets_of(triangle, split.order[t], outer, inner);
         for (std::size_t i = 0; i < 3; ++i) {
+            // Tet i owns the pillar of the corner that is i-th from the end of the order. If that
+            // pillar is pinned, the tet has two equal corners, and leaving it out joins its two
+            // neighbours face to face (docs/theory.md, "Pins").
             if (pinned[triangle[split.order[t][2 - i]]])
                 continue;
             mesh.tets.push_back(tets[i]);
