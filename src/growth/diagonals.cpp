@@ -164,8 +164,10 @@ std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Sco
     return better ? std::array{f_order, g_order} : std::array{-1, -1};
 }
 
-/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. A seam
-/// is looked at again only once another of its two prisms has been turned.
+/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. The
+/// first look at all seams changes nothing and is parallel; turning is serial, since a turned
+/// diagonal changes what its neighbours may do. A seam is looked at again only once another of its
+/// two prisms has been turned.
 template <class Score, class Join>
 std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join)
 {

@@ -24,7 +24,8 @@ bool may_turn_diagonals(const GrowState& s, const GrowOptions& options, const Sp
     return options.flips && (!s.twelve || split.rule == SplitRule::length_descending);
 }
 
-/// Settles the diagonals; gives back the ripples of the user's rule.
+/// Settles the diagonals. Gives back the ripples of the user's rule: inconsistencies that it could
+/// not resolve.
 std::size_t choose_diagonals(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
                              const SplitOptions& split, GrowReport& report)
 {

@@ -132,8 +132,9 @@ void shrink_until_valid(GrowState& s, const Directions& directions, std::vector<
     std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1);
     place_pillars(s, directions, length);
     bool first = true;
-    // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
-    // crosses itself: with all its vertices pinned.
+    // Every round shortens each free pillar of a failing prism by a fixed factor, or pins it when
+    // it is lost in the rounding. So it ends, even on a surface that crosses itself: with all its
+    // vertices pinned.
     while (shrink_around(s, violating_faces(s, changed, first), length, changed)) {
         progress.stop_if_interrupted(0);
         place_pillars(s, directions, length);
