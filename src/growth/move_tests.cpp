@@ -237,9 +237,9 @@ bool holds_component(const GrowState& s, int f)
         if (m.component[w] == m.component[m.corner(f, 0)])
             continue;
         for (const Vec3d* e : {&s.a[w], &s.b[w]})
-            // Any split will do: positive tets fill the same prism under each, if twelve are
-            // positive, and under the three-tet test the chosen ones are what the shell consists
-            // of.
+            // By the present split. While the diagonals of neighbours do not conform yet, a point
+            // close to a side may be in the tets of neither; the certificate at the end asks by
+            // winding numbers.
             for (const OrientedTet& tet : tables().three[s.order[f]])
                 if (box.contains(*e) && !dropped(s, f, tet.pillar) &&
                     in_tet({corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),

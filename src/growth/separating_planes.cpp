@@ -112,7 +112,9 @@ public:
 
     void list_waiting(Waiting& waiting, Chunk& out) const
     {
-        // The pairs that passed the cheap test are gathered until all lanes have one.
+        // The pairs that passed the cheap test are gathered until all lanes have one. A slab
+        // depends on its own pair alone, so it makes no difference which pairs happen to be
+        // computed together.
         std::array<Slab, kSlabsAtOnce> slab;
         slabs_between(waiting.query.data(), waiting.count, slab.data());
         for (std::size_t i = 0; i < waiting.count; ++i)
@@ -203,6 +205,8 @@ std::vector<std::size_t> gather_planes(std::vector<Chunk>& chunks, SeparatingPla
     std::vector<std::size_t> base(chunks.size() + 1, 0);
     for (std::size_t c = 0; c < chunks.size(); ++c)
         base[c + 1] = base[c] + chunks[c].plane.size();
+    // A side is twice the index of its plane or one more, in 32 bits: there may be millions of
+    // them, and moves read them all the time.
     assert(base.back() < std::numeric_limits<std::uint32_t>::max() / 2);
     planes.plane.resize(base.back());
     planes.range.resize(base.back());

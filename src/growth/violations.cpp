@@ -21,6 +21,8 @@ namespace
 
 using Marks = std::vector<std::atomic<std::uint8_t>>;
 
+// Only ones are ever written, and a test is left out only if all that it could mark is marked. So
+// the marks are the same whichever thread comes first, and no order of memory is needed.
 void mark(std::atomic<std::uint8_t>& entry)
 {
     entry.store(1, std::memory_order_relaxed);
@@ -127,7 +129,8 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
         if (changed[f] && (!prism_valid(s, f) || holds_component(s, f)))
             mark(bad[f]);
     });
-    // A face that fails already is not asked for contacts: its pillars will be shortened anyway.
+    // A face that fails already is not tested for contacts: its pillars will be shortened anyway,
+    // and contact tests are the dearer ones.
     mark_contacts(s, changed, first, bad);
     return {bad.begin(), bad.end()};
 }
