@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: the surface and the caps. Leaves: the state with every vertex pinned, which is valid where
-// the surface is embedded, and all that growth asks of the surface as a whole.
+// the surface is embedded, and all that growth needs to know of the surface as a whole.
 
 #include "growth/grow_state.h"
 

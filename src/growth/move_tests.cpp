@@ -238,7 +238,7 @@ bool holds_component(const GrowState& s, int f)
             continue;
         for (const Vec3d* e : {&s.a[w], &s.b[w]})
             // By the present split. While the diagonals of neighbours do not conform yet, a point
-            // close to a side may be in the tets of neither; the certificate at the end asks by
+            // close to a side may be in the tets of neither; the certificate at the end decides by
             // winding numbers.
             for (const OrientedTet& tet : tables().three[s.order[f]])
                 if (box.contains(*e) && !dropped(s, f, tet.pillar) &&

@@ -74,7 +74,7 @@ bool surely_positive(const PrismAround& prism, const double* x)
 
 /// The bounds of four tets of a prism; `counts` is 0 for a tet that does not. Such a tet, and one
 /// whose base has no area, come out with a normal of nought and an endless value, so that no sum
-/// has to ask which lanes count.
+/// has to look at which lanes count.
 HWY_INLINE Doubles bound(const Bases& bases, Doubles counts, TetBounds& out)
 {
     constexpr double kEnough = std::numeric_limits<double>::infinity();

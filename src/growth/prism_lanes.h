@@ -11,7 +11,7 @@
 namespace vdb_shell::growth
 {
 
-/// The corners of a prism but for the inner point of the vertex that is asked about: that vertex's
+/// The corners of a prism but for the inner point of the vertex in question: that vertex's
 /// outer point, the outer points of the next and the last in its triangle, and their inner ones.
 /// Three doubles each.
 struct PrismAround {

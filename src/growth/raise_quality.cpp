@@ -138,9 +138,8 @@ QualityResult raise_quality(GrowState& s, double bound, bool flips, const StageP
     for (int v = 0; v < s.mesh->vertices; ++v)
         s.trust_radius[v] = std::max(schedule.radius_edge_share * mean_edge(s, v),
                                      kLeastRadiusInRoundings * s.rounding);
-    // Radii stay as they are for all rounds, unlike those of relax: these moves are short next to
-    // the triangles. All vertices but the pinned ones are active, so the pins are the list of those
-    // left out.
+    // All vertices but the pinned ones are active in every round, so the pins are the list of those
+    // left out, and radii stay as they are.
     const auto most_rounds = static_cast<std::size_t>(schedule.most_rounds);
     double shortfall = whole_shortfall(s, bound, result);
     while (result.rounds < most_rounds && shortfall > 0) {

@@ -17,7 +17,7 @@ namespace
 /// Whether growth stops as soon as it wins little for its cost.
 bool thrifty(StartedFrom from, const GrowOptions& options)
 {
-    // From lines all volume is still to be won, and to save rounds would show.
+    // From lines all volume is yet to be won, and a thinner shell would show.
     return from == StartedFrom::prolonged && !asks_for_more(options);
 }
 

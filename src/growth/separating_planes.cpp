@@ -205,8 +205,8 @@ std::vector<std::size_t> gather_planes(std::vector<Chunk>& chunks, SeparatingPla
     std::vector<std::size_t> base(chunks.size() + 1, 0);
     for (std::size_t c = 0; c < chunks.size(); ++c)
         base[c + 1] = base[c] + chunks[c].plane.size();
-    // A side is twice the index of its plane or one more, in 32 bits: there may be millions of
-    // them, and moves read them all the time.
+    // A side is twice the index of its plane or one more, in 32 bits: moves read these lists all
+    // the time, and half the memory is read sooner.
     assert(base.back() < std::numeric_limits<std::uint32_t>::max() / 2);
     planes.plane.resize(base.back());
     planes.range.resize(base.back());

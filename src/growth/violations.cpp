@@ -58,7 +58,8 @@ public:
     void mark_groups(std::size_t begin, std::size_t end) const
     {
         BoxTree::Near near;
-        // Pairs come face by face, and the plane of the first one is worth computing only once.
+        // Pairs come face by face, so the plane of the first one is computed once for all of its
+        // pairs.
         std::optional<InnerTriangle> triangle;
         const auto of = [&](int f) -> const InnerTriangle& {
             if (!triangle || triangle->face() != f)
