@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: the triangles. Gives: who is beside whom, and a colouring by which vertices can be moved
-// at the same time with the same result as one after the other (docs/theory.md, "Same result for
-// any number of threads").
+// Takes: the triangles. Gives: who is beside whom, the edge-connected components, and a colouring
+// by which vertices can be moved at the same time with the same result as one after the other
+// (docs/theory.md, "Same result for any number of threads"). Built once, for growth never changes
+// the triangles. Lists of all vertices lie one after another in one array, with the place where
+// each begins.
 
 #include "growth/connectivity.h"
 

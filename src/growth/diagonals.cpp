@@ -61,7 +61,8 @@ double log_room(const GrowState& s, int f, int order)
         // The same sum as the barrier's, so that a turned diagonal gives vertices room to move.
         const double v = volume6_of(tet_corners(s, f, tet));
         if (v <= 0)
-            return -std::numeric_limits<double>::max() / 4; // two of them have a sum
+            // Worse than all else, and yet the sum of two of them is a number.
+            return -std::numeric_limits<double>::max() / 4;
         sum += std::log(v);
     }
     return sum;

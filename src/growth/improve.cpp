@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: a valid shell whose vertices have come to rest. Leaves: a valid shell with diagonals
-// chosen for the shape of the tets, and the reason that holds each vertex back, for the report.
+// chosen for the shape of the tets, better tets where the user wants them at a cost in thickness,
+// and the reason that holds each vertex back, for the report. Diagonals come before the moves,
+// since a turned diagonal costs no thickness.
 
 #include "growth/improve.h"
 

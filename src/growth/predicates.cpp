@@ -64,7 +64,9 @@ bool separate_triangles_touch(const Corners& s, const Corners& t)
     for (int i = 0; i < 3; ++i)
         if (a[i] == 0 || b[i] == 0)
             return exact::triangles_touch(exact_triangle(s), exact_triangle(t));
-    // No corner in the other's plane: then an edge of one pierces the other, or nothing does.
+    // No corner lies in the other's plane, so each triangle crosses that plane with two edges: if
+    // the triangles meet, an edge of one pierces the other, and an edge with both ends on one side
+    // cannot.
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
         if (a[i] != a[j] && segment_touches_triangle(s[i], s[j], t))

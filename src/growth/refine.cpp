@@ -3,8 +3,8 @@
 // Takes: a finished shell, with the reasons that ended its pillars. Gives: the triangles whose
 // cutting is predicted to win most, by the measure that the user chose. A prediction decides only
 // where triangles are spent; the shell that is grown afterwards is tested as any other. The cutting
-// itself is resample/refine_triangles.h. Same result for any number of threads: sums over all
-// triangles are made in index order.
+// itself is resample/refine_triangles.h. Same result for any number of threads: sums over triangles
+// are serial.
 
 #include "vdb_shell/growth/refine.h"
 

@@ -377,8 +377,8 @@ std::string report_text(const ShellReport& report)
          number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
              " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
              (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
-    // The lower end is told twice: by the very worst tet, and by the lowest hundredth, which no
-    // single tet can move.
+    // The lower end is told twice: by the very worst tet, and by the lowest hundredth, which a
+    // single tet hardly moves.
     line(out, "mean ratio",
          spread(report.quality.mean_ratio) + "; 1 % under " + number(report.quality.mean_ratio.p1));
     line(out, "dihedral",
