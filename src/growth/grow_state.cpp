@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: the surface and the caps. Leaves: the state in which growth begins, with every inner point
-// on its outer one, which is valid where the surface is embedded; the scales that all lengths and
-// errors are put in relation to; and all that growth needs to know of the surface as a whole.
-// Points are float32 values held as doubles, so that what is computed and tested is what will be
-// written.
+// on its outer one; the scales that all lengths and errors are put in relation to; and all that
+// growth needs to know of the surface as a whole. Points are float32 values held as doubles, so
+// that what is computed and tested is what will be written. Trap: no vertex is marked as pinned
+// yet, so the state passes no test before pillars have been placed (place_pillars.h).
 
 #include "growth/grow_state.h"
 
