@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: the figures of one run, after its end. Gives: the report as JSON text
-// (docs/file_format.md). Nothing is computed here but degrees from radians, so that a figure is the
-// same for programs, for people and for who uses the library. Keys stand in the order in which they
-// are written below: the same run gives the same bytes, but for seconds and memory, which can be
-// left out. Keys of the top level do not come and go with the options, `stages` aside: what does
-// not apply is null, or an empty list. The report is stored in files and compared with their
-// contents when these are checked (write/verify_file.cpp), so a renamed key would break older
+// (docs/file_format.md). Nothing is measured here, and only angles change their unit, so a figure
+// is the same for programs, for people and for who uses the library. Keys stand in the order in
+// which they are written below: the same run gives the same bytes, but for seconds and memory,
+// which can be left out. Keys of the top level do not come and go with the options, `stages` aside:
+// what does not apply is null, or an empty list. The report is stored in files and compared with
+// their contents when these are checked (write/verify_file.cpp), so a renamed key would break older
 // files. Trap: a number that is not finite becomes null.
 
 #include "vdb_shell/report/report.h"
