@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: what each vertex did in the last round. Gives: the vertices that are worth trying in the
+// Takes: what each vertex did in the last round. Gives: the vertices that are likely to win in the
 // next. Which they are bears on thickness and time only: a vertex that is left out stays where it
 // is, which is valid.
 

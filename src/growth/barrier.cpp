@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: the half-spaces that a vertex is to stay in, and the direction in which volume is won.
-// Gives: about where its convex problem has its minimum. In float32 and a few steps, because
-// nothing rests on it: every move is tested exactly afterwards (docs/theory.md, "Barrier").
+// Gives: about where its convex problem has its minimum, by damped Newton steps. In float32 and a
+// few steps, because nothing rests on it: every move is tested exactly afterwards (docs/theory.md,
+// "Barrier"). Positions are relative to the vertex and in units of its trust radius, so that floats
+// have their digits where the move is. Eight bounds make a block; sums over a block have one order,
+// so the result is the same on every processor (core/simd.h).
 
 #include "core/simd.h"
 
@@ -41,7 +44,8 @@ struct Curvature {
     double xx, xy, xz, yy, yz, zz;
 };
 
-/// Solves h dx = -g by Cholesky; false where h is not safely positive.
+/// Solves h dx = -g by Cholesky; false where h is not safely positive. Comparisons are written so
+/// that a NaN is refused like a negative pivot.
 HWY_INLINE bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
 {
     const double l00 = std::sqrt(h.xx);
@@ -74,6 +78,8 @@ HWY_INLINE double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx
     return b > 0 ? c / (root + b) : (root - b) / a;
 }
 
+/// Adds gradient and curvature of -log(r^2 - |x - c|^2), whose weight is that of one tet. An
+/// infinite radius, and a vertex that is not inside, mean that there is no such bound.
 HWY_INLINE void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
 {
     const Vec3d arm = x - ball.centre;
@@ -106,7 +112,8 @@ void bound_prism(const std::array<Vec3d, 5>& corner, const Vec3d& here, double s
     const Floats x = u[1] * w[2] - u[2] * w[1], y = u[2] * w[0] - u[0] * w[2],
                  z = u[0] * w[1] - u[1] * w[0];
     const Floats squared = x * x + y * y + z * z, value = -(x * p[0] + y * p[1] + z * p[2]);
-    // A base without area has no normal: its value is nought, and it does not count.
+    // A base without area has no normal. The tiny number keeps its quotient finite; the value is
+    // nought then, and the bound gets no weight.
     constexpr float kTiny = 1e-30F;
     const Floats zero(0.0F), one(1.0F), inverse = one / (square_root(squared) + kTiny);
     const auto counts = value > zero;
@@ -155,7 +162,8 @@ HWY_INLINE double room_along(const Block* first, const Block* last, const Vec3s&
 {
     Floats least(std::numeric_limits<float>::max());
     for (const Block* b = first; b != last; ++b) {
-        // Of the values over the slopes only the positive ones are ahead.
+        // A bound that d leads away from, and a lane that is not used, must not end the step: the
+        // tiny slope makes their room too large to be the least.
         Floats down = -Normals(*b).dot(d);
         raise_to(down, Floats(1e-30F));
         lower_to(least, Floats::load(b->value.data()) / down);
@@ -172,7 +180,9 @@ HWY_INLINE void move_by(const Vec3s& d, Block* first, Block* last)
     const Floats zero(0.0F), one(1.0F);
     for (Block* b = first; b != last; ++b) {
         const Floats value = Floats::load(b->value.data()) + Normals(*b).dot(d);
-        // A bound overstepped by a damped step no longer counts.
+        // A step of 1 / (1 + decrement) stays inside as long as all weights are 1 or more. Planes
+        // may weigh less, and floats round: a bound that was overstepped no longer counts, and the
+        // value of 1 keeps later quotients finite.
         const auto kept = value > zero;
         store(select(kept, Floats::load(b->weight.data()), zero), b->weight.data());
         store(select(kept, value, one), b->value.data());
@@ -192,7 +202,9 @@ void newton_minimum(Block* first, Block* last, const Ball& ball, const Vec3d& gr
         const double trace = h.xx + h.yy + h.zz;
         if (!(trace > 0))
             break;
-        // The bounds may leave a direction free.
+        // The bounds may leave a direction free, in which the curvature is nought. So small a share
+        // of the trace makes the matrix positive and hardly changes the step in the other
+        // directions.
         h.xx += 1e-9 * trace, h.yy += 1e-9 * trace, h.zz += 1e-9 * trace;
         if (!solve_positive(h, g, dx))
             break;
@@ -269,6 +281,8 @@ void LinearBounds::weigh(std::size_t first, float weight)
 
 Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball, const Vec3d& gradient, double weight)
 {
+    // In y = (x - here) scale the volume's gradient is gradient / scale. Dividing the whole problem
+    // by the weight of the barrier moves no minimum and leaves each logarithm its own weight.
     const double scale = bounds.scale();
     const Ball scaled{(ball.centre - bounds.here()) * scale, ball.radius * scale};
     LinearBounds::Block* const first = bounds.blocks().data();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: the triangles. Gives: who is beside whom, and a colouring by which vertices can be moved
-// at the same time with the same result as one after the other (docs/theory.md, "Same result for
-// any number of threads").
+// Takes: the triangles. Gives: who is beside whom, the edge-connected components, and a colouring
+// by which vertices can be moved at the same time with the same result as one after the other
+// (docs/theory.md, "Same result for any number of threads"). Built once, for growth never changes
+// the triangles. Lists of all vertices lie one after another in one array, with the place where
+// each begins.
 
 #include "growth/connectivity.h"
 
@@ -46,6 +48,8 @@ void build_neighbours(Connectivity& c)
         for (const FaceCorner& at : star(c, v))
             for (int k = 1; k < 3; ++k)
                 *end++ = c.corner(at.face, (at.local + k) % 3);
+        // Ascending, so that sums over the neighbours of a vertex have an order that depends on
+        // nothing but the indices.
         std::sort(begin, end);
         count[i] = static_cast<int>(std::unique(begin, end) - begin);
     });
@@ -66,6 +70,8 @@ void label_components(Connectivity& c)
     for (int seed = 0; seed < c.vertices; ++seed) {
         if (c.component[seed] >= 0)
             continue;
+        // A stack of its own instead of recursion, which would go as deep as the component has
+        // vertices. Numbers follow the smallest vertex of each component.
         stack.assign(1, seed);
         c.component[seed] = c.components;
         // By edges only: two fans that touch in a vertex have been split into copies before.
@@ -84,10 +90,13 @@ void label_components(Connectivity& c)
 }
 
 /// Greedy in index order: vertices of one class are three edges apart or more, so that the tests of
-/// one read nothing that another moves.
+/// one read nothing that another moves. Serial, because the colour of a vertex depends on all that
+/// came before it; linear in the number of pairs of vertices within two edges.
 void colour_vertices(Connectivity& c)
 {
     std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1);
+    // Stamped with the vertex instead of cleared for each: a colour is free unless its stamp is
+    // that of the vertex in question.
     std::vector<int> taken_for; // by colour: the last vertex that cannot have it
     const auto take = [&](int u, int v) {
         if (colour[u] >= 0)
@@ -120,6 +129,7 @@ Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
     c.faces = faces;
     build_incidence(c);
     build_neighbours(c);
+    // Both only read the neighbours, and each writes members that the other does not touch.
     run_together([&] { label_components(c); }, [&] { colour_vertices(c); });
     return c;
 }

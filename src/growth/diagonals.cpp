@@ -61,7 +61,8 @@ double log_room(const GrowState& s, int f, int order)
         // The same sum as the barrier's, so that a turned diagonal gives vertices room to move.
         const double v = volume6_of(tet_corners(s, f, tet));
         if (v <= 0)
-            return -std::numeric_limits<double>::max() / 4; // two of them have a sum
+            // Worse than all else, and yet the sum of two of them is a number.
+            return -std::numeric_limits<double>::max() / 4;
         sum += std::log(v);
     }
     return sum;
@@ -164,8 +165,10 @@ std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Sco
     return better ? std::array{f_order, g_order} : std::array{-1, -1};
 }
 
-/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. A seam
-/// is looked at again only once another of its two prisms has been turned.
+/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. The
+/// first look at all seams changes nothing and is parallel; turning is serial, since a turned
+/// diagonal changes what its neighbours may do. A seam is looked at again only once another of its
+/// two prisms has been turned.
 template <class Score, class Join>
 std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join)
 {

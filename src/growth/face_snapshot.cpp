@@ -2,7 +2,7 @@
 
 // Takes: the state between two rounds, with a trust radius for each vertex. Leaves: the centres of
 // the trust regions where the vertices are, and for each face all that the search for close pairs
-// asks, computed once instead of once a pair.
+// needs, computed once instead of once a pair.
 
 #include "growth/face_snapshot.h"
 

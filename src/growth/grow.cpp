@@ -43,7 +43,7 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& d
                      const StageProgress& progress)
 {
     const bool on_levels = start.from == GrowFrom::levels && !start.levels.empty();
-    // Lines that are only fallen back on are not worth smoothing.
+    // Smoothing pays where the start is along the lines, not where they are only fallen back on.
     Started started{
         StartedFrom::lines, prepare_directions(mesh, directions, options, !on_levels), {}};
     if (on_levels) {

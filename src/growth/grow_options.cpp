@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Describes the options of growth and of refinement, each field once: the command line, files of
+// options, the validation, the help and Houdini's node are made of these lists (docs/options.md).
+// Nothing is decided here. Default values stand in the structs, not in these texts, except where a
+// field may be unset. The keys and flags are in users' scripts and in stored files.
+
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/growth/refine.h"
 #include "vdb_shell/options/option.h"
@@ -41,6 +47,8 @@ OptionList describe(GrowOptions& o)
          option("coarse_from", o.coarse_from, "--coarse-from",
                 "Triangles from which on growth begins on a coarser surface; 0: never")
              .in(Unit::count),
+         // May be unset, which is not the same as 40: then growth on a prolonged shell ends as soon
+         // as a round wins little for its cost.
          option("free_rounds", o.free_rounds, "--free-rounds",
                 "Upper bound on rounds of free moves [40; after a coarser surface as many as pay]")
              .in(Unit::count)
@@ -52,6 +60,7 @@ OptionList describe(GrowOptions& o)
 
 OptionList describe(RefineOptions& o)
 {
+    // All other fields say how the rounds go, so they have no meaning without rounds.
     const std::string rounds = "--refine-rounds";
     return in_group(
         "Resampling",

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: the surface and the caps. Leaves: the state with every vertex pinned, which is valid where
-// the surface is embedded, and all that growth asks of the surface as a whole.
+// Takes: the surface and the caps. Leaves: the state in which growth begins, with every inner point
+// on its outer one; the scales that all lengths and errors are put in relation to; and all that
+// growth needs to know of the surface as a whole. Points are float32 values held as doubles, so
+// that what is computed and tested is what will be written. Trap: no vertex is marked as pinned
+// yet, so the state passes no test before pillars have been placed (place_pillars.h).
 
 #include "growth/grow_state.h"
 
@@ -30,7 +33,9 @@ std::vector<int> first_of_each_component(const Connectivity& c)
     std::vector<int> witness;
     std::vector<std::uint8_t> seen(static_cast<std::size_t>(c.components), 0);
     for (int v = 0; v < c.vertices; ++v) {
-        // A vertex of no triangle belongs to no surface.
+        // One vertex stands for its component: components do not touch each other, so one of them
+        // lies as a whole inside the shell of another or as a whole outside. A vertex of no
+        // triangle belongs to no surface.
         if (seen[c.component[v]] || star(c, v).size() == 0)
             continue;
         seen[c.component[v]] = 1;
@@ -60,6 +65,8 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     s.cap = cap;
     s.pinned.assign(outer.size(), 0);
     s.trust_radius.assign(outer.size(), 0.0);
+    // Diagonals that do not conform yet: under the twelve-tet test every order is valid, and a
+    // conforming one is chosen before it matters (order_by_length, improve).
     s.order.assign(mesh.faces.size(), 0);
     std::vector<FloatBox> boxes(mesh.faces.size());
     for_each_index(
@@ -79,6 +86,8 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     // Inner points of a bounded side lie within the surface's own box, others beyond it.
     if (!s.bounded)
         largest += longest_finite(cap);
+    // To nearest, each coordinate is off by half an epsilon of its size at most, so the point by
+    // less than a whole one.
     s.rounding = largest * double(std::numeric_limits<float>::epsilon());
     s.witness = first_of_each_component(mesh);
     return s;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: a valid shell whose vertices have come to rest. Leaves: a valid shell with diagonals
-// chosen for the shape of the tets, and the reason that holds each vertex back, for the report.
+// chosen for the shape of the tets, better tets where the user wants them at a cost in thickness,
+// and the reason that holds each vertex back, for the report. Diagonals come before the moves,
+// since a turned diagonal costs no thickness.
 
 #include "growth/improve.h"
 
@@ -24,7 +26,8 @@ bool may_turn_diagonals(const GrowState& s, const GrowOptions& options, const Sp
     return options.flips && (!s.twelve || split.rule == SplitRule::length_descending);
 }
 
-/// Settles the diagonals; gives back the ripples of the user's rule.
+/// Settles the diagonals. Gives back the ripples of the user's rule: inconsistencies that it could
+/// not resolve.
 std::size_t choose_diagonals(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
                              const SplitOptions& split, GrowReport& report)
 {

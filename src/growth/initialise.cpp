@@ -32,12 +32,12 @@ double smallest_altitude(const Corners& c)
     return longest > 0 ? (c[1] - c[0]).cross(c[2] - c[0]).length() / std::sqrt(longest) : 0;
 }
 
-/// Parameter where p + t d meets the triangle, or infinity: a hint, in plain doubles.
+/// Parameter where p + t d meets the triangle, or infinity. In plain doubles, for it is a hint for
+/// a first length: what is too long is shrunk.
 double ray_hit(const Vec3d& p, const Vec3d& d, const Corners& c)
 {
     const Vec3d e1 = c[1] - c[0], e2 = c[2] - c[0], h = d.cross(e2);
     const double det = e1.dot(h);
-    // A hint for a first length, so doubles will do: what is too long is shrunk.
     if (det == 0)
         return kInfinity;
     const Vec3d s = p - c[0], q = s.cross(e1);
@@ -132,8 +132,9 @@ void shrink_until_valid(GrowState& s, const Directions& directions, std::vector<
     std::vector<std::uint8_t> changed(s.mesh->faces.size(), 1);
     place_pillars(s, directions, length);
     bool first = true;
-    // Every round shrinks or pins a vertex by a fixed factor, so it ends even on a surface that
-    // crosses itself: with all its vertices pinned.
+    // Every round shortens each free pillar of a failing prism by a fixed factor, or pins it when
+    // it is lost in the rounding. So it ends, even on a surface that crosses itself: with all its
+    // vertices pinned.
     while (shrink_around(s, violating_faces(s, changed, first), length, changed)) {
         progress.stop_if_interrupted(0);
         place_pillars(s, directions, length);

@@ -42,6 +42,8 @@ Vec3d most_visible_of_few(const std::vector<Vec3d>& n)
 {
     Vec3d best(0.0);
     double best_dot = -2;
+    // At the best direction one, two or three normals have the smallest dot product together: it is
+    // one of the normals, or halfway between two, or as far from each of three.
     const auto consider = [&](const Vec3d& candidate) {
         const Vec3d d = unit_or_zero(candidate);
         const double dot = smallest_dot(n, d);
@@ -153,7 +155,8 @@ void smooth_directions(const TriangleMesh& mesh, Directions& directions,
     const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
     const VertexTriangles around = triangles_around_vertices(mesh.points.size(), mesh.triangles);
     // Weights come from the directions as they were given: from smoothed ones a crease would wear
-    // away, pass by pass.
+    // away, pass by pass. Each pass reads a copy of what the last one left, so the order in which
+    // vertices are visited has no effect.
     const std::vector<Vec3d> start = directions.inward;
     const std::vector<double> given = directions.visibility;
     for (int pass = 0; pass < schedule.smoothing_passes; ++pass) {
@@ -165,6 +168,8 @@ void smooth_directions(const TriangleMesh& mesh, Directions& directions,
                                                                      schedule.smoothing_cosine));
             const double visibility = smallest_dot(normals[v], d);
             if (visibility <
+                // The given visibility may be small already, at a sharp edge; then a share of it is
+                // enough.
                 std::min(schedule.kept_visibility, schedule.kept_visibility_share * given[v]))
                 return;
             directions.inward[v] = d;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The exact tests that every accepted move passes: tets positive, cap kept, no contact, no
-// component enclosed. Doubles decide nearly all of them for certain, several at a time; what they
-// leave open goes to the exact predicates. Which conditions these are: docs/theory.md, "The whole
-// shell".
+// Takes: a valid state and a place for one inner point, or one prism. Gives: whether the shell is
+// valid with it, by the exact tests that every accepted move passes: tets positive, cap kept, no
+// contact, no component enclosed. Doubles decide nearly all of them for certain, several at a time;
+// what they leave open goes to the exact predicates. Which conditions these are: docs/theory.md,
+// "The whole shell". Nothing is changed here, and a test reads no vertex more than two edges away,
+// on which the colouring rests. The place has to be rounded to float32 before: another point would
+// be tested than the one that is stored.
 
 #include "growth/move_tests.h"
 
@@ -34,6 +37,8 @@ bool positive(const GrowState& s, int f, const OrientedTet& tet)
                   corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])) > 0;
 }
 
+/// Whether p lies in the closed tet, of either orientation: what a move sweeps over may have
+/// either. A point on its surface counts as inside, so a doubt makes a move fail, never pass.
 bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
 {
     const auto& [a, b, c] = base;
@@ -43,7 +48,8 @@ bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
 }
 
 /// Inner triangle `moved` against those around its corner u that hold neither v nor `done`, whose
-/// triangles have been looked at; where u is pinned also against the outer ones.
+/// triangles have been tested already; where u is pinned also against the outer ones: there both
+/// surfaces have the corner u, and pairs with a common corner have no separating plane.
 bool adjacent_clear_around(const GrowState& s, int v, const InnerTriangle& moved, int u, int done)
 {
     const Connectivity& m = *s.mesh;
@@ -67,7 +73,8 @@ Corners corners_with(const GrowState& s, int f, int v, const Vec3d& x)
     return corners;
 }
 
-/// The inner triangles around v against the others around u, which is v or beside it, pair by pair.
+/// The inner triangles around v against the others around u, which is v or beside it, pair by pair:
+/// for fans that are not closed, or have more triangles than Fan holds.
 bool clear_around_by_pairs(const GrowState& s, int u, int v, const Vec3d& x)
 {
     for (const FaceCorner& at : star(*s.mesh, u)) {
@@ -98,13 +105,17 @@ bool clear_around(const GrowState& s, int u, int v, const Vec3d& x)
         return static_cast<int>(rim.first[i < count ? i : 0]);
     };
     const auto inner = [&](int w) -> const Vec3d& { return w == v ? x : s.b[w]; };
+    // All of these are inner triangles, so the index of a vertex names its corner, pinned or not.
     const auto ids = [&](std::size_t i) -> CornerIds { return {u, vertex(i), vertex(i + 1)}; };
     const auto corners = [&](std::size_t i) -> Corners {
         return {inner(u), inner(vertex(i)), inner(vertex(i + 1))};
     };
     for (std::size_t i = 0; i < count; ++i) {
+        // Triangles that do not hold v have not moved, and were clear of each other before.
         if (u != v && vertex(i) != v && vertex(i + 1) != v)
             continue;
+        // Around v itself all triangles have moved, and each pair is tested once. Around a
+        // neighbour two have, and each is tested against all others.
         const std::uint32_t apart = fan.surely_apart_from(i);
         for (std::size_t j = u == v ? i + 1 : 0; j < count; ++j)
             if (i != j && (apart >> j & 1U) == 0 &&
@@ -155,6 +166,8 @@ Corners moved_corners(const GrowState& s, const FaceCorner& at, const Vec3d& x)
 bool tets_positive_at(const GrowState& s, int v, const Vec3d& x)
 {
     for (const FaceCorner& at : star(*s.mesh, v)) {
+        // The lanes also test tets of dropped pillars, which are flat. So beside a pin they never
+        // say yes, and each tet that exists is tested by itself.
         if (s.twelve && surely_positive(prism_around(s, at), x.asPointer()))
             continue;
         for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local))
@@ -174,6 +187,8 @@ bool within_cap(const GrowState& s, int v, const Vec3d& x)
 Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length)
 {
     const Vec3d x = rounded(s.a[v] + std::min(length, s.cap[v]) * unit);
+    // Rounding may have made the pillar longer than the cap, which is exact. Only then is the end
+    // stepped back, float by float.
     return within_cap(s, v, x) ? x : Vec3d(end_of_pillar(Vec3s(s.a[v]), unit, s.cap[v]));
 }
 
@@ -182,6 +197,7 @@ Vec3d capped(const GrowState& s, int v, const Vec3d& x)
     const Vec3d point = rounded(x);
     if (within_cap(s, v, point))
         return point;
+    // Along the radius: that is the nearest point of the ball around the outer point.
     const Vec3d arm = x - s.a[v];
     return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
 }
@@ -194,6 +210,9 @@ bool swallows_component(const GrowState& s, int v, const Vec3d& x)
     for (const FaceCorner& at : star(m, v)) {
         const Vec3d& p = s.b[m.corner(at.face, (at.local + 1) % 3)];
         const Vec3d& q = s.b[m.corner(at.face, (at.local + 2) % 3)];
+        // A triangle of the star sweeps over the tet of its two resting corners and both places of
+        // v. A component within it that touches no surface would come to lie in this one's shell,
+        // and one of its points tells; the box is there to spare most of the exact tests.
         Box swept = box_of({s.b[v], p, q});
         swept.add(x);
         for (const int w : s.witness) {
@@ -218,6 +237,9 @@ bool holds_component(const GrowState& s, int f)
         if (m.component[w] == m.component[m.corner(f, 0)])
             continue;
         for (const Vec3d* e : {&s.a[w], &s.b[w]})
+            // By the present split. While the diagonals of neighbours do not conform yet, a point
+            // close to a side may be in the tets of neither; the certificate at the end decides by
+            // winding numbers.
             for (const OrientedTet& tet : tables().three[s.order[f]])
                 if (box.contains(*e) && !dropped(s, f, tet.pillar) &&
                     in_tet({corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
@@ -244,7 +266,8 @@ bool prism_valid(const GrowState& s, int f)
         for (const OrientedTet& tet : tables().twelve)
             if (!positive(s, f, tet))
                 return false;
-    // With a pin, no tet that is left need hold the whole inner triangle.
+    // Positive tets show that their faces have area. With a pin the tet that holds the whole inner
+    // triangle may have been dropped, so a triangle without area has to be looked for.
     const bool pins = dropped(s, f, 0) || dropped(s, f, 1) || dropped(s, f, 2);
     const Corners b = inner_corners(s, f);
     return !pins || !exact::collinear(Vec3s(b[0]), Vec3s(b[1]), Vec3s(b[2]));
@@ -254,6 +277,7 @@ bool inner_triangle_clear(const GrowState& s, int f)
 {
     const InnerTriangle triangle(s, f);
     const FloatBox box = float_box_of(triangle.corners());
+    // The walk through a tree cannot be ended early; once a contact is found the tests are skipped.
     bool clear = true;
     s.inner_tree.for_each_overlap(
         box, [&](int g) { clear = clear && (g == f || !triangle.meets_inner(g)); });
@@ -274,8 +298,9 @@ InnerTriangle::InnerTriangle(const GrowState& s, const FaceCorner& at, const Vec
 
 bool InnerTriangle::meets_inner(int g, const Corners& c) const
 {
-    // With all its other corners on one side of this one's plane it cannot; what that leaves open
-    // goes to the exact test.
+    // If all corners of the other triangle that are not common lie strictly on one side of this
+    // one's plane, nothing but the common corners is in both. The plane is computed once for all
+    // triangles that this one is held against; what it leaves open goes to the exact test.
     int first = 0;
     bool one_side = true;
     for (int k = 0; k < 3; ++k) {
@@ -330,7 +355,9 @@ bool adjacent_clear_at(const GrowState& s, int v, const Vec3d& x)
 {
     if (beside_a_pin(s, v))
         return adjacent_clear_beside_a_pin(s, v, x);
-    // Triangles with a common corner are both in the fan of that corner.
+    // Triangles with a common corner are both in the fan of that corner (docs/theory.md, "Fans"),
+    // and a triangle around v has its corners at v and at neighbours of v. Triangles without one
+    // are kept apart by separating planes.
     const auto clear = [&](int u) { return clear_around(s, u, v, x); };
     const Slice<int> around = neighbours(*s.mesh, v);
     return clear(v) && std::all_of(around.begin(), around.end(), clear);

@@ -29,7 +29,8 @@ namespace
 {
 
 /// Lines of a level: its own pseudo-normals, for the level set's gradient is known at the vertices
-/// of the mesh alone. Lines that are only fallen back on are not worth smoothing.
+/// of the mesh alone. Smoothing pays where the start is along the lines, not where they are only
+/// fallen back on.
 Directions lines_of_level(const TriangleMesh& mesh, const GrowOptions& options, StartedFrom from)
 {
     return prepare_directions(mesh, directions_along(mesh, pseudo_normals(mesh)), options,

@@ -18,7 +18,7 @@ namespace
 {
 
 /// The direction that serves the tets on v's pillar best, with the neighbours where they are: each
-/// of these tets asks for one side of a plane through a_v, whatever the pillar's length.
+/// of these tets is positive on one side of a plane through a_v, whatever the pillar's length.
 Vec3d best_direction(const GrowState& s, int v)
 {
     std::vector<Vec3d> normals;
@@ -78,7 +78,8 @@ bool release(GrowState& s, int v, double length)
     return false;
 }
 
-/// Boxes that hold the inner triangles wherever these vertices may go.
+/// Boxes that hold the inner triangles wherever these vertices may go, so that the tree need not be
+/// refitted after each release. The tests need boxes that are large enough, not tight.
 void box_in(GrowState& s, const std::vector<double>& longest)
 {
     std::vector<FloatBox> boxes(s.mesh->faces.size());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: directions and lengths. Leaves: inner points where they say, not tested yet.
+// Takes: directions and lengths. Leaves: inner points where they say, rounded to float32 and within
+// the cap, and the vertices pinned that can have no pillar. Nothing is tested: that the prisms hold
+// is seen to by whoever calls this (violations.h).
 
 #include "growth/place_pillars.h"
 

@@ -27,6 +27,9 @@ bool segment_touches_triangle(const Vec3d& p, const Vec3d& q, const Corners& t)
         return false;
     if (sp == 0 || sq == 0)
         return exact::segment_touches_triangle(Vec3s(p), Vec3s(q), exact_triangle(t));
+    // The ends lie strictly on either side, so the line of the segment meets the plane in one point
+    // within the segment. That is in the triangle when the line passes no two edges on opposite
+    // sides; a sign of nought means that it meets the edge.
     const int e0 = orient(p, q, t[0], t[1]);
     const int e1 = orient(p, q, t[1], t[2]);
     if (e0 * e1 < 0)
@@ -61,7 +64,9 @@ bool separate_triangles_touch(const Corners& s, const Corners& t)
     for (int i = 0; i < 3; ++i)
         if (a[i] == 0 || b[i] == 0)
             return exact::triangles_touch(exact_triangle(s), exact_triangle(t));
-    // No corner in the other's plane: then an edge of one pierces the other, or nothing does.
+    // No corner lies in the other's plane, so each triangle crosses that plane with two edges: if
+    // the triangles meet, an edge of one pierces the other, and an edge with both ends on one side
+    // cannot.
     for (int i = 0; i < 3; ++i) {
         const int j = (i + 1) % 3;
         if (a[i] != a[j] && segment_touches_triangle(s[i], s[j], t))
@@ -99,6 +104,9 @@ bool improper_contact(const Corners& s, const CornerIds& s_id, const Corners& t,
     if (shared == 1 && (rest_on_one_side(s, si, t) || rest_on_one_side(t, ti, s)))
         return false;
     if (shared == 1)
+        // Follow, from the common corner, a ray that stays in both triangles: the first of them to
+        // end does so on its edge across from that corner, and there that edge meets the other
+        // triangle.
         return segment_touches_triangle(s[(si + 1) % 3], s[(si + 2) % 3], t) ||
                segment_touches_triangle(t[(ti + 1) % 3], t[(ti + 2) % 3], s);
     // One and the same triangle: all three corners are pinned.

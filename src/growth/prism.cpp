@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The tets of a prism under each of the six orders of its corners, worked out by the compiler from
-// the one rule of docs/theory.md, "Splits", so that no table is written by hand.
+// the one rule of docs/theory.md, "Splits", so that no table is written by hand. Leaves: each tet
+// with its corners in the order in which a positive determinant means a sound tet, and the same
+// tets again as seen from each inner corner, as moves need them.
 
 #include "growth/prism.h"
 
@@ -10,6 +12,7 @@ namespace vdb_shell::growth
 namespace
 {
 
+/// A rotation of 0, 1, 2, which is known by its first two entries.
 constexpr bool is_even(const PrismOrder& o)
 {
     return (o[0] + 1) % 3 == o[1];
@@ -23,6 +26,9 @@ constexpr OrientedTet make(int pillar, int p, int q, int r, int s, bool swap)
 }
 
 // As in the theory: owner z: (ax ay az bz), owner y: (ax ay by bz), owner x: (ax bx by bz).
+// Triangles are counter-clockwise from outside and b lies inward: for an even order the first and
+// the last of these are negative as they stand and the middle one is positive, for an odd order the
+// other way round. Exchanging the last two corners mends the sign.
 constexpr std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
 {
     const int x = o[0], y = o[1], z = o[2];
@@ -31,7 +37,9 @@ constexpr std::array<OrientedTet, 3> split_tets(const PrismOrder& o)
             make(z, x, y, z, z + 3, !odd)};
 }
 
-// A tet is known by the set of its corners, a bit mask.
+// Of the eighteen tets of six splits twelve are different: that of the first corner of an order,
+// and that of the last, do not depend on how the other two are ordered. A tet is known by the set
+// of its corners, a bit mask.
 constexpr std::array<OrientedTet, 12> union_of_splits(const PrismTables& t)
 {
     std::array<OrientedTet, 12> out{};

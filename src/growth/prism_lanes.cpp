@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the prisms around the inner point of one vertex. Gives: whether the eight tets of a prism
+// that hold the point are surely positive with it at x, or the half-spaces that they keep it in, or
+// the slopes of what it is short of these. Four tets make a group of lanes, two groups a prism. A
+// yes of surely_positive is a proof, by the error bound of core/orient3d_filter.h; a no means that
+// the exact predicates have to decide. The half-spaces are a hint in plain doubles. The layout of
+// the file is that of all kernels, and the bits are the same on every processor: core/simd.h.
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -21,6 +29,8 @@ namespace
 
 using namespace simd::HWY_NAMESPACE;
 
+// A pick reaches the four corners of one group only. Where these are 0 the fifth corner takes its
+// place.
 alignas(kLanesAlignment) constexpr double kFourth[kDoubleLanes] = {0, 0, 0, 1};
 alignas(kLanesAlignment) constexpr double kMiddle[kDoubleLanes] = {0, 1, 1, 0};
 
@@ -55,13 +65,16 @@ bool surely_positive(const PrismAround& prism, const double* x)
 {
     std::array<Bases, 2> half;
     bases_around(prism, x, half);
-    // The apex on the negative side of p, u, w is what makes a tet positive.
+    // A tet is positive when its apex is on the negative side of p, u, w; with u and w exchanged
+    // the margin is that of the opposite sign.
     const Doubles first = orient3d_margin(half[0].p, half[0].w, half[0].u),
                   second = orient3d_margin(half[1].p, half[1].w, half[1].u);
     return bits_of(lesser(second, first) > 0.0) == 0xFU;
 }
 
-/// The bounds of four tets of a prism; `counts` is 0 for a tet that does not.
+/// The bounds of four tets of a prism; `counts` is 0 for a tet that does not. Such a tet, and one
+/// whose base has no area, come out with a normal of nought and an endless value, so that no sum
+/// has to look at which lanes count.
 HWY_INLINE Doubles bound(const Bases& bases, Doubles counts, TetBounds& out)
 {
     constexpr double kEnough = std::numeric_limits<double>::infinity();
@@ -110,6 +123,8 @@ ShortfallSlopes sum_shortfalls(const TetBounds* bounds, std::size_t count, doubl
     for (const TetBounds* b = bounds; b != bounds + count; ++b) {
         Doubles nx = Doubles::load(b->x.data()), ny = Doubles::load(b->y.data()),
                 nz = Doubles::load(b->z.data());
+        // A bound that is met has no part: the sum is that of squares of what is missing, and the
+        // step that it gives is zero where all bounds are met.
         const Doubles open =
             room - Doubles::load(b->value.data()) - (nx * x[0] + ny * x[1] + nz * x[2]);
         const auto is_short = open > zero;

@@ -11,7 +11,7 @@
 namespace vdb_shell::growth
 {
 
-/// The corners of a prism but for the inner point of the vertex that is asked about: that vertex's
+/// The corners of a prism but for the inner point of the vertex in question: that vertex's
 /// outer point, the outer points of the next and the last in its triangle, and their inner ones.
 /// Three doubles each.
 struct PrismAround {
@@ -38,8 +38,8 @@ struct CountedPrism {
 double bound_tets(const CountedPrism* prisms, std::size_t count, const double* here,
                   TetBounds* bounds);
 
-/// Gradient x, y, z and curvature xx, xy, xz, yy, yz, zz of half the squares of what the bounds
-/// are short of `room` at x.
+/// Of half the squares of what the bounds are short of `room` at x: the direction of descent x, y,
+/// z (minus the gradient), and the curvature xx, xy, xz, yy, yz, zz.
 using ShortfallSlopes = std::array<double, 9>;
 ShortfallSlopes sum_shortfalls(const TetBounds* bounds, std::size_t count, double room,
                                const double* x);

@@ -95,6 +95,8 @@ Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& 
                           const TriangleMesh& mesh, const Directions& lines, Bends bends,
                           const MultilevelSchedule& schedule)
 {
+    // Each vertex looks for its own nearest triangle without a seed from another, so that the
+    // result does not depend on how the vertices are shared among threads.
     const TriangleTree tree(coarse, diagonal_of(bounds_of(coarse.points)));
     std::vector<Vec3s> inner(mesh.points.size());
     for_each_index(inner.size(), [&](std::size_t v) {

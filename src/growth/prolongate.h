@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The shell of a coarser surface carried over to a finer one.
+// The shell of a coarser surface prolonged to a finer one.
 
 #include "vdb_shell/growth/schedule.h"
 #include "vdb_shell/mesh/triangle_mesh.h"

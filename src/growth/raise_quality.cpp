@@ -35,6 +35,8 @@ double mean_ratio_and_gradient(const Corners& base, const Vec3d& x, Vec3d& gradi
     const double volume6 = normal.dot(x - p);
     const double edges = (q - p).lengthSqr() + (r - p).lengthSqr() + (r - q).lengthSqr() +
                          (x - p).lengthSqr() + (x - q).lengthSqr() + (x - r).lengthSqr();
+    // By the logarithm of 12 (3V)^(2/3) / (sum of squared edges): two thirds of the relative slope
+    // of the volume less that of the sum. A tet that is flat in doubles has no such slope.
     gradient = volume6 > 0
                    ? ratio * ((2.0 / 3.0) * normal / volume6 - 2.0 * (3.0 * x - p - q - r) / edges)
                    : Vec3d(0.0);
@@ -136,6 +138,8 @@ QualityResult raise_quality(GrowState& s, double bound, bool flips, const StageP
     for (int v = 0; v < s.mesh->vertices; ++v)
         s.trust_radius[v] = std::max(schedule.radius_edge_share * mean_edge(s, v),
                                      kLeastRadiusInRoundings * s.rounding);
+    // All vertices but the pinned ones are active in every round, so the pins are the list of those
+    // left out, and radii stay as they are.
     const auto most_rounds = static_cast<std::size_t>(schedule.most_rounds);
     double shortfall = whole_shortfall(s, bound, result);
     while (result.rounds < most_rounds && shortfall > 0) {

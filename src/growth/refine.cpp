@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: a finished shell. Gives: the triangles whose halving is predicted to win most, by the
-// measure that the user chose. The cutting itself is resample/refine_triangles.h.
+// Takes: a finished shell, with the reasons that ended its pillars. Gives: the triangles whose
+// cutting is predicted to win most, by the measure that the user chose. A prediction decides only
+// where triangles are spent; the shell that is grown afterwards is tested as any other. The cutting
+// itself is resample/refine_triangles.h. Same result for any number of threads: sums over triangles
+// are serial.
 
 #include "vdb_shell/growth/refine.h"
 
@@ -52,6 +55,8 @@ std::vector<double> shortfalls(const PrismShell& shell)
 std::vector<double> contact_gain(const PrismShell& shell)
 {
     const std::vector<double> missing = shortfalls(shell);
+    // About the volume that the prism would hold more if its pillars were as long as those beside
+    // them.
     std::vector<double> gain = areas_of(shell);
     for (std::size_t t = 0; t < gain.size(); ++t) {
         const Vec3I& c = shell.triangles[t];

@@ -112,7 +112,8 @@ public:
 
 private:
     bool settled() const { return weight_ < schedule_.settled_weight; }
-    /// While jams are being undone a vertex that has won nothing may still have to make room.
+    /// While jams are being undone a vertex that has won nothing may have to make room all the
+    /// same.
     bool by_gain() const { return active_gain_ > 0 && settled(); }
 
     std::vector<std::uint8_t> next_inactive() const

@@ -17,7 +17,7 @@ namespace
 /// Whether growth stops as soon as it wins little for its cost.
 bool thrifty(StartedFrom from, const GrowOptions& options)
 {
-    // From lines all volume is still to be won, and to save rounds would show.
+    // From lines all volume is yet to be won, and a thinner shell would show.
     return from == StartedFrom::prolonged && !asks_for_more(options);
 }
 
@@ -105,8 +105,8 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
     relax.first_weight = first_weight(s, from, saves_time);
     relax.weight_decrease = weight_decrease(s, from, options);
     relax.least_gain = least_gain(s, options);
-    // Only where time is to be saved may a round that wins too little end it early on.
     relax.active_gain = active_gain(s, from, options);
+    // Only where time is to be saved may a round that wins too little end it early on.
     if (saves_time)
         relax.least_gain_per_vertex = s.schedule.active.gain_share_to_go_on * relax.active_gain;
     relax.predicted_gain = std::move(predicted_gain);

@@ -24,7 +24,8 @@ namespace
 {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Groups of the tree whose pairs one task lists.
+// Groups of the tree whose pairs one task lists. The cut depends on the tree alone, never on the
+// number of threads.
 constexpr std::size_t kGroupsAtOnce = 3;
 // In units of the rounding error of a plane's value. A pair is locked where the gap between its
 // triangles does not leave each of them this margin on its side of the plane several times over.
@@ -45,6 +46,8 @@ struct Chunk {
     std::vector<int> locked; ///< faces too close to another for a plane
 };
 
+/// A pinned corner belongs to both surfaces: nothing can separate an inner triangle there from an
+/// outer one. Moves test such pairs themselves (adjacent_clear_at).
 bool share_a_pin(const GrowState& s, int f, int g)
 {
     for (int k = 0; k < 3; ++k) {
@@ -112,7 +115,9 @@ public:
 
     void list_waiting(Waiting& waiting, Chunk& out) const
     {
-        // The pairs that passed the cheap test are gathered until all lanes have one.
+        // The pairs that passed the cheap test are gathered until all lanes have one. A slab
+        // depends on its own pair alone, so it makes no difference which pairs happen to be
+        // computed together.
         std::array<Slab, kSlabsAtOnce> slab;
         slabs_between(waiting.query.data(), waiting.count, slab.data());
         for (std::size_t i = 0; i < waiting.count; ++i)
@@ -203,6 +208,8 @@ std::vector<std::size_t> gather_planes(std::vector<Chunk>& chunks, SeparatingPla
     std::vector<std::size_t> base(chunks.size() + 1, 0);
     for (std::size_t c = 0; c < chunks.size(); ++c)
         base[c + 1] = base[c] + chunks[c].plane.size();
+    // A side is twice the index of its plane or one more, in 32 bits: moves read these lists all
+    // the time, and half the memory is read sooner.
     assert(base.back() < std::numeric_limits<std::uint32_t>::max() / 2);
     planes.plane.resize(base.back());
     planes.range.resize(base.back());
@@ -220,7 +227,8 @@ std::vector<std::size_t> gather_planes(std::vector<Chunk>& chunks, SeparatingPla
 }
 
 /// Bucket sort of the sides by vertex, stable in the order of the planes. Each block of chunks is
-/// counted first, so that all blocks can write at the same time, each to places of its own.
+/// counted first, so that all blocks can write at the same time, each to places of its own. Linear,
+/// and the same lists for any number of threads.
 void sort_by_vertex(const GrowState& s, std::vector<Chunk> chunks, SeparatingPlanes& planes)
 {
     constexpr std::size_t kBlocks = 8;
@@ -244,6 +252,7 @@ void sort_by_vertex(const GrowState& s, std::vector<Chunk> chunks, SeparatingPla
     std::uint32_t total = 0;
     for (std::size_t v = 0; v < vertices; ++v) {
         planes.first[v] = total;
+        // Each count gives way to the place of the first side that its block will write.
         for (std::vector<std::uint32_t>& of_block : next)
             total += std::exchange(of_block[v], total);
     }
@@ -311,7 +320,8 @@ void recentre_planes(const GrowState& s, SeparatingPlanes& planes)
                 room_of_f = std::min(room_of_f, plane.value(s.b[s.mesh->corner(f, k)]));
                 room_of_g = std::min(room_of_g, -plane.value(s.b[s.mesh->corner(g, k)]));
             }
-            // With less room than this the middle may be lost in the rounding.
+            // With less room than this the middle may be lost in the rounding. The range keeps the
+            // plane away from the trust regions of corners that do not have it on their lists.
             if (room_of_f > least_room && room_of_g > least_room)
                 plane.d = std::clamp(plane.d + 0.5 * (room_of_f - room_of_g), least_d, most_d);
         },

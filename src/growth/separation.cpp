@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Closest points of pairs of triangles, eight pairs at a time. Floats find out which edges come
-// closest and which pairs are far enough apart to need no plane; doubles compute the slab. Which
-// slab is found decides only how thick the shell gets (docs/theory.md, "Which planes").
+// Closest points of pairs of triangles, eight pairs at a time. Takes: pairs, and how wide a slab
+// between them need be. Gives: for each about the widest slab between its triangles, across the way
+// between their closest points. Floats find out which edges come closest and which pairs are far
+// enough apart to need no plane; doubles compute the slab, whose normal is rounded to the floats
+// that the plane will have. Which slab is found decides only how thick the shell gets
+// (docs/theory.md, "Which planes"); that the triangles are on its two sides is measured along that
+// very normal.
 
 #include "growth/separation.h"
 
@@ -57,7 +61,8 @@ bool other_way(const PairLanes& lanes, const PairEstimates& estimates, std::size
 void lay_out(const SlabQuery* query, std::size_t count, PairLanes& lanes)
 {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        // The last one fills the lanes that are left.
+        // The last one fills the lanes that are left. Relative to a corner of the pair the
+        // coordinates keep their digits in floats, however far the pair is from the origin.
         const SlabQuery& pair = query[std::min(lane, count - 1)];
         const Vec3d& origin = (*pair.first)[0];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -69,6 +74,7 @@ void lay_out(const SlabQuery* query, std::size_t count, PairLanes& lanes)
 }
 
 /// The closest of all pairs of edges, for lanes whose edges are too close for floats to choose.
+/// Nine times the work, for few lanes. The first of equal ones is taken, as in the floats.
 void between_all_edges(const PairLanes& lanes, unsigned which, PointRow& between)
 {
     std::array<double, kLanes> least;
@@ -123,7 +129,9 @@ void slabs_between(const SlabQuery* query, std::size_t count, Slab* slab)
     slabs_across(lanes, ways, across);
     unsigned doubtful = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        // No slab is wider than two points are apart: most pairs end here.
+        // No slab is wider than two points of its triangles are apart. So a slab as wide as the
+        // closest points of the edges are apart is the widest, and other directions need not be
+        // tried. Most pairs end here.
         constexpr double kAll = 1 - 1e-6;
         const double gap = across.gap[i];
         Vec3d way;

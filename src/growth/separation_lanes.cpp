@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: pairs of triangles, a pair to a lane, relative to a corner of the first. Gives: in floats
+// an estimate of each pair, with an allowance for its error, so that what is called wide enough is;
+// in doubles the way between two closest points of edges, and the slab across a way. Two triangles
+// that do not touch have their closest points either on an edge of each or at a corner of one over
+// the inside of the other; the second case is that of the directions across the triangles. Closest
+// points of edges: Ericson 2005, "Real-Time Collision Detection", 5.1.9. Lanes do not depend on
+// each other, and the bits are the same on every processor (core/simd.h).
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -47,7 +56,8 @@ HWY_INLINE FloatPoint difference(const FloatPoint& a, const FloatPoint& b)
 /// The corners as in PairLanes; the first is the origin.
 using PairCorners = std::array<FloatPoint, 6>;
 
-/// The room across an axis of any length, in units of the pair.
+/// The room across an axis of any length, in units of the pair; negative where the extents of the
+/// triangles overlap. Corner 0 of the first is the origin and has its place at nought.
 HWY_INLINE Floats room_across(const FloatPoint& axis, const PairCorners& c)
 {
     std::array<Floats, 5> d;
@@ -75,8 +85,9 @@ struct EdgePair {
     Floats de, dr, er;
 };
 
-/// Lowers `least` to the squared distance from the point of q's edge that is nearest to
-/// p + start d.
+/// Lowers `least` to the squared distance from the point of q's edge that is nearest to p + start
+/// d. Clamping the one parameter and then finding the other anew gives closest points of the edges,
+/// as long as `start` is that of the lines.
 HWY_INLINE void lower_to_distance2(const EdgePair& edges, Floats start, Floats& least)
 {
     const Floats t = clamped_to_one((edges.de * start + edges.er) * edges.ee_inverse);
@@ -121,12 +132,14 @@ HWY_INLINE void closest_edges(const PairCorners& c, Floats& least, Floats& which
                 lower_to_distance2(edges, none, squared);
                 lower_to_distance2(edges, one, squared);
             }
+            // Of equally close pairs the first one stays, on every processor.
             which = select(squared < least, Floats(static_cast<float>(3 * i + j)), which);
             lower_to(least, squared);
         }
 }
 
-/// In units of the pairs' sizes.
+/// In units of the pairs' sizes: one set of tolerances serves triangles of any scale, and no square
+/// overflows. The least float keeps a pair without extent from a division by nought.
 HWY_INLINE void scaled_corners(const PairLanes& pairs, PairCorners& c, Floats& size,
                                Floats& inverse)
 {
@@ -162,6 +175,8 @@ void estimate_rooms(const PairLanes& pairs, PairEstimates& estimates)
     Floats widest = across_middles;
     raise_to(widest, across_first);
     raise_to(widest, across_second);
+    // The allowance for the error is on the safe side: a pair that is called wide has no plane, and
+    // the proof rests on its being wide enough.
     const Floats enough = Floats::load(pairs.enough.data()) * inverse + kErrorOfRoom;
     estimates.wide = bits_of(widest > enough);
 
@@ -210,6 +225,8 @@ void between_edges(const EdgeRows& edges, PointRow& between)
             pair.d[k] -= pair.p[k], pair.e[k] -= pair.q[k], r[k] = pair.p[k] - pair.q[k];
         pair.dd = dot(pair.d, pair.d), pair.ee = dot(pair.e, pair.e);
         pair.de = dot(pair.d, pair.e), pair.dr = dot(pair.d, r), pair.er = dot(pair.e, r);
+        // Where edges are parallel the quotient may be infinite or no number; it is not selected
+        // then.
         const Doubles denominator = pair.dd * pair.ee - pair.de * pair.de;
         const auto crossed = denominator > kParallelInDoubles * pair.dd * pair.ee;
         const Doubles start = (pair.de * pair.er - pair.dr * pair.ee) / denominator;
@@ -248,6 +265,9 @@ void slabs_across(const PairLanes& pairs, const PointRow& ways, SlabLanes& slabs
             at[i] = dot(n, load(pairs.corner[1 + i], first));
         Doubles s_lo, s_hi, t_lo, t_hi;
         find_slabs(at, s_lo, s_hi, t_lo, t_hi);
+        // The first triangle may lie on either side; where it is the lower one, all is turned
+        // round, the ends of the extents as well. A way of no length makes comparisons with no
+        // number, which are false, and gets a gap that no pair accepts.
         const Doubles along = s_lo - t_hi, against = t_lo - s_hi;
         const auto plain = along > against;
         for (std::size_t k = 0; k < 3; ++k)

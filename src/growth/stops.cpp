@@ -40,8 +40,9 @@ StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
     return met;
 }
 
-/// What the triangles around v meet first, with b_v = x. Cheap tests come first: whether it is an
-/// inner contact or an outer one when both happen is a matter of order, the same for all vertices.
+/// What the triangles around v meet first, with b_v = x. Cheap tests come first. When an inner
+/// contact and an outer one both happen, the order of the tests decides which is named, the same
+/// way for all vertices.
 StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
 {
     const Slice<FaceCorner> fan = star(*s.mesh, v);

@@ -3,7 +3,10 @@
 // Takes: inner points near which tets are inverted. Leaves: fewer of those. Each vertex is moved by
 // as little as puts the bounds of its tets right in least squares, with a weight on staying where
 // it is: bounds that are at odds with each other, as they are where a whole patch is sheared, must
-// not throw it about. Nothing is promised; what is left is found by the exact tests.
+// not throw it about. Nothing is promised and contacts are not looked at; what is left is found by
+// the exact tests. Vertices of a colour have no common neighbour and move at the same time, so the
+// result is the same for any number of threads. Damped Gauss-Newton: Nocedal and Wright 2006,
+// "Numerical Optimization", chapter 10.
 
 #include "growth/untangle.h"
 
@@ -27,7 +30,8 @@ namespace
 // Share of the rounding of a coordinate, far above the error of a determinant in doubles.
 constexpr double kPositive = 1e-3;
 
-/// Of one vertex. Kept, for what is made and thrown away here costs as much as all the rest.
+/// Of one vertex. A thread keeps its own from vertex to vertex for the memory, since allocating it
+/// anew costs as much as all the rest; nothing that is in it lasts longer than a vertex.
 struct Scratch {
     std::vector<CountedPrism> prisms;
     std::vector<TetBounds> bounds; ///< two to a prism
@@ -78,6 +82,7 @@ Vec3d least_move(const Scratch& bounds, double room, const Vec3d& across,
         if (g == Vec3d(0.0))
             break;
         const openvdb::Mat3d h(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        // There always is an inverse: h is a sum of squares, and what is added to it is positive.
         x += (h + stay).inverse(0.0) * g;
     }
     return x;
@@ -114,6 +119,7 @@ void untangle(GrowState& s, int sweeps, std::vector<std::uint8_t>& look,
         if (s.pinned[v])
             return;
         const Vec3d x = better_place(s, v, scratch.local());
+        // A point that comes to lie on its outer one would be a pin that is not marked as one.
         if (x == s.b[v] || x == s.a[v])
             return;
         s.b[v] = x;

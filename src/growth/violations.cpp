@@ -21,6 +21,8 @@ namespace
 
 using Marks = std::vector<std::atomic<std::uint8_t>>;
 
+// Only ones are ever written, and a test is left out only if all that it could mark is marked. So
+// the marks are the same whichever thread comes first, and no order of memory is needed.
 void mark(std::atomic<std::uint8_t>& entry)
 {
     entry.store(1, std::memory_order_relaxed);
@@ -56,7 +58,8 @@ public:
     void mark_groups(std::size_t begin, std::size_t end) const
     {
         BoxTree::Near near;
-        // Pairs come face by face, and the plane of the first one is worth computing only once.
+        // Pairs come face by face, so the plane of the first one is computed once for all of its
+        // pairs.
         std::optional<InnerTriangle> triangle;
         const auto of = [&](int f) -> const InnerTriangle& {
             if (!triangle || triangle->face() != f)
@@ -127,7 +130,8 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
         if (changed[f] && (!prism_valid(s, f) || holds_component(s, f)))
             mark(bad[f]);
     });
-    // A face that fails already is not asked for contacts: its pillars will be shortened anyway.
+    // A face that fails already is not tested for contacts: its pillars will be shortened anyway,
+    // and contact tests are the dearer ones.
     mark_contacts(s, changed, first, bad);
     return {bad.begin(), bad.end()};
 }

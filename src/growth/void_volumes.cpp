@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: a finished shell. Gives: where its void is, triangle by triangle, so that refinement can
-// cut those under which most is left to fill.
+// cut those under which most is left to fill. Rays go from even places of each inner triangle
+// against its normal, through the void, to where they leave it on the other side. In doubles, as an
+// estimate: nothing that is certified rests on it.
 
 #include "growth/void_volumes.h"
 
@@ -74,6 +76,8 @@ std::vector<double> void_volumes(const PrismShell& shell)
             sum += chord(inner, tree, static_cast<std::uint32_t>(t), {place, cross / twice_area},
                          longest);
         });
+        // The area, half of twice_area, times half the mean chord: the other half of the way
+        // belongs to the triangle that the ray leaves through.
         volumes[t] = 0.25 * twice_area * sum / (kPiecesAlong * kPiecesAlong);
     });
     return volumes;

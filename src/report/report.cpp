@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the figures of one run, after its end. Gives: the report as JSON text
+// (docs/file_format.md). Nothing is measured here, and only angles change their unit, so a figure
+// is the same for programs, for people and for who uses the library. Keys stand in the order in
+// which they are written below: the same run gives the same bytes, but for seconds and memory,
+// which can be left out. Keys of the top level do not come and go with the options, `stages` aside:
+// what does not apply is null, or an empty list. The report is stored in files and compared with
+// their contents when these are checked (write/verify_file.cpp), so a renamed key would break older
+// files. Trap: a number that is not finite becomes null.
+
 #include "vdb_shell/report/report.h"
 
 #include "certify/certificate_findings.h"
@@ -18,11 +28,14 @@ namespace
 
 using nlohmann::ordered_json;
 
+/// Code and options have radians throughout, reports have degrees (docs/conventions.md).
 double degrees(double radians)
 {
     return radians * 180.0 / openvdb::math::pi<double>();
 }
 
+/// The distribution of a figure over all tets or pillars, `convert` put to each of its values. That
+/// keeps their order only if it rises, as a change of unit does.
 ordered_json spread_json(const Spread& spread, double (*convert)(double) = nullptr)
 {
     const auto in_unit = [&](double value) { return convert ? convert(value) : value; };
@@ -32,6 +45,8 @@ ordered_json spread_json(const Spread& spread, double (*convert)(double) = nullp
             {"mean", in_unit(spread.mean)}};
 }
 
+/// All are counted but only the first few by index are named (Defect::kFirstShown), so that a
+/// report stays short however bad the surface is. A pair becomes a list of two.
 template <typename Element> ordered_json defect_json(const Defect<Element>& defect)
 {
     return {{"count", defect.count}, {"first", defect.first}};
@@ -46,6 +61,8 @@ ordered_json read_json(const ReadReport& read)
             {"welded_vertices", read.welded_vertices},
             {"unused_vertices", read.unused_vertices},
             {"skipped_faces", read.skipped_faces},
+            // Without it nobody could find a place of the report in a file that was moved on
+            // reading.
             {"placement", placement_json(read.placement)},
             {"largest_rounding", read.largest_rounding}};
 }
@@ -53,6 +70,7 @@ ordered_json read_json(const ReadReport& read)
 ordered_json contour_json(const ContourReport& contour)
 {
     return {{"method", name_in_table(contour.method)},
+            // Not 0 only where that surface was given up for the other method.
             {"volume_to_mesh_defects", contour.volume_to_mesh_defects},
             {"triangles", contour.triangles},
             {"simplified_triangles", contour.simplified_triangles},
@@ -61,6 +79,7 @@ ordered_json contour_json(const ContourReport& contour)
             {"dropped_components", contour.dropped_components}};
 }
 
+/// Distances are sampled, so their number says how far mean and maximum can be trusted.
 ordered_json distance_json(const DistanceFigures& distance)
 {
     return {{"mean", distance.mean}, {"max", distance.max}, {"samples", distance.samples}};
@@ -74,6 +93,8 @@ ordered_json wrap_json(const WrapReport& wrap)
             {"sheet_share", wrap.sheet_share},
             {"interior_share", wrap.interior_share},
             {"contour", contour_json(wrap.contour)},
+            // Both ways, because neither bounds the other: a part of the input that the wrap has
+            // lost shows in the first only, a part that it has made up in the second.
             {"input_to_wrap", distance_json(wrap.input_to_wrap)},
             {"wrap_to_input", distance_json(wrap.wrap_to_input)}};
 }
@@ -83,6 +104,8 @@ ordered_json mesh_json(const MeshCheck& mesh)
     return {{"points", mesh.points},
             {"triangles", mesh.triangles},
             {"volume", mesh.volume},
+            // The answers as well as the counts that they follow from, so that a script need not
+            // know which defects make a surface open or not manifold.
             {"closed", mesh.closed()},
             {"manifold", mesh.manifold()},
             {"boundary_edges", mesh.boundary_edges.count},
@@ -101,6 +124,7 @@ ordered_json decimate_json(const DecimateReport& decimate)
     return {{"triangles_before", decimate.before},
             {"triangles_wanted", decimate.wanted},
             {"triangles", decimate.triangles},
+            // Collapses may end before: the tolerance goes before the number of triangles.
             {"reached", decimate.reached()},
             {"input_to_result", distance_json(decimate.input_to_result)},
             {"result_to_input", distance_json(decimate.result_to_input)},
@@ -121,12 +145,15 @@ ordered_json field_json(const FieldReport& field)
 
 ordered_json lines_json(const LineReport& lines)
 {
+    // Every reason has a key, also where it ended no line, so that tables over many meshes have the
+    // same columns.
     ordered_json stops;
     for (int reason = 0; reason < kStopReasonCount; ++reason)
         stops[name_of(StopReason(reason))] = lines.stops[std::size_t(reason)];
     return {{"min_visibility", lines.min_visibility},
             {"blind_vertices", lines.blind_vertices},
             {"stuck_vertices", lines.stuck_vertices},
+            // Fewer than there are vertices where growth begins on a coarser surface.
             {"stepped", lines.lines},
             {"steps", lines.steps},
             {"stop_reasons", stops},
@@ -139,12 +166,15 @@ ordered_json growth_json(const GrowReport& grow)
     return {{"rounds", grow.rounds},
             {"flips", grow.flips},
             {"released_pins", grow.released},
+            // On this surface: after a start on coarser ones most of the fill has been won there,
+            // by free moves too.
             {"fill_after_lines", grow.fill_after_lines},
             {"quality_rounds", grow.quality_rounds},
             {"tets_below_quality", grow.tets_below_quality},
             {"vertices_below_quality", grow.vertices_below_quality}};
 }
 
+/// A tet that is not positive is either inverted or flat (docs/conventions.md), by exact signs.
 ordered_json tets_json(const ShellReport& report)
 {
     return {{"tets", report.signs.tets},
@@ -171,6 +201,8 @@ ordered_json quality_json(const QualityReport& quality)
             {"aspect", spread_json(quality.aspect)}};
 }
 
+/// Points in no tet, in one and in several add up to the samples. Those outside are apart: they
+/// were drawn on the way and belong to no share of the solid.
 ordered_json coverage_json(const Coverage& coverage)
 {
     return {{"samples", coverage.samples},
@@ -185,6 +217,7 @@ ordered_json coverage_json(const Coverage& coverage)
 
 ordered_json layers_json(const ShellReport& report)
 {
+    // An array from the beginning: a shell of one layer has an empty list here, not null.
     ordered_json layers = ordered_json::array();
     for (const LayerFigures& layer : report.layers)
         layers.push_back({{"tets", layer.tets},
@@ -205,6 +238,8 @@ ordered_json scale_json(const ScaleReport& scale)
     return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
 }
 
+/// Round 0 is the shell before refinement. The last round need not be the one that was kept, since
+/// a round may lose fill.
 ordered_json refine_json(const RefineReport& refine)
 {
     ordered_json rounds = ordered_json::array();
@@ -220,6 +255,8 @@ ordered_json refine_json(const RefineReport& refine)
     return {{"rounds", rounds}, {"kept", refine.kept}, {"end", name_of(refine.end)}};
 }
 
+/// A shell on both sides has lines, growth and scaling twice. Those inward stand at the top level,
+/// where they also stand for a shell on one side, so that scripts find them in one place.
 ordered_json outside_json(const OutsideReport& outside)
 {
     return {{"lines", lines_json(outside.lines)},
@@ -227,6 +264,8 @@ ordered_json outside_json(const OutsideReport& outside)
             {"scale", outside.scale ? scale_json(*outside.scale) : ordered_json()}};
 }
 
+/// What holds tet by tet where the whole is not certified (docs/theory.md, "A surface that crosses
+/// itself").
 ordered_json overlaps_json(const Overlaps& overlaps)
 {
     return {{"pairs", defect_json(overlaps.pairs)},
@@ -239,13 +278,17 @@ ordered_json overlaps_json(const Overlaps& overlaps)
             {"certified_volume", overlaps.certified_volume}};
 }
 
+/// Names and order are those of the certificate's own messages, so that a failure in the text can
+/// be looked up by the same word here.
 void add_findings(ordered_json& json, const Certificate& certificate)
 {
     for_each_kind(certificate,
                   [&](const char* name, const auto& defect) { json[name] = defect_json(defect); });
 }
 
-/// Findings stand under the certificate itself where there is one layer, else by layer.
+/// Findings stand under the certificate itself where there is one layer, else by layer, from the
+/// outermost; the hull is only looked at where there are several. All layers are certified by the
+/// same test, so that of the first stands for it.
 ordered_json certificate_json(const StackCertificate& certificate)
 {
     const std::vector<Certificate>& layers = certificate.layers;
@@ -286,6 +329,8 @@ std::string report_json(const ShellReport& report, bool with_costs)
     ordered_json json;
     json["source"] = report.source;
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
+    // The repair report has a JSON form of its own, for a repair without a shell. Its text is
+    // parsed here instead of being built a second time, so the two cannot differ.
     json["repair"] =
         report.repair ? ordered_json::parse(repair_json(*report.repair)) : ordered_json();
     json["wrap"] = report.wrap ? wrap_json(*report.wrap) : ordered_json();
@@ -319,9 +364,12 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["certificate"] =
         report.certificate ? certificate_json(*report.certificate) : ordered_json();
     json["overlaps"] = report.overlaps ? overlaps_json(*report.overlaps) : ordered_json();
+    // The only part that differs from run to run; a file that holds the report has to have the same
+    // bytes each time.
     if (with_costs)
         json["stages"] = costs_json(report.stages);
-    // A file name may hold bytes that are no UTF-8.
+    // A file name may hold bytes that are no UTF-8. They are replaced, since JSON cannot hold them
+    // and a report must not fail for the name of its input.
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 

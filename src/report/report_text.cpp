@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: the figures of one run. Gives: the same for a person, one line a stage, about in the order
+// in which the stages ran; the last line says whether the shell can be trusted. Lines of stages
+// that did not run are left out, where the JSON has null. Figures are rounded to what can be read
+// at a glance; whoever needs all digits takes the JSON (report.cpp). Numbers are written in the
+// classic locale: a program that uses the library may have set another, which would put separators
+// into them. Capitals mark what is wrong with a mesh or a shell.
+
 #include "vdb_shell/report/report.h"
 
 #include "mesh/placement_json.h"
@@ -13,6 +21,7 @@ namespace vdb_shell
 namespace
 {
 
+// The longest label and a space after it.
 constexpr int kLabelWidth = 12;
 
 /// "label       text", one line.
@@ -21,6 +30,8 @@ void line(std::ostringstream& out, const char* label, const std::string& text)
     out << std::left << std::setw(kLabelWidth) << label << text << '\n';
 }
 
+/// Significant digits, so that lengths of any unit can be read. Whole numbers come out whole,
+/// whatever the digits.
 template <typename T> std::string number(T value, int digits = 4)
 {
     std::ostringstream out;
@@ -29,6 +40,7 @@ template <typename T> std::string number(T value, int digits = 4)
     return out.str();
 }
 
+/// Fixed decimals, since most fills are close to 1 and differ in the last ones.
 std::string percent(double share)
 {
     std::ostringstream out;
@@ -37,17 +49,22 @@ std::string percent(double share)
     return out.str();
 }
 
+/// Three of the seven figures: the ends, where trouble shows, and what is usual. The mean and the
+/// percentiles are in the JSON.
 std::string spread(const Spread& values)
 {
     return "min " + number(values.min) + ", median " + number(values.median) + ", max " +
            number(values.max);
 }
 
+/// Of the surface that was worked with, which need not be the one in the file.
 std::string mesh_lines(const MeshCheck& mesh)
 {
     std::string text = number(mesh.points, 12) + " vertices, " + number(mesh.triangles, 12) +
                        " triangles, " + number(mesh.components.size(), 12) +
                        (mesh.components.size() == 1 ? " component" : " components");
+    // Said in both cases: all that follows rests on it, and silence could mean that it was not
+    // looked at.
     text += mesh.closed() ? ", closed" : ", OPEN";
     text += mesh.manifold() ? ", manifold" : ", NOT MANIFOLD";
     if (!mesh.embedded())
@@ -55,6 +72,8 @@ std::string mesh_lines(const MeshCheck& mesh)
     return text;
 }
 
+/// The first of the vertices by index, those of the input, so that they can be found in the file
+/// that was read.
 std::string split_text(const ShellReport& report)
 {
     std::string text = number(report.split_vertices.count, 12) +
@@ -73,11 +92,13 @@ std::string contour_text(const ContourReport& contour)
     if (contour.method == ContourMethod::marching_tets)
         text += "; by marching tets, for volume to mesh left " +
                 number(contour.volume_to_mesh_defects, 12) + " defects";
+    // Said only where it happened: it changes what the solid is.
     if (contour.dropped_components > 0)
         text += "; " + number(contour.dropped_components, 12) + " inner components left out";
     return text;
 }
 
+/// Lengths also in voxels, which are what bounds the detail of a wrap.
 void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
 {
     line(out, "wrap", "voxel " + number(wrap.voxel_size) + ", " + contour_text(wrap.contour));
@@ -98,6 +119,8 @@ void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
 {
     std::string text =
         number(decimate.before, 12) + " triangles to " + number(decimate.triangles, 12);
+    // The tolerance comes before the number, so fewer collapses than were wanted are no error, but
+    // the user has to know.
     if (!decimate.reached())
         text += " (wanted " + number(decimate.wanted, 12) + ": no more can be had)";
     line(out, "decimate",
@@ -108,6 +131,7 @@ void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
 void refine_lines(std::ostringstream& out, const RefineReport& refine)
 {
     line(out, "refine",
+         // Round 0 is the shell before refinement: it is in the list and is no round of it.
          number(refine.rounds.size() - 1, 12) + " rounds, kept " + number(refine.kept, 12) +
              ", ended by " + name_of(refine.end));
     for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
@@ -142,6 +166,9 @@ std::string stop_text(const LineReport& lines)
     return text.empty() ? "none stepped" : text;
 }
 
+/// Fill is a share of the solid, so a shell that lies outside only has none: what is outside has no
+/// bound to be a share of, and is put in relation to the solid instead (docs/theory.md, "Outward
+/// shells, and shells on both sides").
 std::string volume_shares(const ShellReport& report)
 {
     std::string text;
@@ -155,6 +182,7 @@ std::string volume_shares(const ShellReport& report)
 
 std::string coverage_text(const Coverage& coverage, Side side)
 {
+    // Without samples all shares are nought, which would read like an empty shell.
     if (coverage.samples == 0)
         return "not estimated";
     return percent(coverage.covered_share) +
@@ -165,6 +193,8 @@ std::string coverage_text(const Coverage& coverage, Side side)
            number(coverage.in_several, 12) + " in two or more";
 }
 
+/// Says what was proven, not just that it was: with the chosen tets alone nothing is said about
+/// other diagonals or thinner shells (docs/theory.md, "One prism: the twelve tets").
 std::string certificate_text(const StackCertificate& certificate)
 {
     const std::vector<Certificate>& layers = certificate.layers;
@@ -182,6 +212,7 @@ std::string certificate_text(const StackCertificate& certificate)
     return text;
 }
 
+/// One line a layer, numbered as in the failures of the certificate.
 void layer_lines(std::ostringstream& out, const ShellReport& report)
 {
     if (report.cut)
@@ -201,6 +232,8 @@ void layer_lines(std::ostringstream& out, const ShellReport& report)
     }
 }
 
+/// Of one side. A shell on both sides has these lines twice, those outward under a line of their
+/// own.
 void line_figures(std::ostringstream& out, const LineReport& lines)
 {
     line(out, "directions",
@@ -221,7 +254,8 @@ void growth_line(std::ostringstream& out, const GrowReport& grow)
              number(grow.released, 12) + " pins released");
 }
 
-/// What the stages after growth had to give up.
+/// What the user wanted and the stages after growth could not give: tets of the wanted quality, and
+/// pillars as long as scaling alone would have left them.
 void concession_lines(std::ostringstream& out, const ShellReport& report)
 {
     if (report.grow && report.grow->quality_rounds > 0)
@@ -241,7 +275,10 @@ std::string shown_share(const Overlaps& overlaps)
            " prisms certified by themselves";
 }
 
-/// What is wrong with the shell; what was not looked at is not called right.
+/// What is wrong with the shell; what was not looked at is not called right. Faults come first,
+/// even where there is a certificate: signs, conformity and sample points are counted without it,
+/// and a contradiction between the two has to show. Then the strongest statement that was proven,
+/// then what was merely seen.
 std::string verdict(const ShellReport& report)
 {
     std::string wrong;
@@ -262,6 +299,9 @@ std::string verdict(const ShellReport& report)
                (report.overlaps ? "; " + shown_share(*report.overlaps) : std::string());
     if (report.certificate && report.certificate->certified())
         return "no tet inverted, none overlapping: proven";
+    // Tet by tet it says no more than that interiors are disjoint; how the tets touch is for
+    // conformity and for the certificate of the whole (docs/theory.md, "A surface that crosses
+    // itself").
     if (report.overlaps && report.overlaps->none())
         return "no tet inverted, none overlapping: proven tet by tet; not certified as a whole";
     if (report.coverage.samples == 0)
@@ -269,6 +309,8 @@ std::string verdict(const ShellReport& report)
     return "tets positive and conforming, no overlap seen among the sample points; not certified";
 }
 
+/// The stages follow one another, so their seconds add up; memory is a high-water mark of the
+/// process, so the largest is that of the whole run, with whatever the process held before.
 void cost_lines(std::ostringstream& out, const std::vector<StageCost>& stages)
 {
     double total = 0.0;
@@ -335,6 +377,8 @@ std::string report_text(const ShellReport& report)
          number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
              " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
              (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+    // The lower end is told twice: by the very worst tet, and by the lowest hundredth, which a
+    // single tet hardly moves.
     line(out, "mean ratio",
          spread(report.quality.mean_ratio) + "; 1 % under " + number(report.quality.mean_ratio.p1));
     line(out, "dihedral",
