@@ -213,6 +213,9 @@ void fill_inside(Band& band, const std::vector<CutSegment>& outline)
         int winding = 0;
         for (std::size_t i = 0; i + 1 < line.size(); ++i) {
             winding += line[i].turn;
+            // Because the picture has turned y round, the sign of the winding number tells nothing,
+            // and any number but 0 counts as inside. The surface of a cavity has the opposite turn
+            // and brings the number back to 0.
             if (winding != 0)
                 for (int x = band.column(line[i].x); x < band.column(line[i + 1].x); ++x)
                     band.at(x, row).inside = true;

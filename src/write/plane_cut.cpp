@@ -107,6 +107,9 @@ std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangl
         unsigned taken = 0;
         for (const std::uint32_t neighbour : neighbours[p])
             taken |= 1u << tints[neighbour];
+        // A hash picks where to start, or two tints would cover most of the surface. It is
+        // Fibonacci hashing (Knuth, The Art of Computer Programming, volume 3, "Hashing"): the
+        // factor is 2^32 over the golden ratio.
         const std::uint32_t start = (p * 2654435769u) >> 16;
         for (std::uint32_t step = 0; step < kTintCount && tints[p] == kTintCount; ++step) {
             const auto tint = std::uint8_t((start + step) % kTintCount);

@@ -3,8 +3,9 @@
 // Writes a shell as .vdb (level set, depth, three grids of points, metadata) and reads it back bit
 // for bit. Reading trusts nothing: the outer structure of the file is checked before OpenVDB sees
 // it (io), the metadata and the grids by their own readers, and last the checksum of all arrays.
-// Whatever a library throws at damaged data leaves here as ReadError. A trap: floats are certified
-// in the mesh's own frame, so grids are moved by their transforms only and no coordinate is ever
+// Whatever a library throws at damaged data leaves here as ReadError; what OpenVDB does not notice
+// in the data of voxels can still crash it (docs/file_format.md). A trap: floats are certified in
+// the mesh's own frame, so grids are moved by their transforms only and no coordinate is ever
 // changed.
 
 #include "vdb_shell/write/vdb_file.h"

@@ -3,9 +3,9 @@
 // The metadata of a shell's .vdb: written from the shell, read back with every entry held against
 // its type and range. The counts let the reader bound its memory before it looks at a grid, and the
 // checksum ties the point grids to their file. A file of one layer below the surface says nothing
-// of layers, so that it is byte for byte of schema 1 and older readers take it. The table of
-// entries is in docs/file_format.md. The copies on single grids are for Houdini, which drops the
-// metadata of the file; they are never read here.
+// of layers: it is of schema 1, which older readers take. The table of entries is in
+// docs/file_format.md. The copies on single grids are for Houdini, which makes attributes of a
+// grid's metadata; they are never read here.
 
 #include "write/vdb_metadata.h"
 
