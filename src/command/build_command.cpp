@@ -109,8 +109,8 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     return file;
 }
 
-/// Overlaps are looked for only where the certificate fails or the user asks for them. Where there
-/// are none in the report, the whole shell is certified, and so is each tet.
+/// Overlaps are looked for only where the certificate fails. Where there are none in the report,
+/// the whole shell is certified, and so is each tet.
 std::vector<std::uint8_t> certified_flags(const ShellResult& result)
 {
     const std::optional<Overlaps>& overlaps = result.report.overlaps;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The commands that work on the file of a shell: `info` prints what it holds, `convert` writes
-// other formats, `check` holds it against itself. All of them read the file whole and through its
-// checksum, so a damaged file is refused by each. Houdini's geometry holds the shell but not the
-// grids, which are null then.
+// other formats, `check` holds it against itself. All of them read the shell whole and through its
+// checksum, so each refuses a file whose arrays are damaged. Houdini's geometry holds the shell but
+// not the grids, which are null then.
 
 #include "command/file_commands.h"
 
