@@ -35,7 +35,7 @@ public:
     void open_map() override { kind(Kind::map_begin); }
     void close_map() override { kind(Kind::map_end); }
     /// Every string is a token, defined where it comes first. A document of this kind says the same
-    /// few keys again and again, so nearly every one costs two bytes.
+    /// few keys again and again, and a token with a small number costs two bytes.
     void text(std::string_view value) override
     {
         const auto [token, is_new] = tokens_.try_emplace(std::string(value), tokens_.size());

@@ -39,8 +39,7 @@ void require_count(std::size_t count, const char* what)
         reject(std::to_string(count) + " " + what + ", more than int32 can number");
 }
 
-/// Letters, digits, _ and :, no digit first. Stricter than some readers, which take other
-/// characters: names of this kind are also those of variables in Houdini's expressions.
+/// Letters, digits, _ and :, no digit first.
 bool is_name(const std::string& name)
 {
     // The cast is needed: isalnum is undefined for negative values, which bytes beyond ASCII may

@@ -94,7 +94,8 @@ void reorder_vertices(HoudiniGeometry& geometry, const std::vector<std::uint32_t
 void read_all_attributes(const Fields& document, const Where& where, Budget& budget,
                          HoudiniGeometry& geometry)
 {
-    // Some programs leave out what would be empty.
+    // Missing counts as none. Whoever needs an attribute, as a surface needs P, says so when it
+    // looks for it.
     const Value* attributes = document.find("attributes");
     if (!attributes)
         return;

@@ -36,7 +36,7 @@ std::vector<bool> from_runs(const Value& value, std::size_t elements, const Wher
 
 std::vector<bool> from_bytes(const Value& value, const Where& where)
 {
-    // Some writers use flags where Houdini has bytes; both mean the same.
+    // An array of bits is taken as well, as it tells the same.
     if (std::holds_alternative<Booleans>(value.data))
         return std::get<Booleans>(value.data);
     std::vector<bool> members;
