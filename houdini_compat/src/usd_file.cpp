@@ -4,8 +4,8 @@
 // the grids by reference to a .vdb. One sample or one for each time; what is the same at all times
 // is written once, by comparing the texts of the values. Coordinates are the float32 that were
 // certified, in the frame of the mesh, and the placement is an xformOp of doubles on the prims, so
-// nothing is rounded once more. There is no dependence on USD's own library; the format is plain
-// enough, and the result is checked by USD's in the tests (docs/usd.md).
+// nothing is rounded once more. There is no dependence on USD's own library: the text format is
+// plain enough. How stages are checked, and by what they were not, is in docs/usd.md.
 
 #include "vdb_shell/houdini/usd_file.h"
 
