@@ -3,8 +3,8 @@
 // Reads a shell back from a Houdini geometry that this program wrote, bit for bit, or refuses it
 // with the name of what does not fit. People edit such files in Houdini, so nothing is assumed:
 // counts are bounded by the elements that are there, triangles of all surfaces are compared with
-// the outermost, and the checksum of all arrays decides in the end whether it is still the shell
-// that was written. Whether the shell is valid is not asked here; `check` certifies it afresh.
+// the outermost, and the checksum of all arrays decides in the end whether it is the shell that was
+// written. Whether the shell is valid is not tested here; `check` certifies it afresh.
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/shell_geometry.h"

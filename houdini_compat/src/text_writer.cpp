@@ -69,7 +69,8 @@ public:
     }
 
 private:
-    // In bytes: large enough for few calls of the sink, and small beside any document.
+    // In bytes: large enough for few calls of the sink, and small beside a document for which
+    // memory matters.
     static constexpr std::size_t kFlushAt = 1 << 16;
 
     void before_value()

@@ -26,7 +26,7 @@ namespace
 namespace fs = std::filesystem;
 
 /// The trees that Houdini's own tables know; it makes nothing of the others. The name of the tree
-/// is asked and not that of the values: a mask's values are bools too, and only its tree tells it
+/// decides and not that of the values: a mask's values are bools too, and only its tree tells it
 /// from a grid of bools.
 bool is_houdini_tree(const std::string& type)
 {

@@ -3,7 +3,7 @@
 // The rules for attributes of point grids: what unpacking in Houdini leaves out, shortens or
 // changes. All grids of points of a file unpack into one geometry, where an attribute has one type
 // and size, so clashes between grids are looked for as well. The rules come from the published
-// conversion code (docs/vdb_conventions.md). Types are asked of the first leaf: OpenVDB keeps the
+// conversion code (docs/vdb_conventions.md). Types are read from the first leaf: OpenVDB keeps the
 // attributes of all leaves of a grid alike.
 
 #include "vdb_rules.h"
@@ -59,7 +59,7 @@ std::int64_t largest_integer(const PointDataGrid& grid, std::size_t index)
 void check_type(const PointDataGrid& grid, const std::string& name, std::size_t index,
                 const std::string& type, VdbViolations& found)
 {
-    // What is left out cannot also be changed, so the other rules are not asked.
+    // What is left out cannot also be changed, so the other rules do not apply.
     if (!is_kept(type)) {
         found.push_back({"attribute-type", grid.getName(), name,
                          "the type is " + type + ", which Houdini leaves out"});
@@ -74,8 +74,8 @@ void check_type(const PointDataGrid& grid, const std::string& name, std::size_t 
         type != "vec3d")
         found.push_back({"role", grid.getName(), name,
                          "the type is " + type + "; Houdini knows this name as a vec3s"});
-    // Houdini carries vec3i through float32, which holds all integers up to 2^24. A single int32
-    // with a stride keeps its type and stays exact.
+    // Houdini passes a vec3i on as float32, which holds all integers up to 2^24. An int32 with a
+    // stride keeps its type and stays exact.
     constexpr std::int64_t kLargestExact = 1 << 24;
     if (type == "vec3i") {
         const std::int64_t largest = largest_integer(grid, index);

@@ -3,8 +3,8 @@
 // The rules for what a grid holds: its class against its values, its background and its voxels; the
 // type of its vectors; and half floats. A wrong class makes no error in Houdini: the grid is just
 // drawn, filtered or transformed as something that it is not (docs/vdb_conventions.md has the
-// table). The only rule that looks at every value is that of half floats, so most files are judged
-// in no time.
+// table). Only the rule of half floats looks at every value, and only at grids that say they were
+// saved so.
 
 #include "vdb_rules.h"
 

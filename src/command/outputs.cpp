@@ -35,7 +35,7 @@ Kind kind_of(const fs::path& path)
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vdb")
         return Kind::vdb;
-    // Asked of the whole name, as `.bgeo.sc` is two extensions to std::filesystem.
+    // By the whole name, as `.bgeo.sc` is two extensions to std::filesystem.
     if (houdini::has_geometry_extension(path))
         return Kind::houdini;
     if (extension == ".png")

@@ -2,7 +2,7 @@
 
 // The command `repair`: reads a surface, mends it, writes it in the coordinates of the input, and
 // prints every change. The mended surface is written even if something is left that no repair can
-// mend: the status says so (check_failed), and half a repair is still what the user may go on with.
+// mend: the status says so (check_failed), and what was mended may be of use to another program.
 // The input is never overwritten, because a repair may remove things that somebody wanted.
 
 #include "command/repair_command.h"

@@ -31,7 +31,7 @@ using openvdb::Vec2d;
 
 /// Pixels along a side. The upper end bounds the memory of the picture: 16384 squared pixels of
 /// three bytes are 805 MB. The lower end also holds for the shorter side, so that a flat section
-/// still shows.
+/// stays visible.
 constexpr int kSmallestWidth = 16, kLargestWidth = 16384;
 constexpr double kMargin = 0.03; ///< of the longer side, on each side
 

@@ -248,7 +248,7 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
 constexpr std::size_t kTetsInPart = 256;
 
 /// Tets in parts of a fixed size, and the jobs of each part. The size does not depend on the number
-/// of threads, so the jobs come in the same order however the parts are shared out.
+/// of threads, so the jobs come in the same order whichever thread does which part.
 struct Parts {
     std::vector<std::vector<IndexTet>> tets;
     std::vector<std::vector<Job>> jobs;

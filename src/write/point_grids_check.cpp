@@ -179,8 +179,7 @@ private:
 
 bool same_bits(const Vec3s& a, const Vec3s& b)
 {
-    // The bits are what is asked for: values that compare equal need not have the same ones.
-    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    // The bits matter here: values that compare equal need not have the same ones.
     return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
 }
 

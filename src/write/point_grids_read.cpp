@@ -75,9 +75,8 @@ public:
         }
     }
 
-    /// The value as an index below `limit`, or ReadError. The comparison is made in 64 bits: an
-    /// int32 from the file may be negative, and as an unsigned number it would look large but
-    /// valid.
+    /// The value as an index below `limit`, or ReadError. It comes as 64 bits, which hold every
+    /// int32 of a file and, for `tet_point`, one more than that.
     std::uint32_t in_range(std::int64_t value, std::size_t limit, const char* attribute,
                            std::size_t row) const
     {

@@ -3,8 +3,8 @@
 // Writes a shell as .vdb (level set, depth, three grids of points, metadata) and reads it back bit
 // for bit. Reading trusts nothing: the outer structure of the file is checked before OpenVDB sees
 // it (io), the metadata and the grids by their own readers, and last the checksum of all arrays.
-// Whatever a library throws at damaged data leaves here as ReadError; what OpenVDB does not notice
-// in the data of voxels can still crash it (docs/file_format.md). A trap: floats are certified in
+// Whatever a library throws at damaged data leaves here as ReadError; what OpenVDB fails to notice
+// in the data of voxels can crash it (docs/file_format.md). A trap: floats are certified in
 // the mesh's own frame, so grids are moved by their transforms only and no coordinate is ever
 // changed.
 
@@ -249,8 +249,7 @@ ShellFile read_shell_vdb(const fs::path& path)
                                  info.tets,     info.layers, info.skin};
         read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
                          result.stack, result.tets);
-        // The file has the sum over all layers, which is all that the report shows; it is put into
-        // the first layer.
+        // The file has the sum over all layers; it is put into the first layer.
         result.stack.splits.front().ripples = std::size_t(info.ripples);
         result.parameters_json = info.parameters_json;
         result.report_json = info.report_json;

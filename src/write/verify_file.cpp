@@ -3,8 +3,10 @@
 // Takes a shell as a file gave it, and says of each claim of the file whether it holds. Nothing is
 // taken over from the report but the claims themselves: surface, tets, signs, certificate,
 // overlaps, volume and grids are computed afresh from the stored floats, by the exact tests that
-// certified the shell when it was built. So a file that passes is proven anew (docs/theory.md, "The
-// whole shell"), whoever wrote it. A claim that is missing compares as unequal to every number.
+// certified the shell when it was built. So the certificate of a file that passes is proven anew
+// (docs/theory.md, "The whole shell"), whoever wrote the file. A figure that is missing compares as
+// unequal to every number; a file without certificate or overlaps claims nothing of them, and
+// cannot fail there.
 
 #include "vdb_shell/write/verify_file.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Tets as VTK's XML file of an unstructured grid. The arrays are in base 64 inside of the XML:
-// exact, and still a file that any XML parser reads, which it would not be with raw data appended.
-// There is no compression, so the bytes depend on no library. Coordinates are Float32 as long as no
+// Tets as VTK's XML file of an unstructured grid. The arrays are in base 64 inside of the XML: they
+// are exact, and any XML parser reads the file, which it would not with raw data appended. There is
+// no compression, so the bytes depend on no library. Coordinates are Float32 as long as no
 // placement moves them; else they are Float64, since the sum with the origin need not fit a float.
 // What the arrays hold is in docs/file_format.md.
 
