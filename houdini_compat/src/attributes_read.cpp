@@ -27,9 +27,9 @@ namespace
 // Far beyond what Houdini writes, and small enough for products of them not to overflow 64 bits.
 constexpr std::size_t kMostSize = 1 << 16, kMostPageSize = 1 << 24;
 
-/// A number of a file as the type of its storage. The tree has all integers as int64 and all reals
-/// as double; a value that its declared storage cannot hold means damage, and is refused rather
-/// than cut off.
+/// A number of a file as the type in which it is kept. The tree has all integers as int64 and all
+/// reals as double; a value that this type cannot hold means damage, and is refused rather than cut
+/// off.
 template <typename T> T converted(std::int64_t value, std::size_t at, const Where& where)
 {
     if constexpr (std::is_integral_v<T>) {

@@ -33,6 +33,7 @@ constexpr int kPageSize = 1024;
 /// writes, and later ones read older files.
 constexpr const char* kFileVersion = "19.0.0";
 
+/// The four types that Values holds; narrower storages are read but never written.
 template <typename T> constexpr const char* storage_of()
 {
     if constexpr (std::is_same_v<T, std::int32_t>)
@@ -147,7 +148,7 @@ void write_values(DocumentWriter& out, std::size_t size, const std::vector<T>& v
 {
     key_integer(out, "size", size);
     key_text(out, "storage", storage_of<T>());
-    // What elements get that are made later; a single number stands for all components.
+    // What elements get that are made later in Houdini.
     out.text("defaults");
     out.open_list();
     key_integer(out, "size", 1);
@@ -163,6 +164,8 @@ void write_values(DocumentWriter& out, std::size_t size, const std::vector<T>& v
     write_column(out, "values", size, values);
 }
 
+/// The texts once, in a table, and for each component the number of its text; -1 stands for the
+/// empty string.
 void write_values(DocumentWriter& out, std::size_t size, const Strings& strings)
 {
     key_integer(out, "size", size);
@@ -175,6 +178,8 @@ void write_values(DocumentWriter& out, std::size_t size, const Strings& strings)
     write_column(out, "indices", size, strings.index);
 }
 
+/// Two lists: what the attribute is, and what it holds. The option "type" tells Houdini what a
+/// vector means, a point or a normal for instance, so that transforms treat it as that.
 void write_attribute(DocumentWriter& out, const Attribute& attribute)
 {
     out.new_line();
@@ -312,6 +317,8 @@ void write_groups(DocumentWriter& out, const char* key, const std::vector<Group>
     out.close_list();
 }
 
+/// A flat list of keys and values in turn, which is how Houdini writes most maps. The order of the
+/// keys is that of docs/houdini.md, with all counts before what they count.
 void write_document(DocumentWriter& out, const HoudiniGeometry& geometry)
 {
     out.open_list();
@@ -342,6 +349,7 @@ bool ends_in(const std::string& name, std::string_view extension)
            name.compare(name.size() - extension.size(), extension.size(), extension) == 0;
 }
 
+/// The reader goes by the content; a writer has nothing but the name.
 Format format_by_extension(const fs::path& path)
 {
     const std::string name = lower_name(path);
@@ -398,6 +406,8 @@ void write_geometry(std::ostream& out, const HoudiniGeometry& geometry, Format f
 
 void write_geometry(const fs::path& path, const HoudiniGeometry& geometry)
 {
+    // Name and geometry are tested before the file is opened, so nothing is written that could not
+    // be read back.
     const Format format = format_by_extension(path);
     require_consistent(geometry);
     write_stream_atomically(path,

@@ -3,7 +3,7 @@
 // Reads Houdini's binary JSON into a tree. The format is a mark, then values, each a byte of kind
 // and what that kind asks for; docs/houdini.md has the table, which was made from public facts and
 // held against files that Houdini wrote. The input is not trusted: no length is believed before the
-// bytes for it are seen to be there, so the memory taken is a small multiple of the size of the
+// bytes for it are seen to be there, so the memory taken is a bounded multiple of the size of the
 // file, and every fault is told with the byte at which it was met. Nesting is not recursion here:
 // the parts go to TreeBuilder one by one, so a deep file cannot overflow the stack.
 

@@ -214,6 +214,8 @@ std::vector<float> qualities(const ShellFile& file, const std::vector<Part>& par
     std::vector<float> worst(file.stack.layers.size() * prisms, 0.0f);
     std::vector<bool> seen(worst.size(), false);
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+        // In double, though the corners are floats: the quality of slivers is a difference of
+        // nearly equal products.
         const auto corner = [&](int k) { return Vec3d(tets.points[tets.tets[t][k]]); };
         quality.push_back(
             static_cast<float>(mean_ratio(corner(0), corner(1), corner(2), corner(3))));
@@ -260,6 +262,8 @@ void add_primitive_groups(const ShellFile& file, const std::vector<Part>& parts,
     add("outer", on_surface(0));
     add("inner", on_surface(stack.layers.size()));
     add("pinned", [&](std::size_t i) {
+        // A prism that is pinned at all corners has no tet in any layer, so only triangles are in
+        // this group.
         const Vec3I& t = stack.triangles()[parts[i].prism];
         return pinned_throughout(stack, t[0]) && pinned_throughout(stack, t[1]) &&
                pinned_throughout(stack, t[2]);
@@ -317,6 +321,7 @@ void add_figures(HoudiniGeometry& geometry, const std::string& report_json)
 
 void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 {
+    // The reader bounds its memory by these counts, and compares them with the primitives.
     const ShellCounts counts = counts_of(file.stack, file.tets);
     std::size_t ripples = 0;
     for (const PrismSplit& split : file.stack.splits)

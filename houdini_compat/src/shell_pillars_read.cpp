@@ -85,7 +85,6 @@ Ids find_own_points(const Columns& points, const std::vector<std::size_t>& surfa
             points.fail(kSourceVertex, "of point " + std::to_string(i) + " is " +
                                            std::to_string(vertex) + ", as of point " +
                                            std::to_string(place) + " on the same surface");
-        // The cast is safe: the reader has bounded the points by what int32 can count.
         place = static_cast<std::uint32_t>(i);
     }
     return own;

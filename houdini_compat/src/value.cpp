@@ -124,6 +124,7 @@ void append_list(Value& list, Value element)
         held->values.insert(held->values.end(), integers->values.begin(), integers->values.end());
         return;
     }
+    // One of the two has reals, so both become reals.
     Reals& held = as_reals(list);
     if (integers)
         held.values.insert(held.values.end(), integers->values.begin(), integers->values.end());
@@ -143,6 +144,7 @@ void TreeBuilder::finish(Value value)
         return;
     }
     Value& into = open_.back();
+    // Keys and values stand in turn; Fields finds out whether they pair up and each key is a text.
     if (Map* map = std::get_if<Map>(&into.data))
         map->items.push_back(std::move(value));
     else
