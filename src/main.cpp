@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The program: commands to option structs, exceptions to exit statuses, and nothing else. Parsing
+// changes no field; apply() does, for the global options and for the one command that was given.
+// The number of threads is limited by TBB for the whole process, which changes the time and no byte
+// of any result. Messages go to standard error, so that figures on standard output can be piped.
+
 #include "vdb_shell/core/error.h"
 
 #include "command/build_command.h"
@@ -59,6 +65,8 @@ std::vector<CommandEntry> entries_of(const BoundOptions& global,
     return entries;
 }
 
+/// The actions refer to `a` and to `commands`, both of which outlive them in run(). Pointers into
+/// `commands` are made only when `options` runs, when the vector no longer grows.
 void add_commands(CLI::App& app, Arguments& a, const BoundOptions& global,
                   std::vector<Subcommand>& commands)
 {
@@ -89,6 +97,7 @@ int run(int argc, char** argv)
                  "vdb_shell"};
     app.set_version_flag("--version", "vdb_shell " VDB_SHELL_VERSION);
     app.require_subcommand(1);
+    // Global options may stand behind the command as well, where people tend to add them.
     app.fallthrough();
     Arguments arguments;
     BoundOptions global = add_threads(app, arguments.threads);
@@ -97,14 +106,19 @@ int run(int argc, char** argv)
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        // Help and version are thrown as well, with status 0; CLI11's other numbers are its own and
+        // are replaced by ours.
         return app.exit(error) == 0 ? success : usage_error;
     }
 
     apply(global);
+    // The limit holds as long as this object lives, that is until run() returns.
     std::unique_ptr<tbb::global_control> limit;
     if (arguments.threads > 0)
         limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                       std::size_t(arguments.threads));
+    // Not earlier: while words are parsed there is nothing to stop or to tidy up, and the default
+    // action is right.
     catch_signals();
     for (Subcommand& command : commands)
         if (command.app->parsed()) {
@@ -114,6 +128,9 @@ int run(int argc, char** argv)
     return internal_error; // the parser wants a command
 }
 
+/// Each kind of error has its own status (docs/command_line.md), so that a script can tell a wrong
+/// option from a surface that has no shell. The kinds do not derive from one another, so the order
+/// of the tests does not matter.
 int status_of(const std::exception& error)
 {
     if (dynamic_cast<const Cancelled*>(&error))
@@ -135,6 +152,8 @@ int main(int argc, char** argv)
 {
     try {
         return run(argc, argv);
+        // Everything that is thrown ends here, so that temporary files are removed while the stack
+        // unwinds; an exception that leaves main may end the process without doing so.
     } catch (const std::exception& error) {
         std::cerr << "vdb_shell: " << error.what() << '\n';
         return status_of(error);

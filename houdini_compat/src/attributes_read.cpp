@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads the attributes of one class of elements into tuples, whatever layout the file has them in.
+// The order of the tests bounds the memory: sizes and pages by constants, numbers of values by what
+// is in the file, and what constant pages spell out by the budget. Attributes of kinds that have no
+// place in HoudiniGeometry are named as unread; a fault in one that has a place refuses the file,
+// because half an attribute would look like a whole one.
+
 #include "geometry_parts.h"
 
 #include "vdb_shell/io/read_file.h"
@@ -13,13 +20,16 @@ namespace vdb_shell::houdini
 namespace
 {
 
-// Attributes come in three layouts: a tuple per element, a list per component, and pages, in which
-// a value that fills a page is stored once. All are unfolded here into tuples.
+// Attributes come in three layouts: a list for each element ("tuples"), a list for each component
+// ("arrays"), and pages ("rawpagedata"), in which a value that fills a page is stored once. All are
+// unfolded here into one vector, tuple after tuple.
 
-// Far beyond what Houdini writes, and small enough for products of them not to overflow.
+// Far beyond what Houdini writes, and small enough for products of them not to overflow 64 bits.
 constexpr std::size_t kMostSize = 1 << 16, kMostPageSize = 1 << 24;
 
-/// A number of a file as the type of its storage.
+/// A number of a file as the type in which it is kept. The tree has all integers as int64 and all
+/// reals as double; a value that this type cannot hold means damage, and is refused rather than cut
+/// off.
 template <typename T> T converted(std::int64_t value, std::size_t at, const Where& where)
 {
     if constexpr (std::is_integral_v<T>) {
@@ -35,7 +45,8 @@ template <typename T> T converted(double value, std::size_t at, const Where& whe
     if constexpr (std::is_integral_v<T>)
         where.fail("value " + std::to_string(at) + " is " + std::to_string(value) +
                    " where whole numbers are stored");
-    // What is not finite already is left to those that need the values.
+    // NaN and infinity pass, if they were stored as such: they are left to those that need the
+    // values. A finite number that becomes infinite by the conversion is refused.
     if (std::is_same_v<T, float> && std::isfinite(value) &&
         !std::isfinite(static_cast<float>(value)))
         where.fail("value " + std::to_string(at) + " is " + std::to_string(value) +
@@ -50,7 +61,8 @@ struct Shape {
     std::size_t count() const { return elements * size; }
 };
 
-/// One tuple per element: lists of `size`. Or one list per component: lists of `elements`.
+/// Rows of equal length: either one list of `size` numbers for each element, or one list of
+/// `elements` numbers for each component. The second is transposed.
 template <typename T, typename Stored>
 std::vector<T> from_rows(const Numbers<Stored>& rows, const Shape& shape, bool tuples,
                          const Where& where)
@@ -65,14 +77,16 @@ std::vector<T> from_rows(const Numbers<Stored>& rows, const Shape& shape, bool t
     std::vector<T> values;
     values.reserve(shape.count());
     for (std::size_t i = 0; i < shape.count(); ++i) {
+        // Value i is component i % size of element i / size.
         const std::size_t from = tuples ? i : i % shape.size * shape.elements + i / shape.size;
         values.push_back(converted<T>(rows.values[from], i, where));
     }
     return values;
 }
 
-/// How pages are cut up: subvectors of these widths, each with a flag per page (or no flags) that
-/// says that one value stands for the whole page.
+/// How pages are cut up. A tuple may be stored as several subvectors of these widths one after the
+/// other within each page. Each subvector has a flag for each page, or no flags at all, which says
+/// that one value stands for the whole page.
 struct Paging {
     std::size_t page_size = 0;
     std::vector<std::size_t> widths;
@@ -88,6 +102,8 @@ Paging read_paging(const Fields& fields, const Shape& shape, const Where& where)
     if (const Value* packing = fields.find("packing")) {
         std::size_t sum = 0;
         for (const std::int64_t width : integers_of(*packing, where, "packing")) {
+            // Compared with what is left of the tuple, so neither the sum nor a negative width can
+            // wrap.
             if (width < 1 || static_cast<std::uint64_t>(width) > shape.size - sum)
                 where.fail("\"packing\" has " + std::to_string(width) + " in tuples of " +
                            std::to_string(shape.size));
@@ -106,6 +122,7 @@ Paging read_paging(const Fields& fields, const Shape& shape, const Where& where)
         if (lists.size() != paging.widths.size())
             where.fail("\"constantpageflags\" has " + std::to_string(lists.size()) + " lists for " +
                        std::to_string(paging.widths.size()) + " subvectors");
+        // Rounded up: the last page may be shorter than the others.
         const std::size_t pages = (shape.elements + paging.page_size - 1) / paging.page_size;
         for (std::size_t k = 0; k < lists.size(); ++k) {
             paging.constant[k] = flags_of(lists[k], where, "constantpageflags");
@@ -126,6 +143,7 @@ std::uint64_t stored_numbers(const Paging& paging, const Shape& shape)
         std::uint64_t rows = shape.elements;
         for (std::size_t page = 0; page < paging.constant[k].size(); ++page)
             if (paging.constant[k][page])
+                // A constant page keeps one row instead of all that it stands for.
                 rows -= std::min(paging.page_size, shape.elements - page * paging.page_size) - 1;
         sum += rows * paging.widths[k];
     }
@@ -140,6 +158,8 @@ std::vector<T> from_pages(const std::vector<Stored>& raw, const Shape& shape, co
         where.fail("\"rawpagedata\" has " + std::to_string(raw.size()) + " numbers where " +
                    std::to_string(stored_numbers(paging, shape)) + " are needed for " +
                    std::to_string(shape.elements) + " tuples of " + std::to_string(shape.size));
+    // The number of stored values has been compared before this line, so no index below leaves
+    // `raw`.
     std::vector<T> values(shape.count());
     std::size_t next = 0;
     for (std::size_t begin = 0, page = 0; begin < shape.elements;
@@ -159,7 +179,8 @@ std::vector<T> from_pages(const std::vector<Stored>& raw, const Shape& shape, co
     return values;
 }
 
-/// Calls use(numbers) with the Integers or Reals behind `value`.
+/// Calls use(numbers) with the Integers or Reals behind `value`. An empty list has no type and
+/// passes as no integers; what then lacks numbers is found by the count.
 template <typename Use>
 auto with_numbers(const Value& value, const Where& where, const char* what, const Use& use)
 {
@@ -190,6 +211,8 @@ std::vector<T> read_column(const Value& value, const Shape& shape, const Where& 
                    ", the attribute's is " + std::to_string(shape.size));
     for (const char* key : {"tuples", "arrays"})
         if (const Value* rows = fields.find(key)) {
+            // Components without elements are lists that are all empty, which are no rows of
+            // numbers in the tree.
             if (shape.elements == 0 && has_no_numbers(*rows))
                 return {};
             return with_numbers(*rows, where, key, [&](const auto& numbers) {
@@ -201,12 +224,16 @@ std::vector<T> read_column(const Value& value, const Shape& shape, const Where& 
     return with_numbers(raw, where, "rawpagedata", [&](const auto& numbers) {
         if (numbers.width != 0)
             where.fail("\"rawpagedata\" is " + describe(raw) + " where numbers are needed");
+        // Constant pages alone make the result larger than what was stored. Anything else has been
+        // paid for by the size of the file.
         if (numbers.values.size() < shape.count())
             budget.spend(shape.count() * sizeof(T), where);
         return from_pages<T>(numbers.values, shape, paging, where);
     });
 }
 
+/// Narrow storages are widened: half floats to float, small integers to int32. Nothing is lost, and
+/// the rest of the program has four types to deal with instead of nine.
 Values read_numeric(const Fields& data, const Shape& shape, const Where& where, Budget& budget)
 {
     const std::string& storage = text_of(data.at("storage"), where, "storage");
@@ -228,6 +255,8 @@ Strings read_strings(const Fields& data, const Shape& shape, const Where& where,
     Strings strings;
     for (const Value& one : list_of(data.at("strings"), where, "strings")) {
         const std::string& text = text_of(one, where, "strings");
+        // The table copies its texts, while a binary file can name one long text many times at two
+        // bytes each.
         budget.spend(text.size(), where);
         strings.table.push_back(text);
     }
@@ -275,6 +304,7 @@ std::vector<Attribute> read_attributes(const Value& value, std::size_t elements,
         const std::string title = std::string(kind) + " " + vdb_shell::quoted(attribute.name);
         const Where inside = where.inside(title);
         const std::string& type = text_of(head.at("type"), inside, "type");
+        // Before the test for equal names: what is not read cannot clash with what is.
         if (type != "numeric" && type != "string") {
             unread.push_back(title + " of type " + vdb_shell::quoted(type));
             continue;

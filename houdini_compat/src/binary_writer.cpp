@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a document as Houdini's binary JSON, the .bgeo form (docs/houdini.md has the table of
+// kinds). The bytes are a function of the document alone: always least significant byte first,
+// integers as short as they go, each text defined as a token where it first occurs, numbered from
+// 0. Attributes have their numbers packed without tags, so that the file has about the size of its
+// arrays.
+
 #include "document_writer.h"
 
 #include "binary_kinds.h"
@@ -27,7 +34,8 @@ public:
     void close_list() override { kind(Kind::list_end); }
     void open_map() override { kind(Kind::map_begin); }
     void close_map() override { kind(Kind::map_end); }
-    /// Every string is a token, defined where it comes first.
+    /// Every string is a token, defined where it comes first. A document of this kind says the same
+    /// few keys again and again, and a token with a small number costs two bytes.
     void text(std::string_view value) override
     {
         const auto [token, is_new] = tokens_.try_emplace(std::string(value), tokens_.size());
@@ -40,7 +48,7 @@ public:
         kind(Kind::token_ref);
         length(token->second);
     }
-    /// In as few bytes as it takes.
+    /// In as few bytes as it takes. The kind tells the width, so readers lose nothing.
     void integer(std::int64_t value) override
     {
         if (fits<std::int8_t>(value))
@@ -52,6 +60,8 @@ public:
         else
             tagged(Kind::int64, value);
     }
+    // Single reals are bounds and defaults, which are few: they all take eight bytes, and a float
+    // keeps its value in a double.
     void real(double value) override { tagged(Kind::real64, value); }
     void boolean(bool value) override { kind(value ? Kind::yes : Kind::no); }
     void numbers(const std::int8_t* values, std::size_t count) override
@@ -86,7 +96,8 @@ private:
         if (buffer_.size() > kFlushAt)
             flush();
     }
-    /// Least significant byte first, on any machine.
+    /// Least significant byte first, on any machine. Bits are taken by memcpy and shifts, which is
+    /// defined for floats too.
     template <typename T> void little_endian(T value)
     {
         std::uint64_t bits = 0;
@@ -97,6 +108,8 @@ private:
         } else if constexpr (std::is_same_v<T, double>) {
             std::memcpy(&bits, &value, sizeof bits);
         } else {
+            // A signed byte goes through the unsigned one of its size first, so that its sign does
+            // not spread into the higher bits of the word.
             using Byte = std::conditional_t<sizeof(T) == 1, std::uint8_t, T>;
             bits = static_cast<std::uint64_t>(static_cast<Byte>(value));
         }
@@ -108,6 +121,8 @@ private:
         kind(tag);
         little_endian(value);
     }
+    // The shortest of the four spellings. Readers take longer ones as well, but then equal
+    // documents would not have equal bytes.
     void length(std::size_t value)
     {
         if (value < kLengths) {
@@ -128,6 +143,8 @@ private:
         kind(Kind::uniform);
         kind(element);
         length(count);
+        // Flushed on the way: an array may be larger than all else together, and the buffer should
+        // not grow with it.
         for (std::size_t i = 0; i < count; ++i) {
             little_endian(values[i]);
             if (buffer_.size() > kFlushAt)

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// How the readers look at a parsed document: maps by key, values as the type that they have to
+// have, and a message that names file, part and value whenever something else is there. Houdini
+// writes most maps as flat lists of keys and values in turn; both are the same here. Budget is the
+// guard against what a format can spell out of little (constant pages, run lengths, shared
+// strings): it grants 64 bytes for each byte of the document and a mebibyte, and refuses beyond.
+
 #include "fields.h"
 
 #include "vdb_shell/io/read_file.h"
@@ -22,6 +29,7 @@ void Budget::spend(std::uint64_t bytes, const Where& where)
         where.fail("it would take " + std::to_string(bytes) +
                    " bytes to spell out; for a file of this size at most " + std::to_string(left_) +
                    " more are granted");
+    // Compared before it is subtracted, so the unsigned number cannot wrap to a fortune.
     left_ -= bytes;
 }
 
@@ -36,12 +44,15 @@ Fields::Fields(const Value& value, const Where& where) : where_(where)
                    " where keys and values in turn are needed");
     for (std::size_t i = 0; i < items->size(); i += 2) {
         const std::string& key = text_of((*items)[i], where, "a key");
-        // Two bytes can stand for a long key again and again.
+        // The tree shares its strings, but keys are copied here: in a binary file two bytes can
+        // stand for a long key, again and again, and each copy would take memory that the file did
+        // not pay for.
         if (key.size() > kLongestKey)
             where.fail("a key of " + std::to_string(key.size()) + " bytes, at most " +
                        std::to_string(kLongestKey) + " are read");
         if (!by_key_.emplace(key, &(*items)[i + 1]).second)
-            // Which of the two is meant cannot be known.
+            // JSON does not say which of two equal keys counts, and readers differ; so neither is
+            // taken.
             where.fail(vdb_shell::quoted(key) + " is there twice");
         keys_.push_back(&key);
     }
@@ -53,6 +64,7 @@ const Value* Fields::find(const char* key) const
     return found == by_key_.end() ? nullptr : found->second;
 }
 
+/// Files from Houdini have either spelling; the long name is the one that this program writes.
 const Value* Fields::find(const char* key, const char* short_key) const
 {
     const Value* found = find(key);
@@ -93,6 +105,8 @@ bool flag_of(const Value& value, const Where& where, const char* what)
     mismatch(value, where, what, "true or false");
 }
 
+/// The limit is the caller's, because only the caller knows what bounds the count: memory is often
+/// taken for as many elements right afterwards.
 std::size_t count_of(const Value& value, const Where& where, const char* what, std::size_t limit)
 {
     const auto* number = std::get_if<std::int64_t>(&value.data);
@@ -111,6 +125,8 @@ const List& list_of(const Value& value, const Where& where, const char* what)
     mismatch(value, where, what, "a list");
 }
 
+/// An empty list has no type in either form, so it passes as a list of numbers. Rows of numbers do
+/// not: they are lists of lists.
 const std::vector<std::int64_t>& integers_of(const Value& value, const Where& where,
                                              const char* what)
 {
@@ -123,6 +139,7 @@ const std::vector<std::int64_t>& integers_of(const Value& value, const Where& wh
     return integers->values;
 }
 
+/// The binary form packs flags into bits, the text form lists them one by one.
 std::vector<bool> flags_of(const Value& value, const Where& where, const char* what)
 {
     if (const auto* flags = std::get_if<Booleans>(&value.data))

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The geometry in memory that all three forms of Houdini's files share, and the test that it is
+// sound. What passes require_consistent can be written in each form and is read back the same; a
+// geometry that is wrong is refused by name and number instead of making a file that Houdini reads
+// as something else. The limits are those of the format: all counts and indices are int32 there.
+
 #include "vdb_shell/houdini/geometry.h"
 
 #include "vdb_shell/core/error.h"
@@ -17,8 +23,8 @@ namespace vdb_shell::houdini
 namespace
 {
 
-// What is checked before a geometry is written, so that no file is made that the reader here would
-// refuse, or that would be read as something else.
+// What is checked before a geometry is written, so that no file is made that the reader of this
+// program would refuse, or that would be read as something else.
 
 constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
 
@@ -36,6 +42,8 @@ void require_count(std::size_t count, const char* what)
 /// Letters, digits, _ and :, no digit first.
 bool is_name(const std::string& name)
 {
+    // The cast is needed: isalnum is undefined for negative values, which bytes beyond ASCII may
+    // have.
     const auto fits = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == ':';
     };
@@ -56,7 +64,8 @@ template <typename Named> void require_names(const std::vector<Named>& list, con
     }
 }
 
-/// -1 stands for the empty string.
+/// Indices into the table of strings. -1 stands for the empty string, which need not be in the
+/// table.
 void require_indices(const Strings& strings, const std::string& where)
 {
     for (std::size_t i = 0; i < strings.index.size(); ++i)
@@ -73,11 +82,15 @@ void require_attributes(const std::vector<Attribute>& attributes, std::size_t el
     require_names(attributes, what);
     for (const Attribute& attribute : attributes) {
         const std::string where = std::string(what) + " " + vdb_shell::quoted(attribute.name);
+        // The size is tested before it multiplies, so a negative one cannot wrap into a number that
+        // happens to fit.
         const std::size_t found = count_of(attribute.values);
         if (attribute.size < 1 || found != elements * static_cast<std::size_t>(attribute.size))
             reject(where + " has " + std::to_string(found) + " values in tuples of " +
                    std::to_string(attribute.size) + " for " + std::to_string(elements) +
                    " elements");
+        // An attribute of long tuples can have more values than int32 numbers although its elements
+        // are few.
         require_count(found, "values of an attribute");
         if (const auto* strings = std::get_if<Strings>(&attribute.values))
             require_indices(*strings, where);
@@ -96,6 +109,8 @@ void require_groups(const std::vector<Group>& groups, std::size_t elements, cons
 
 void require_primitives(const HoudiniGeometry& geometry)
 {
+    // 64 bits: the sum of damaged counts may exceed 32, and then equal the right number by
+    // wrapping.
     std::uint64_t vertices = 0;
     for (std::size_t i = 0; i < geometry.primitives.size(); ++i) {
         const Primitive& primitive = geometry.primitives[i];
@@ -106,7 +121,8 @@ void require_primitives(const HoudiniGeometry& geometry)
                    " vertices");
         vertices += primitive.vertices;
     }
-    // A primitive's vertices are found by counting those of all before it.
+    // Primitives do not name their vertices: each takes those that follow the vertices of all
+    // before it, so the sum has to be exact.
     if (vertices != geometry.vertex_point.size())
         reject("the primitives have " + std::to_string(vertices) +
                " vertices together, there are " + std::to_string(geometry.vertex_point.size()));
@@ -117,6 +133,8 @@ void require_primitives(const HoudiniGeometry& geometry)
                    std::to_string(geometry.points));
 }
 
+/// P is the one attribute that every reader wants. NaN and infinity could be stored in the binary
+/// forms but not as text, and no point lies there.
 void require_positions(const HoudiniGeometry& geometry)
 {
     const Attribute* p = find(geometry.point_attributes, "P");
@@ -144,6 +162,7 @@ const std::string& Strings::at(std::size_t value) const
     return index[value] < 0 ? empty : table[static_cast<std::size_t>(index[value])];
 }
 
+/// Strings count by their indices, one for each component; the table has each text once.
 std::size_t count_of(const Values& values)
 {
     if (const auto* strings = std::get_if<Strings>(&values))
@@ -173,6 +192,8 @@ void require_consistent(const HoudiniGeometry& geometry)
     require_count(geometry.points, "points");
     require_count(geometry.vertex_point.size(), "vertices");
     require_count(geometry.primitives.size(), "primitives");
+    // Primitives go first, as they tell whether the numbers of vertices and points agree that the
+    // other tests use.
     require_primitives(geometry);
     require_attributes(geometry.vertex_attributes, geometry.vertex_point.size(),
                        "vertex attribute");

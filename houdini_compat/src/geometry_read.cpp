@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes the bytes of a file; gives the geometry in it, whichever of the three forms they have. The
+// content tells the form, not the name, since files get renamed. Order matters: the counts come
+// first and are bounded by the size of the document, then the primitives, which decide the order of
+// the vertices, then attributes and groups, which are held against those counts. What the geometry
+// has no place for is listed in `unread` rather than refused, so that a surface can be read beside
+// it.
+
 #include "vdb_shell/houdini/geometry_file.h"
 
 #include "geometry_parts.h"
@@ -19,7 +27,8 @@ bool begins_with(const std::string& bytes, std::string_view mark)
     return std::string_view(bytes).substr(0, mark.size()) == mark;
 }
 
-/// Says what a file is that is none of the three forms.
+/// Says what a file is that is none of the three forms. The ones that people mix up with them are
+/// named, as "no Houdini geometry" would puzzle somebody whose file has the right extension.
 [[noreturn]] void refuse_content(const std::string& name, const std::string& bytes)
 {
     if (begins_with(bytes, "PGEOMETRY") || begins_with(bytes, "Bgeo"))
@@ -38,6 +47,8 @@ Value read_document(const std::string& name, const std::string& bytes, Format& f
     if (begins_with(bytes, kScfMark)) {
         format = Format::compressed;
         const std::string unpacked = read_scf(name, bytes);
+        // The budgets that follow are for the document, and it is the uncompressed one that memory
+        // was already taken for.
         document_size = unpacked.size();
         return read_json_binary(name + " (uncompressed)", unpacked);
     }
@@ -52,7 +63,8 @@ Value read_document(const std::string& name, const std::string& bytes, Format& f
     return read_json_text(name, bytes);
 }
 
-/// Values per vertex in the order that the vertices were given.
+/// Brings the values of vertices into the order in which the primitives use them. A file may number
+/// vertices otherwise; in memory the vertices of a primitive follow each other.
 template <typename T>
 void reorder(std::vector<T>& values, std::size_t size, const std::vector<std::uint32_t>& order)
 {
@@ -82,6 +94,8 @@ void reorder_vertices(HoudiniGeometry& geometry, const std::vector<std::uint32_t
 void read_all_attributes(const Fields& document, const Where& where, Budget& budget,
                          HoudiniGeometry& geometry)
 {
+    // Missing counts as none. Whoever needs an attribute, as a surface needs P, says so when it
+    // looks for it.
     const Value* attributes = document.find("attributes");
     if (!attributes)
         return;
@@ -113,7 +127,8 @@ void read_all_groups(const Fields& document, const Where& where, Budget& budget,
          geometry.primitive_groups);
 }
 
-/// Keys that say nothing about the geometry itself, or are read.
+/// The keys that are read, and those that say nothing about the geometry itself. All others are
+/// named in `unread`.
 constexpr std::string_view kKnown[] = {
     "fileversion",  "hasindex",        "pointcount", "vertexcount",  "primitivecount",
     "info",         "topology",        "attributes", "primitives",   "pointgroups",
@@ -128,10 +143,13 @@ ReadGeometry parse_geometry(const std::string& bytes, const std::string& name)
     const Value tree = read_document(name, bytes, result.format, size);
     const Where where{name, {}};
     const Fields document(tree, where);
-    // Some programs leave it out.
+    // The version is not judged: some programs leave it out, and what can be read follows from the
+    // parts themselves. It only has to be a text where it is there.
     if (const Value* version = document.find("fileversion"))
         text_of(*version, where, "fileversion");
-    // An element takes a byte at least.
+    // An element takes a byte at least in every form, so counts beyond the size of the document are
+    // false. A primitive has one vertex at least. These three bound all memory that is taken by
+    // counts.
     HoudiniGeometry& geometry = result.geometry;
     geometry.points = count_of(document.at("pointcount"), where, "pointcount", size);
     const std::size_t vertices = count_of(document.at("vertexcount"), where, "vertexcount", size);
@@ -142,6 +160,8 @@ ReadGeometry parse_geometry(const std::string& bytes, const std::string& name)
         document.at("topology"), document.at("primitives"), vertices, primitives, where, geometry);
     read_all_attributes(document, where, budget, geometry);
     read_all_groups(document, where, budget, geometry);
+    // Attributes of vertices have been read in the order of the file, and can be moved now that all
+    // are there.
     if (!order.empty())
         reorder_vertices(geometry, order);
     for (const std::string* key : document.keys())

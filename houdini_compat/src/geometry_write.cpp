@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a geometry as a document of Houdini in any of the three forms. The document is the same in
+// all of them, but for attributes, which stand in pages in binary and in lists in text, as Houdini
+// has them. Of several spellings that Houdini accepts, the one is written that most other readers
+// take too (docs/houdini.md tells who read the files). The bytes depend on the geometry and the
+// program's version only: no date, user or machine. Precondition: require_consistent, which the
+// function that takes a path calls.
+
 #include "vdb_shell/houdini/geometry_file.h"
 
 #include "vdb_shell/core/atomic_file.h"
@@ -18,10 +26,14 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// The number of elements in a page; it matters to readers only where pages are constant, and none
+/// is written so.
 constexpr int kPageSize = 1024;
-/// Nothing here is newer than what Houdini 19 writes; later ones read older files.
+/// The version of Houdini that the layout follows. Nothing here is newer than what Houdini 19
+/// writes, and later ones read older files.
 constexpr const char* kFileVersion = "19.0.0";
 
+/// The four types that Values holds; narrower storages are read but never written.
 template <typename T> constexpr const char* storage_of()
 {
     if constexpr (std::is_same_v<T, std::int32_t>)
@@ -46,7 +58,8 @@ void key_integer(DocumentWriter& out, const char* key, std::size_t value)
     out.integer(static_cast<std::int64_t>(value));
 }
 
-/// The lowest and highest coordinate of each axis in turn, as Houdini lists them.
+/// The lowest and highest coordinate of each axis in turn, as Houdini lists them: x, x, y, y, z, z.
+/// A geometry without points has a box of zeros.
 std::vector<double> bounds_of(const HoudiniGeometry& geometry)
 {
     const auto& p = std::get<std::vector<float>>(find(geometry.point_attributes, "P")->values);
@@ -63,6 +76,7 @@ std::vector<double> bounds_of(const HoudiniGeometry& geometry)
     return bounds;
 }
 
+/// The counts come first, because readers take memory by them.
 void write_head(DocumentWriter& out, const HoudiniGeometry& geometry)
 {
     key_text(out, "fileversion", kFileVersion);
@@ -92,6 +106,7 @@ void write_topology(DocumentWriter& out, const HoudiniGeometry& geometry)
     out.text("pointref");
     out.open_list();
     out.text("indices");
+    // The cast from unsigned is safe: require_consistent has bounded the number of points by int32.
     const std::vector<std::int32_t> indices(geometry.vertex_point.begin(),
                                             geometry.vertex_point.end());
     out.numbers(indices.data(), indices.size());
@@ -99,7 +114,8 @@ void write_topology(DocumentWriter& out, const HoudiniGeometry& geometry)
     out.close_list();
 }
 
-/// "size", "storage" and the values.
+/// The size of the tuples, their storage and the values. Pages without flags hold all tuples one
+/// after the other, so the vector is written as it is.
 template <typename T>
 void write_column(DocumentWriter& out, const char* key, std::size_t size,
                   const std::vector<T>& values)
@@ -132,6 +148,7 @@ void write_values(DocumentWriter& out, std::size_t size, const std::vector<T>& v
 {
     key_integer(out, "size", size);
     key_text(out, "storage", storage_of<T>());
+    // What elements get that are made later in Houdini.
     out.text("defaults");
     out.open_list();
     key_integer(out, "size", 1);
@@ -147,6 +164,8 @@ void write_values(DocumentWriter& out, std::size_t size, const std::vector<T>& v
     write_column(out, "values", size, values);
 }
 
+/// The texts once, in a table, and for each component the number of its text; -1 stands for the
+/// empty string.
 void write_values(DocumentWriter& out, std::size_t size, const Strings& strings)
 {
     key_integer(out, "size", size);
@@ -159,6 +178,8 @@ void write_values(DocumentWriter& out, std::size_t size, const Strings& strings)
     write_column(out, "indices", size, strings.index);
 }
 
+/// Two lists: what the attribute is, and what it holds. The option "type" tells Houdini what a
+/// vector means, a point or a normal for instance, so that transforms treat it as that.
 void write_attribute(DocumentWriter& out, const Attribute& attribute)
 {
     out.new_line();
@@ -185,6 +206,7 @@ void write_attribute(DocumentWriter& out, const Attribute& attribute)
     out.close_list();
 }
 
+/// An empty class is left out; readers take a missing key for none.
 void write_class(DocumentWriter& out, const char* key, const std::vector<Attribute>& attributes)
 {
     if (attributes.empty())
@@ -209,7 +231,8 @@ void write_attributes(DocumentWriter& out, const HoudiniGeometry& geometry)
     out.close_list();
 }
 
-/// Values and how often each comes, for what a run's primitives have in common.
+/// Values and how often each comes, in turn, for what the primitives of a run have in common. A
+/// shell has triangles only, so its run is one pair.
 std::vector<std::int32_t> run_lengths(const std::vector<Primitive>& primitives, std::size_t begin,
                                       std::size_t end)
 {
@@ -234,6 +257,7 @@ void write_primitives(DocumentWriter& out, const HoudiniGeometry& geometry)
     for (std::size_t begin = 0, end = 0; begin < primitives.size(); begin = end) {
         const PrimitiveType type = primitives[begin].type;
         std::size_t vertices = 0;
+        // A run is as long as the type stays the same, so the order of the primitives is kept.
         for (end = begin; end < primitives.size() && primitives[end].type == type; ++end)
             vertices += primitives[end].vertices;
         const bool tets = type == PrimitiveType::tetrahedron;
@@ -243,6 +267,8 @@ void write_primitives(DocumentWriter& out, const HoudiniGeometry& geometry)
         key_text(out, "type", tets ? "Tetrahedron_run" : "Polygon_run");
         out.close_list();
         out.open_list();
+        // A run gives only its first vertex: the others follow, as all vertices are in the order of
+        // their primitives.
         key_integer(out, "startvertex", vertex);
         key_integer(out, "nprimitives", end - begin);
         if (!tets) {
@@ -291,6 +317,8 @@ void write_groups(DocumentWriter& out, const char* key, const std::vector<Group>
     out.close_list();
 }
 
+/// A flat list of keys and values in turn, which is how Houdini writes most maps. The order of the
+/// keys is that of docs/houdini.md, with all counts before what they count.
 void write_document(DocumentWriter& out, const HoudiniGeometry& geometry)
 {
     out.open_list();
@@ -321,9 +349,11 @@ bool ends_in(const std::string& name, std::string_view extension)
            name.compare(name.size() - extension.size(), extension.size(), extension) == 0;
 }
 
+/// The reader goes by the content; a writer has nothing but the name.
 Format format_by_extension(const fs::path& path)
 {
     const std::string name = lower_name(path);
+    // By the whole name, since std::filesystem takes .sc alone for the extension.
     if (ends_in(name, ".bgeo.sc"))
         return Format::compressed;
     if (ends_in(name, ".bgeo"))
@@ -364,6 +394,8 @@ void write_geometry(std::ostream& out, const HoudiniGeometry& geometry, Format f
         return write_document(*make_text_writer(stream), geometry);
     if (format == Format::binary)
         return write_document(*make_binary_writer(stream), geometry);
+    // The writer's bytes go through the container piece by piece, so the uncompressed document is
+    // never in memory as a whole.
     ScfWriter compressed(stream);
     write_document(*make_binary_writer([&compressed](const char* data, std::size_t size) {
         compressed.write(data, size);
@@ -374,6 +406,8 @@ void write_geometry(std::ostream& out, const HoudiniGeometry& geometry, Format f
 
 void write_geometry(const fs::path& path, const HoudiniGeometry& geometry)
 {
+    // Name and geometry are tested before the file is opened, so nothing is written that could not
+    // be read back.
     const Format format = format_by_extension(path);
     require_consistent(geometry);
     write_stream_atomically(path,

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads the groups of one class of elements, in both spellings: a byte per element, or runs of
+// counts and flags. A group is kept as one flag per element. Ordered groups have an order that
+// there is no place for, so they are named as unread rather than read as something else. Every
+// group must tell of exactly as many elements as there are, for a shorter one would leave the last
+// to chance.
+
 #include "geometry_parts.h"
 
 #include "vdb_shell/io/read_file.h"
@@ -10,7 +17,8 @@ namespace vdb_shell::houdini
 namespace
 {
 
-/// Counts and flags in turn.
+/// Runs: counts and flags in turn. Each count is bounded by the elements that are still to come, so
+/// the runs cannot make the vector longer than the geometry allows.
 std::vector<bool> from_runs(const Value& value, std::size_t elements, const Where& where)
 {
     std::vector<bool> members;
@@ -28,6 +36,7 @@ std::vector<bool> from_runs(const Value& value, std::size_t elements, const Wher
 
 std::vector<bool> from_bytes(const Value& value, const Where& where)
 {
+    // An array of bits is taken as well, as it tells the same.
     if (std::holds_alternative<Booleans>(value.data))
         return std::get<Booleans>(value.data);
     std::vector<bool> members;
@@ -48,6 +57,7 @@ std::vector<Group> read_groups(const Value& value, std::size_t elements, const W
     std::set<std::string> seen;
     if (is_empty(value))
         return groups;
+    // std::vector<bool> takes a bit for each element; that is what a group costs in memory.
     constexpr unsigned kBitsPerByte = 8;
     for (const Value& entry : list_of(value, where, kind)) {
         const List& parts = list_of(entry, where.inside(kind), "group");
@@ -66,8 +76,11 @@ std::vector<Group> read_groups(const Value& value, std::size_t elements, const W
             unread.push_back(title + ", which is ordered");
             continue;
         }
+        // Groups are found by name, so of two equal ones only the first would ever be seen.
         if (!seen.insert(group.name).second)
             inside.fail("it is there twice");
+        // A group of runs takes a few bytes in the file whatever the number of elements, so a file
+        // could ask for any number of large groups.
         budget.spend(elements / kBitsPerByte, inside);
         const Fields stored(*unordered, inside);
         if (const Value* runs = stored.find("boolRLE"))

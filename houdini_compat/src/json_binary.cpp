@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads Houdini's binary JSON into a tree. The format is a mark, then values, each a byte of kind
+// and what that kind asks for; docs/houdini.md has the table, which was made from public facts and
+// held against files that Houdini wrote. The input is not trusted: no length is believed before the
+// bytes for it are seen to be there, so the memory taken is a bounded multiple of the size of the
+// file, and every fault is told with the byte at which it was met. Nesting is not recursion here:
+// the parts go to TreeBuilder one by one, so a deep file cannot overflow the stack.
+
 #include "json_read.h"
 
 #include "binary_kinds.h"
@@ -16,8 +24,8 @@ namespace vdb_shell::houdini
 namespace
 {
 
-/// The document part by part. Every length is held against the bytes that are left before memory
-/// is taken for it.
+/// Reads the document part by part. Every length is held against the bytes that are left before
+/// memory is taken for it.
 class Parser
 {
 public:
@@ -27,7 +35,8 @@ public:
         const std::string_view mark = std::string_view(bytes).substr(0, kBinaryMark.size());
         if (mark != kBinaryMark && mark != kSwappedMark)
             refuse(name, "it does not begin with the mark of binary JSON");
-        // The file's order shows in its mark, the machine's in the first byte of a 1.
+        // The file's byte order shows in its mark, the machine's in the first byte of a 1. Numbers
+        // are turned round if the two differ.
         const std::uint16_t one = 1;
         const bool little_host = *reinterpret_cast<const unsigned char*>(&one) == 1;
         swap_ = (mark == kBinaryMark) != little_host;
@@ -38,6 +47,8 @@ public:
     {
         while (!tree_.complete())
             take_part();
+        // Bytes behind the end mean that a length was damaged, so what was read before is not to be
+        // trusted either.
         if (at_ != bytes_.size())
             fail(std::to_string(bytes_.size() - at_) + " bytes follow the end of the document");
         return tree_.take();
@@ -51,7 +62,8 @@ private:
 
     std::size_t left() const { return bytes_.size() - at_; }
 
-    /// Before anything is allocated: `count` elements of `size` bytes must be there.
+    /// Before anything is allocated: `count` elements of `size` bytes must be there. It divides
+    /// instead of multiplying, because the product of a damaged count could wrap.
     void require_bytes(std::uint64_t count, std::size_t size, const char* what) const
     {
         if (count > left() / size)
@@ -63,6 +75,8 @@ private:
     template <typename T> T number()
     {
         require_bytes(1, sizeof(T), "a number");
+        // Copied by bytes: numbers stand at any address, and reading one through a pointer to its
+        // type would be undefined.
         char raw[sizeof(T)];
         std::memcpy(raw, bytes_.data() + at_, sizeof(T));
         if (swap_)
@@ -92,6 +106,7 @@ private:
             return number<std::uint32_t>();
         if (first == kLength64)
             return number<std::uint64_t>();
+        // Back to the byte that is wrong, which the message names.
         --at_;
         fail("a length of the unknown kind " + std::to_string(first));
     }
@@ -106,7 +121,8 @@ private:
         return made;
     }
 
-    /// Strings that come often are defined once and then named by a number.
+    /// Strings that come often are defined once and then named by a number. The text is shared, not
+    /// copied: two bytes can stand for a megabyte, and a file could repeat them at will.
     Text token()
     {
         const std::uint64_t id = length();
@@ -123,7 +139,8 @@ private:
         numbers.values.reserve(static_cast<std::size_t>(count));
         for (std::uint64_t i = 0; i < count; ++i)
             numbers.values.push_back(static_cast<Wide>(number<Stored>()));
-        // Nothing tells an empty array of numbers from an empty list.
+        // An empty array becomes an empty list: the text form cannot tell the two apart, and
+        // readers of the tree should see the same from both forms.
         return count ? Value{std::move(numbers)} : Value{List{}};
     }
 
@@ -137,7 +154,8 @@ private:
         return count ? Value{std::move(numbers)} : Value{List{}};
     }
 
-    /// A bit each, in words of 32.
+    /// A bit each, in words of 32. The lowest bit of a word comes first. Rounding the number of
+    /// words up is done without adding to the count, which could wrap.
     Value flags(std::uint64_t count)
     {
         constexpr unsigned kBits = 32;
@@ -155,7 +173,8 @@ private:
 
     Value texts(std::uint64_t count)
     {
-        // Each has a length of one byte at least.
+        // Each text has a length of one byte at least, so a count beyond the bytes that are left is
+        // false.
         require_bytes(count, 1, "an array");
         List made;
         for (std::uint64_t i = 0; i < count; ++i)
@@ -196,6 +215,8 @@ private:
         }
     }
 
+    // Integers of all widths become int64 and reals become double, which hold each of them exactly;
+    // what the attribute is stored as is said elsewhere in the document.
     void take_number(Kind kind)
     {
         switch (kind) {
@@ -223,6 +244,8 @@ private:
         }
     }
 
+    // Only a reference is a value. A definition and its removal stand between values without being
+    // one, even between a key and its value.
     void take_token(Kind kind)
     {
         if (kind == Kind::token_ref)

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads JSON text into the same tree as the binary form. The grammar is that of nlohmann's parser,
+// by its interface of events: its own tree would have a tagged value for each number and a vector
+// of its own for each position, and positions are most of the file. Errors are told with line and
+// column, which this interface does not give.
+
 #include "json_read.h"
 
 #include "vdb_shell/io/read_file.h"
@@ -29,6 +35,8 @@ public:
     bool number_integer(std::int64_t value) { return add({value}); }
     bool number_unsigned(std::uint64_t value)
     {
+        // All integers of the tree are signed, as are all that Houdini stores; wrapping one into a
+        // negative number would pass for an index.
         constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max();
         if (value > kMost)
             refuse(name_, "the number " + std::to_string(value) + " is beyond 64 signed bits");
@@ -36,6 +44,7 @@ public:
     }
     bool number_float(double value, const std::string&) { return add({value}); }
     bool string(std::string& value) { return add({std::make_shared<const std::string>(value)}); }
+    // No text can bring this event: it is for the binary formats of the library.
     bool binary(json::binary_t&) { return false; }
     bool start_object(std::size_t)
     {
@@ -61,7 +70,8 @@ public:
     template <typename Problem>
     bool parse_error(std::size_t at, const std::string& read, const Problem& problem)
     {
-        // Its text opens with a number of its own and ends in what the parser expected.
+        // The library's text opens with a number of its own, which means nothing to users, and ends
+        // in what the parser expected, which does.
         const std::string_view what = problem.what();
         const std::size_t colon = what.find(": ");
         refuse(name_, place(at) + ": " +
@@ -76,6 +86,8 @@ private:
         tree_.add(std::move(value));
         return true;
     }
+    // The position is counted only when there is an error, so sound files pay nothing for it. The
+    // parser counts bytes from 1, and so do columns here.
     std::string place(std::size_t at) const
     {
         const std::string_view before = std::string_view(bytes_).substr(0, at ? at - 1 : 0);

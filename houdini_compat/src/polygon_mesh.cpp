@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Houdini's polygons run clockwise, so the order is turned round. The first corner stays the first:
+// polygons are cut into triangles as fans around it, and so the fans keep their apex.
+
 #include "vdb_shell/houdini/polygon_mesh.h"
 
 #include "vdb_shell/io/polygon_soup.h"
@@ -12,6 +16,8 @@ namespace vdb_shell::houdini
 namespace
 {
 
+/// Points are kept in double until mesh_of_polygons rounds them, so that --recentre can use all
+/// digits of files with doubles.
 template <typename T>
 std::vector<openvdb::Vec3d> points_from(const std::vector<T>& values, std::size_t size,
                                         const std::string& name)
@@ -20,6 +26,8 @@ std::vector<openvdb::Vec3d> points_from(const std::vector<T>& values, std::size_
     points.reserve(values.size() / size);
     for (std::size_t i = 0; i + size <= values.size(); i += size) {
         points.emplace_back(values[i], values[i + 1], values[i + 2]);
+        // A weight other than 1 belongs to rational curves and surfaces; dividing by it would be a
+        // guess at what a polygon means by it.
         if (size == 4 && values[i + 3] != T(1))
             refuse(name, "point " + std::to_string(i / size) + ": P has the weight " +
                              std::to_string(values[i + 3]) + ", only 1 can be read");
@@ -27,7 +35,7 @@ std::vector<openvdb::Vec3d> points_from(const std::vector<T>& values, std::size_
     return points;
 }
 
-/// P; up to Houdini 14 it has a fourth component, a weight.
+/// The positions. Up to Houdini 14, P has a fourth component, a weight.
 std::vector<openvdb::Vec3d> positions_of(const HoudiniGeometry& geometry, const std::string& name)
 {
     const Attribute* p = find(geometry.point_attributes, "P");
@@ -43,7 +51,7 @@ std::vector<openvdb::Vec3d> positions_of(const HoudiniGeometry& geometry, const 
                      " components, or is not of floats; 3 or 4 floats are needed");
 }
 
-/// Leaving the tetrahedra out would make a surface of the rest that nobody has drawn.
+/// Tetrahedra are refused and not left out: what remained would be a surface that nobody has drawn.
 void require_polygons(const HoudiniGeometry& geometry, const std::string& name)
 {
     for (std::size_t i = 0; i < geometry.primitives.size(); ++i)
@@ -63,6 +71,8 @@ ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
     soup.format = name_of(read.format);
     soup.points = positions_of(geometry, name);
     soup.corners.reserve(geometry.vertex_point.size());
+    // The vertices of a primitive follow those of the primitive before it; the reader has made sure
+    // that their sum is right.
     auto first = geometry.vertex_point.begin();
     for (const Primitive& primitive : geometry.primitives) {
         const auto last = first + static_cast<std::ptrdiff_t>(primitive.vertices);

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads topology and primitives: which point each vertex is at, and which vertices each primitive
+// has. What it leaves true: every vertex belongs to exactly one primitive, all counts are those
+// that the file declared, and vertices are numbered in the order of their primitives. Types other
+// than closed polygons and tetrahedra are refused by name, since a surface without them would not
+// be the one that was drawn. The forms of runs changed with Houdini 16; both are read.
+
 #include "geometry_parts.h"
 
 #include "vdb_shell/io/read_file.h"
@@ -11,8 +18,9 @@ namespace vdb_shell::houdini
 namespace
 {
 
-// Primitives come in seven forms: each alone, or in runs of three spellings. All of them end as
-// calls of Collector, which alone knows how many vertices and primitives there may be.
+// Primitives come one by one or in runs of several spellings. All of them end as calls of
+// Collector, which alone knows how many vertices and primitives there may be; so a new spelling
+// cannot forget a test.
 
 constexpr std::uint32_t kTetVertices = 4;
 
@@ -46,7 +54,8 @@ public:
     const Where& where() const { return where_; }
 
     /// Houdini keeps no vertex without a primitive, so one that is left over says that the file is
-    /// damaged.
+    /// damaged. With this test the order is a permutation: each vertex was taken at most once, and
+    /// none is missing.
     void require_all() const
     {
         if (made_.size() != primitive_count_)
@@ -62,7 +71,8 @@ public:
     std::vector<std::uint32_t> take_order() { return std::move(order_); }
 
 private:
-    /// Refuses before memory is taken: a run may declare more vertices than there are bytes.
+    /// Refuses before memory is taken: a run of a few bytes may declare more vertices than the file
+    /// has bytes.
     void begin(PrimitiveType type, std::uint64_t vertices)
     {
         if (made_.size() == primitive_count_)
@@ -119,10 +129,13 @@ void read_run(const Fields& fields, PrimitiveType type, Collector& into)
     const Value* count = fields.find("nprimitives", "n_p");
     if (!start || !count)
         where.fail("\"startvertex\" or \"nprimitives\" is missing");
+    // Bounded by the number of vertices, so adding to it below cannot wrap; each vertex is held
+    // against the limit again when it is taken.
     std::uint64_t vertex = count_of(*start, where, "startvertex", into.vertex_count());
     const std::size_t primitives = count_of(*count, where, "nprimitives", into.primitives_left());
     std::size_t made = 0;
     const auto add = [&](std::int64_t vertices, std::int64_t times) {
+        // Bounds the loop before it starts, as `times` comes from the file.
         if (vertices < 0 || times < 0 || static_cast<std::uint64_t>(times) > primitives - made)
             where.fail(std::to_string(times) + " primitives of " + std::to_string(vertices) +
                        " vertices, where " + std::to_string(primitives - made) + " of " +
@@ -163,7 +176,8 @@ PrimitiveType type_of(const Collector& into, const std::string& name)
     refuse_type(into, name);
 }
 
-/// The kind of run from before Houdini 16: fields that all share, and a list of each one's others.
+/// The kind of run from before Houdini 16: fields that all primitives share, and for each primitive
+/// a list of its other fields, whose names stand in "varyingfields" in the same order.
 void read_old_run(const Fields& head, const Value& body, Collector& into)
 {
     const Where where = into.where().inside("the run at " + into.next());
@@ -187,7 +201,9 @@ void read_old_run(const Fields& head, const Value& body, Collector& into)
     if (is_empty(body))
         return;
     for (const Value& one : list_of(body, where, "the primitives")) {
-        // Lists of as many numbers each have been made rows.
+        // The tree has made rows of a primitive whose fields are all lists of equally many numbers;
+        // then the field is found by the width. That cannot be with "closed" among the fields,
+        // which is a flag and no list.
         if (const auto* rows = std::get_if<Integers>(&one.data);
             rows && rows->width > 0 && rows->values.size() == fields * rows->width) {
             const auto first =
@@ -215,6 +231,8 @@ void read_entry(const Value& entry, Collector& into)
     const Where inside = where.inside(into.next());
     const Fields head(parts[0], inside);
     const std::string& type = text_of(head.at("type"), inside, "type");
+    // p_r and t_r are short spellings of the same runs; of t_r no file from Houdini was found
+    // (docs/houdini.md).
     if (type == "run")
         return read_old_run(head, parts[1], into);
     const Fields body(parts[1], inside);
@@ -253,6 +271,8 @@ std::vector<std::uint32_t> read_primitives(const Value& topology, const Value& p
                                            std::size_t vertex_count, std::size_t primitive_count,
                                            const Where& where, HoudiniGeometry& geometry)
 {
+    // Topology is by the file's own numbers of vertices; it is put into the new order below, when
+    // that is known.
     const std::vector<std::uint32_t> vertex_point =
         read_topology(topology, vertex_count, geometry.points, where.inside("topology"));
     Collector collector(vertex_count, primitive_count, where);

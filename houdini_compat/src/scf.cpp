@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The container of .bgeo.sc: Blosc chunks of one mebibyte of the document, and an index of them at
+// the end. Written so that the bytes depend only on the input and on the versions of Blosc and its
+// codec: one thread, fixed level and shuffle. Read without trust: the index has to lie in the file
+// and its chunks have to follow each other, and a chunk that declares more than its compressed
+// bytes can stand for is refused before memory is taken. A truncated file shows at once, since the
+// end mark is missing.
+
 #include "scf.h"
 
 #include "vdb_shell/core/error.h"
@@ -16,12 +24,14 @@ namespace vdb_shell::houdini
 namespace
 {
 
-// The layout, in which all words are big-endian: the mark, the length of a preamble and the
-// preamble; the chunks; an index of where each chunk but the first starts, of the size of a chunk
-// and of the last one; the length of the index; the end mark.
+// The layout, in which all words are of eight bytes and big-endian. In this order: the mark, the
+// length of a preamble and the preamble itself; the chunks; an index, which has for each chunk but
+// the first where it starts (counted from the end of the preamble), then the size of a full chunk
+// and the size of the last one, both uncompressed; the length of the index; the end mark.
 
 constexpr std::size_t kChunk = std::size_t(1) << 20;
-// One thread, so that the bytes do not depend on the number of cores.
+// One thread, so that the bytes do not depend on the number of cores. Shuffling by four bytes
+// groups the bytes of equal weight of int32 and float32, which most of the document is made of.
 constexpr int kLevel = 5, kElementSize = 4, kOneThread = 1;
 constexpr std::size_t kAutomaticBlocks = 0;
 constexpr const char* kCodec = "lz4";
@@ -30,7 +40,8 @@ constexpr std::string_view kEndMark = "1fcs";
 constexpr std::size_t kWord = 8;
 constexpr std::size_t kHead = kScfMark.size() + kWord; ///< the mark and the length of a preamble
 constexpr std::size_t kTail = kWord + kEndMark.size(); ///< the length of the index and its mark
-/// What the best codec of Blosc can make of one byte is a little more (zlib: 1032 bytes).
+/// What a compressed byte can stand for at most: a little more than the best codec of Blosc can
+/// make of one byte (zlib: 1032 bytes).
 constexpr std::uint64_t kMostExpansion = 1100;
 
 std::string big_endian(std::uint64_t value)
@@ -63,12 +74,16 @@ struct Layout {
 Layout read_layout(const std::string& name, const std::string& bytes)
 {
     const std::size_t size = bytes.size();
+    // The shortest file has an index of two words, for the sizes. After this test no subtraction
+    // below can wrap.
     if (size < kHead + 2 * kWord + kTail)
         refuse(name, "it has " + std::to_string(size) + " bytes, too few for a compressed file");
     if (std::string_view(bytes).substr(size - kEndMark.size()) != kEndMark)
         refuse(name, "it does not end in \"1fcs\": it is cut short, or no compressed geometry");
     const std::uint64_t preamble = word_at(bytes, kScfMark.size());
     const std::uint64_t index_size = word_at(bytes, size - kTail);
+    // The differences are compared, not the sums: both lengths come from the file, and their sum
+    // could wrap.
     const std::size_t between = size - kHead - kTail;
     if (preamble > between || index_size > between - preamble || index_size % kWord != 0 ||
         index_size < 2 * kWord)
@@ -82,6 +97,8 @@ Layout read_layout(const std::string& name, const std::string& bytes)
     layout.bounds.push_back(begin);
     for (std::size_t i = 0; i < starts; ++i) {
         const std::uint64_t start = word_at(bytes, index + i * kWord);
+        // Starts that increase strictly leave no chunk empty and let none overlap the next, so the
+        // total of compressed bytes is bounded by the file.
         if (start > index - begin || begin + start <= layout.bounds.back())
             refuse(name, "the index has chunk " + std::to_string(i + 1) + " begin at " +
                              std::to_string(start) +
@@ -100,6 +117,7 @@ Layout read_layout(const std::string& name, const std::string& bytes)
 void append_chunk(const std::string& where, std::string_view packed, std::uint64_t wanted,
                   std::string& result)
 {
+    // Blosc's own header is validated first: decompressing trusts the lengths that stand in it.
     std::size_t held = 0;
     if (blosc_cbuffer_validate(packed.data(), packed.size(), &held) != 0)
         refuse(where, "its " + std::to_string(packed.size()) + " bytes are no Blosc data");
@@ -124,6 +142,7 @@ void append_chunk(const std::string& where, std::string_view packed, std::uint64
 ScfWriter::ScfWriter(Sink out) : out_(std::move(out))
 {
     put(out_, kScfMark);
+    // No preamble.
     put(out_, big_endian(0));
     chunk_.reserve(kChunk);
 }
@@ -149,7 +168,8 @@ void ScfWriter::compress_chunk()
 void ScfWriter::write(const char* data, std::size_t size)
 {
     while (size > 0) {
-        // A full chunk waits until more comes, because the last one may be full as well.
+        // A full chunk waits until more bytes come, because the last chunk may be full as well, and
+        // only the last one's size is told apart in the index.
         if (chunk_.size() == kChunk)
             compress_chunk();
         const std::size_t piece = std::min(size, kChunk - chunk_.size());
@@ -161,6 +181,7 @@ void ScfWriter::write(const char* data, std::size_t size)
 
 void ScfWriter::finish()
 {
+    // The document is never empty, so this can only fail by a mistake in our own code.
     assert(!chunk_.empty());
     compress_chunk();
     for (const std::uint64_t start : starts_)

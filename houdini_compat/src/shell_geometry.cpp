@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a shell's file; gives the geometry that Houdini sees: tets and surfaces that share their
+// points, attributes, groups, and all that is needed to get the same shell back bit for bit
+// (docs/houdini.md has the tables). Orientation is turned here, and only here and in the reader:
+// polygons clockwise seen from outside, tets of negative determinant. The order of points and
+// primitives is part of the format: the reader finds the surfaces by it.
+
 #include "vdb_shell/houdini/shell_geometry.h"
 
 #include "vdb_shell/core/error.h"
@@ -24,12 +31,15 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
-/// Numbers that mean nothing when they are blended.
+/// Tells Houdini that these integers are names and not amounts: a blend of two of them would mean
+/// nothing.
 constexpr const char* kIndex = "nonarithmetic_integer";
 constexpr const char* kOrientationText =
     "polygons clockwise seen from outside; tetrahedra (a,b,c,d) with det(b-a,c-a,d-a) < 0 unless "
     "inverted";
 
+/// Only figures for people can be too large; counts of elements have been bounded by
+/// require_consistent.
 std::int32_t as_int32(std::size_t value)
 {
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
@@ -81,7 +91,8 @@ bool has_layers(const ShellStack& stack)
     return layered(stack.layers.size(), stack.skin);
 }
 
-/// The names of those reasons that occur, in the order of StopReason.
+/// The names of those reasons that occur, in the order of StopReason. Text is what people filter
+/// by, and it survives if the numbers of the reasons ever change.
 Attribute stop_reasons(const char* name, const PrismShell& shell,
                        const std::vector<std::uint32_t>& vertex)
 {
@@ -115,6 +126,7 @@ void add_point_attributes(const ShellStack& stack, const ShellPoints& points,
         vectors("P", "point", count, position),
         vectors("N", "normal", count,
                 [&](std::size_t i) { return normals[surface(i)][vertex(i)]; }),
+        // The same numbers as P, but without a meaning, so that transforms leave them alone.
         vectors("rest", "", count, position),
         vectors(kOpposite, "point", count,
                 [&](std::size_t i) { return opposite_of(stack, surface(i), vertex(i)); }),
@@ -139,7 +151,8 @@ void add_point_groups(const ShellStack& stack, const ShellPoints& points, Houdin
     add("outer", [&](std::size_t i) { return points.layer[i] == 0; });
     add("inner", [&](std::size_t i) { return points.layer[i] == stack.layers.size(); });
     add("pinned", [&](std::size_t i) { return pinned_throughout(stack, points.vertex[i]); });
-    // By id: where the pillar above is pinned, the skin's point is that of a surface farther out.
+    // By id and not by layer: where the pillar above is pinned, the point of the skin is that of a
+    // surface farther out, and has its number.
     if (has_layers(stack))
         add("skin", [&](std::size_t i) { return points.id[stack.skin][points.vertex[i]] == i; });
 }
@@ -149,9 +162,9 @@ struct Part {
     std::size_t prism = 0, layer = 0, surface = 0;
 };
 
-/// Of each primitive: the tets, then the triangles of the shown surfaces. A prism between those
-/// that has no tets either follows as the triangle that it has collapsed to, or nothing would tell
-/// its diagonals.
+/// The primitives in their order: the tets, then the triangles of the surfaces that are shown. A
+/// prism without tets, between those surfaces, follows as the triangle to which it has collapsed;
+/// otherwise no primitive of the file would tell its diagonals, which the checksum covers.
 std::vector<Part> parts_of(const ShellFile& file)
 {
     const std::size_t layers = file.stack.layers.size(), prisms = file.stack.triangles().size();
@@ -172,7 +185,8 @@ std::vector<Part> parts_of(const ShellFile& file)
     return parts;
 }
 
-/// Each in Houdini's orientation.
+/// In Houdini's orientation: a tet has its last two corners exchanged, which turns the sign of its
+/// determinant, and a triangle keeps its first corner and runs backwards.
 void add_primitives(const ShellFile& file, const ShellPoints& points,
                     const std::vector<Part>& parts, HoudiniGeometry& geometry)
 {
@@ -189,7 +203,8 @@ void add_primitives(const ShellFile& file, const ShellPoints& points,
     }
 }
 
-/// Each tet's mean ratio, and for triangles the worst of their prism's tets; 0 where it has none.
+/// The mean ratio of each tet, 1 for the regular one; for a triangle the worst of the tets of its
+/// prism, 0 if it has none.
 std::vector<float> qualities(const ShellFile& file, const std::vector<Part>& parts)
 {
     const TetMesh& tets = file.tets;
@@ -199,6 +214,8 @@ std::vector<float> qualities(const ShellFile& file, const std::vector<Part>& par
     std::vector<float> worst(file.stack.layers.size() * prisms, 0.0f);
     std::vector<bool> seen(worst.size(), false);
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+        // In double, though the corners are floats: the quality of slivers is a difference of
+        // nearly equal products.
         const auto corner = [&](int k) { return Vec3d(tets.points[tets.tets[t][k]]); };
         quality.push_back(
             static_cast<float>(mean_ratio(corner(0), corner(1), corner(2), corner(3))));
@@ -231,6 +248,7 @@ void add_primitive_groups(const ShellFile& file, const std::vector<Part>& parts,
     const ShellStack& stack = file.stack;
     const std::size_t tets = file.tets.tets.size(), prisms = stack.triangles().size();
     const auto surfaces = shown_surfaces(stack.layers.size(), stack.skin);
+    // Triangles of shown surfaces end here in the order of parts_of.
     const std::size_t collapsed = tets + surfaces.size() * prisms;
     const auto add = [&](const char* name, const auto& belongs) {
         geometry.primitive_groups.push_back(group(name, parts.size(), belongs));
@@ -244,6 +262,8 @@ void add_primitive_groups(const ShellFile& file, const std::vector<Part>& parts,
     add("outer", on_surface(0));
     add("inner", on_surface(stack.layers.size()));
     add("pinned", [&](std::size_t i) {
+        // A prism that is pinned at all corners has no tet in any layer, so only triangles are in
+        // this group.
         const Vec3I& t = stack.triangles()[parts[i].prism];
         return pinned_throughout(stack, t[0]) && pinned_throughout(stack, t[1]) &&
                pinned_throughout(stack, t[2]);
@@ -264,7 +284,9 @@ void add_count(HoudiniGeometry& geometry, const char* name, std::size_t count)
     geometry.detail_attributes.push_back({name, 1, "", std::vector<std::int32_t>{as_int32(count)}});
 }
 
-/// Figures of the report under names of their own, where it has them.
+/// Some figures of the report under names of their own, where it has them: Houdini's expressions
+/// can use an attribute, but not a number inside of JSON. A report without them, or one that is no
+/// JSON, just gives fewer attributes.
 void add_figures(HoudiniGeometry& geometry, const std::string& report_json)
 {
     const json report = json::parse(report_json, nullptr, /*allow_exceptions=*/false);
@@ -299,6 +321,7 @@ void add_figures(HoudiniGeometry& geometry, const std::string& report_json)
 
 void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 {
+    // The reader bounds its memory by these counts, and compares them with the primitives.
     const ShellCounts counts = counts_of(file.stack, file.tets);
     std::size_t ripples = 0;
     for (const PrismSplit& split : file.stack.splits)
@@ -327,8 +350,9 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
     add_figures(geometry, file.report_json);
 }
 
-/// Each vertex has a point on every surface of the shell that is read back, so their number must
-/// be bounded by what the file holds.
+/// The reader makes a point for each vertex on every surface, so it bounds their number by the
+/// triangles that the file holds. A shell with more vertices than corners would be refused there,
+/// and so it is refused here.
 void require_readable(const ShellStack& stack)
 {
     const std::size_t vertices = stack.surface(0).size(), triangles = stack.triangles().size();

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads the pillars of a shell from the points of a Houdini geometry: surface by surface from the
+// outermost inwards, the places of all vertices and why their pillars end. What it leaves true:
+// each vertex has one place on each surface, equal to that of the surface above exactly where its
+// pillar has no length, and each point of the file is used once. Floats are taken bit for bit, as
+// the checksum tells zeros of either sign apart.
+
 #include "shell_columns.h"
 
 #include <algorithm>
@@ -16,6 +23,7 @@ using openvdb::Vec3s;
 std::vector<StopReason> read_stops(const Columns& points, const char* attribute,
                                    std::size_t vertices)
 {
+    // Reasons are told by name in these files, so their numbers may change between versions.
     std::map<std::string, StopReason> by_name;
     for (int i = 0; i < kStopReasonCount; ++i)
         by_name.emplace(name_of(static_cast<StopReason>(i)), static_cast<StopReason>(i));
@@ -32,10 +40,12 @@ std::vector<StopReason> read_stops(const Columns& points, const char* attribute,
     return stops;
 }
 
-/// The place of a point that its surface does not have of its own.
+/// Stands for a point that a surface does not have of its own, because the pillar above it is
+/// pinned.
 constexpr std::uint32_t kNone = ~std::uint32_t(0);
 
-/// The surface of each point. Files of one layer below the surface do not say it.
+/// The surface of each point. Files of one layer below the surface do not say it, and need not: the
+/// first points are the vertices of the surface, all others are lower ends.
 std::vector<std::size_t> read_surfaces(const HoudiniGeometry& geometry, const Columns& points,
                                        const Counts& counts)
 {
@@ -57,6 +67,8 @@ std::vector<std::size_t> read_surfaces(const HoudiniGeometry& geometry, const Co
     return surfaces;
 }
 
+/// By surface and vertex, the point that says it is there. A second one for the same place is
+/// refused: one of them would never be looked at.
 Ids find_own_points(const Columns& points, const std::vector<std::size_t>& surfaces,
                     const Counts& counts)
 {
@@ -85,7 +97,8 @@ bool same_bits(const Vec3s& a, const Vec3s& b)
     return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
 }
 
-/// The next surface below `above`. Its points are told by the points above where there are any.
+/// The next surface below `above`. A point above names the lower end of its pillar in `opposite`;
+/// where there is none, the surface's own point says where it is, or the vertex stays where it was.
 std::vector<Vec3s> surface_below(const Columns& points, const std::vector<Vec3s>& position,
                                  const std::vector<Vec3s>& opposite,
                                  const std::vector<Vec3s>& above,
@@ -98,6 +111,8 @@ std::vector<Vec3s> surface_below(const Columns& points, const std::vector<Vec3s>
             surface[v] = opposite[own_above[v]];
         else if (own[v] != kNone)
             surface[v] = position[own[v]];
+        // Equal as numbers, as PrismShell has it: a pillar between zeros of different sign has no
+        // length.
         const bool pinned = surface[v] == above[v];
         if (own[v] != kNone && (pinned || !same_bits(position[own[v]], surface[v])))
             points.fail("P", "of point " + std::to_string(own[v]) +
@@ -131,6 +146,8 @@ Ids read_pillars(const HoudiniGeometry& geometry, const Columns& points, const C
         above = layer.inner;
         stack.layers.push_back(std::move(layer));
     }
+    // Afterwards every place has a point: pinned ones that of the surface above, from the outermost
+    // downwards so that chains of them are followed to their top.
     for (std::size_t k = 1; k <= counts.layers; ++k)
         for (std::size_t v = 0; v < counts.vertices; ++v)
             if (ids[k][v] == kNone)

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads a shell back from a Houdini geometry that this program wrote, bit for bit, or refuses it
+// with the name of what does not fit. People edit such files in Houdini, so nothing is assumed:
+// counts are bounded by the elements that are there, triangles of all surfaces are compared with
+// the outermost, and the checksum of all arrays decides in the end whether it is the shell that was
+// written. Whether the shell is valid is not tested here; `check` certifies it afresh.
+
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/write/shell_points.h"
@@ -16,8 +23,8 @@ namespace
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
-// A shell is written once and read with suspicion: everything that is there twice must agree, and
-// all arrays together must have the checksum that was written.
+// A shell is written once and read with suspicion: everything that stands in the file twice must
+// agree, and all arrays together must have the checksum that was written.
 
 void read_layers(const Columns& detail, const std::string& name, Counts& counts)
 {
@@ -28,7 +35,9 @@ void read_layers(const Columns& detail, const std::string& name, Counts& counts)
     if (counts.prisms % counts.layers != 0)
         refuse(name, std::to_string(counts.prisms) + " prisms are not a multiple of " +
                          std::to_string(counts.layers) + " layers");
-    // Every vertex gets a point on each surface, so this bounds the memory by the primitives.
+    // Every vertex gets a point on each surface in memory, whatever the file holds. A vertex that
+    // is a corner of no triangle has no place in a shell, so this bound costs nothing and keeps the
+    // memory below a multiple of the primitives.
     if (counts.vertices > 3 * counts.triangles())
         refuse(name, std::to_string(counts.vertices) + " vertices cannot all be corners of " +
                          std::to_string(counts.triangles()) + " triangles");
@@ -39,8 +48,9 @@ void require_primitives(const HoudiniGeometry& geometry, const Counts& counts,
 {
     const std::size_t shown = counts.surfaces().size() * counts.triangles();
     const std::size_t found = geometry.primitives.size();
-    // Between the shown surfaces some triangles stand for prisms that have no tet, as many as there
-    // are; so with layers only a lower bound is known.
+    // Between the shown surfaces, triangles stand for those prisms that have no tet. How many there
+    // are is not stated, so with layers only a lower bound is known; read_splits finds out whether
+    // one is missing.
     if (counts.layered() ? counts.tets + shown > found : counts.tets + shown != found)
         refuse(name, "it has " + std::to_string(found) + " primitives, but " +
                          std::to_string(counts.tets) + " tets and " +
@@ -63,6 +73,7 @@ Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const
     if (schema < 1 || schema > kShellSchema)
         detail.fail(kSchema, "is " + std::to_string(schema) + ", schemas 1 to " +
                                  std::to_string(kShellSchema) + " can be read");
+    // Each count is bounded by the elements that the geometry has, before memory is taken by it.
     Counts counts;
     counts.vertices = detail.count(kVertices, geometry.points);
     counts.prisms = detail.count(kPrisms, geometry.primitives.size());
@@ -73,8 +84,9 @@ Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const
     return counts;
 }
 
-/// Of each primitive its prism, layer after layer: of triangles on the shown surfaces it follows
-/// from their place.
+/// Of each primitive its prism, numbered layer by layer. For triangles on the shown surfaces it
+/// follows from their place, and what the attributes say has to agree; for tets and collapsed
+/// prisms the attributes alone tell.
 std::vector<std::size_t> read_prisms(const Columns& primitives, const Counts& counts)
 {
     const auto& prism = primitives.integers(kPrism);
@@ -94,6 +106,7 @@ std::vector<std::size_t> read_prisms(const Columns& primitives, const Counts& co
     for (std::size_t i = 0; i < prism.size(); ++i) {
         const std::size_t place = i < counts.tets ? 0 : i - counts.tets;
         const bool shown = i >= counts.tets && place < surfaces.size() * triangles;
+        // A collapsed prism shows as the triangle of the surface above it.
         const std::size_t surface = shown ? surfaces[place / triangles] : 0;
         require(kPrism, i, prism[i], triangles, !shown, shown ? place % triangles : 0);
         require(kLayer, i, layer[i], counts.layers, !shown, layer_at(surface, counts.layers));
@@ -103,7 +116,8 @@ std::vector<std::size_t> read_prisms(const Columns& primitives, const Counts& co
     return prisms;
 }
 
-/// The triangles are those of the outermost surface; all others are held against them.
+/// The triangles are those of the outermost surface, where points and vertices have the same
+/// numbers; those of all other surfaces are held against them.
 void read_triangles(const HoudiniGeometry& geometry, const Counts& counts, const Ids& ids,
                     const std::vector<std::size_t>& prisms, const std::string& name,
                     ShellStack& stack)
@@ -139,7 +153,8 @@ void read_triangles(const HoudiniGeometry& geometry, const Counts& counts, const
         layer.triangles = outermost;
 }
 
-/// All primitives of a prism tell the same diagonals, and each prism has one that does.
+/// All primitives of a prism tell the same diagonals, and each prism has at least one primitive. So
+/// the splits are complete and do not depend on which primitive is looked at.
 void read_splits(const Columns& primitives, const Counts& counts,
                  const std::vector<std::size_t>& prisms, const std::string& name, ShellStack& stack)
 {
@@ -178,7 +193,8 @@ void read_splits(const Columns& primitives, const Counts& counts,
                              std::to_string(prism / triangles));
 }
 
-/// The tets number those points that they use, in the same order.
+/// The tets number those points that they use, in the order of the points: that is how make_tets
+/// numbers them, and the checksum depends on it.
 void read_tets(const HoudiniGeometry& geometry, const Columns& points, const Counts& counts,
                const std::vector<std::size_t>& prisms, TetMesh& tets)
 {
@@ -214,7 +230,8 @@ void read_placement(const HoudiniGeometry& geometry, const Columns& detail, Plac
     const auto& origin = detail.get<std::vector<double>>(kOrigin, 3);
     placement.origin = openvdb::Vec3d(origin[0], origin[1], origin[2]);
     placement.unit = detail.get<std::vector<double>>(kUnit, 1)[0];
-    // A unit that is no power of two would round the coordinates once more.
+    // A unit that is no power of two would round the coordinates once more on their way out. frexp
+    // gives the fraction 0.5 for powers of two alone, and -0.5 for their negatives.
     int exponent = 0;
     if (!placement.origin.isFinite())
         detail.fail(kOrigin, "is not finite");
@@ -249,6 +266,7 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     read_placement(geometry, detail, file.placement);
     file.parameters_json = detail.text(kParameters);
     file.report_json = detail.text(kReport);
+    // To the library an inconsistent shell is a wrong argument, here it is a damaged file.
     try {
         vdb_shell::require_consistent(file.stack, file.tets);
     } catch (const InvalidOption& error) {

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a document as JSON text, the .geo form. Numbers keep their value: digits are the shortest
+// that give the same double again, and do not depend on the locale. The commas and colons follow
+// from what was written last, so callers only say values. A trap: JSON has no NaN and no infinity,
+// so those are refused; and text has to be UTF-8, which the binary form does not ask for.
+
 #include "vdb_shell/core/error.h"
 
 #include "document_writer.h"
@@ -29,6 +35,8 @@ public:
     void text(std::string_view value) override
     {
         before_value();
+        // The JSON library quotes and escapes; for a string that is not UTF-8 it throws, and the
+        // message then shows the string with its bad bytes replaced.
         try {
             buffer_ += nlohmann::json(value).dump();
         } catch (const nlohmann::json::exception&) {
@@ -52,6 +60,7 @@ public:
     void numbers(const float* values, std::size_t count) override { list(values, count); }
     void numbers(const double* values, std::size_t count) override { list(values, count); }
     bool paged() const override { return false; }
+    // Kept until the next value, because the break goes behind the comma and before the value.
     void new_line() override { line_break_ = true; }
     void finish() override
     {
@@ -60,6 +69,8 @@ public:
     }
 
 private:
+    // In bytes: large enough for few calls of the sink, and small beside a document for which
+    // memory matters.
     static constexpr std::size_t kFlushAt = 1 << 16;
 
     void before_value()
@@ -85,6 +96,8 @@ private:
         follows_ = after_key_ = false;
         maps_.push_back(false);
     }
+    // A break that was wanted last goes before the bracket, so that the brackets of long documents
+    // stand on lines of their own.
     void close(char mark)
     {
         if (line_break_)
@@ -102,8 +115,8 @@ private:
         char text[32];
         buffer_.append(text, std::to_chars(text, text + sizeof text, value).ptr);
     }
-    /// A float's digits are those of the double: the float's own mean another number to a reader of
-    /// doubles.
+    /// A float's digits are those of the double of the same value. The shortest digits of the float
+    /// itself name another double, and most readers read doubles.
     void digits(double value)
     {
         if (!std::isfinite(value))
@@ -111,7 +124,8 @@ private:
                                 " cannot be written as text, only finite ones can");
         char text[64];
         buffer_.append(text, std::to_chars(text, text + sizeof text, value).ptr);
-        // "-0" is an integer to most readers, and loses its sign.
+        // "-0" without a point is an integer to most readers, and integers have no negative zero;
+        // the sign would be lost, and with it the checksum of the shell.
         if (value == 0 && std::signbit(value))
             buffer_ += ".0";
     }

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes shells as one USD stage in the text format: the surface as a Mesh, the tets as a TetMesh,
+// the grids by reference to a .vdb. One sample or one for each time; what is the same at all times
+// is written once, by comparing the texts of the values. Coordinates are the float32 that were
+// certified, in the frame of the mesh, and the placement is an xformOp of doubles on the prims, so
+// nothing is rounded once more. There is no dependence on USD's own library: the text format is
+// plain enough. How stages are checked, and by what they were not, is in docs/usd.md.
+
 #include "vdb_shell/houdini/usd_file.h"
 
 #include "vdb_shell/core/atomic_file.h"
@@ -29,7 +37,8 @@ using openvdb::Vec4I;
 using Samples = std::vector<UsdSample>;
 using Text = std::function<std::string(const UsdSample&)>;
 
-/// Bounds may round inwards on their way to float32; an extent must not.
+/// Rounding to float32 may go inwards, and an extent that is too small makes viewers cull what they
+/// should show. So each side is moved to the next float outwards where rounding went the wrong way.
 std::string extent_of(const Vec3d& low, const Vec3d& high)
 {
     Vec3s corners[2];
@@ -50,7 +59,8 @@ std::string extent_of(const std::vector<Vec3s>& points)
     return extent_of(bounds.low, bounds.high);
 }
 
-/// The box of all active voxels of both grids, as boxes rather than centres.
+/// The box of all active voxels of both grids. Voxels are taken as boxes and not as centres, hence
+/// the halves.
 std::string extent_of_volume(const ShellFile& shell)
 {
     Vec3d low(HUGE_VAL), high(-HUGE_VAL);
@@ -64,6 +74,7 @@ std::string extent_of_volume(const ShellFile& shell)
         high = openvdb::math::maxComponent(high, world.max());
     }
     const Vec3d shift = shell.placement.shift();
+    // No active voxel at all left the box at its start values, which are inverted.
     return low[0] > high[0] ? extent_of({}) : extent_of(low + shift, high + shift);
 }
 
@@ -90,7 +101,10 @@ public:
         line("}");
     }
 
-    /// `declaration` is type and name, `metadata` what stands behind the value.
+    /// `declaration` is type and name, `metadata` what stands behind the value. Whether a value
+    /// changes with time is decided by its text: equal texts are equal values, and the text has to
+    /// be made in any case. All samples of one attribute are in memory at once, those of different
+    /// attributes are not.
     void attribute(const std::string& declaration, const Text& value,
                    const std::string& metadata = {})
     {
@@ -103,6 +117,7 @@ public:
             line(declaration + " = " + values.front() + behind);
             return;
         }
+        // With time samples, metadata need a declaration without a value to stand behind.
         if (!metadata.empty())
             line(declaration + behind);
         line(declaration + ".timeSamples = {");
@@ -149,7 +164,8 @@ const std::vector<Vec3s>& skin_of(const UsdSample& sample)
     return sample.shell->stack.surface(sample.shell->stack.skin);
 }
 
-/// More than one layer below the surface; all samples have the same.
+/// Whether the layers have to be told. One sample may speak for all, as require_fitting asks that
+/// all have the same.
 bool has_layers(const Samples& samples)
 {
     const ShellStack& stack = samples.front().shell->stack;
@@ -164,6 +180,8 @@ void write_stops(Stage& stage, const Samples& samples)
             reasons.push_back(std::int32_t(reason));
         return usd_array(reasons);
     };
+    // The lowest layer has the reasons of the pillars below the skin, the first layer those of the
+    // pillars above it.
     stage.primvar("int[] primvars:stopReason",
                   [&](const UsdSample& s) { return reasons_of(s.shell->stack.layers.back()); });
     if (on_both_sides(samples.front().shell->stack))
@@ -177,10 +195,13 @@ std::string usd_triple(const Vec3d& v)
     return "(" + usd_value(v[0]) + ", " + usd_value(v[1]) + ", " + usd_value(v[2]) + ")";
 }
 
-/// Where the file of the surface has it. Grids of a .vdb have the origin in their own transforms
-/// and need the unit alone.
+/// Puts the prim where the file of the surface has it: file = origin + unit * mesh. USD applies the
+/// last operation of the order first, so the scale stands behind the translation. Grids of a .vdb
+/// have the origin in their own transforms and need the unit alone.
 void write_placement(Stage& stage, const Samples& samples, bool with_origin)
 {
+    // All samples get the operations if one of them moves, because the order of operations cannot
+    // change with time.
     const bool moves = std::any_of(samples.begin(), samples.end(), [](const UsdSample& sample) {
         return sample.shell->placement.moves();
     });
@@ -217,6 +238,7 @@ void write_surface(Stage& stage, const Samples& samples)
             lengths.push_back(thickness_of(s.shell->stack, v));
         return usd_array(lengths);
     });
+    // Without it a Mesh is a subdivision surface by USD's default, and would be drawn smoothed.
     stage.line("uniform token subdivisionScheme = \"none\"");
     write_placement(stage, samples, true);
     stage.close();
@@ -250,7 +272,8 @@ void write_tet_primvars(Stage& stage)
     });
 }
 
-/// Not primvars: those that are uniform count the faces that are drawn, not the tets.
+/// Custom properties and not primvars: uniform primvars of a TetMesh have one value for each face
+/// that is drawn, not one for each tet.
 void write_tet_properties(Stage& stage, const Samples& samples)
 {
     if (has_layers(samples)) {
@@ -291,13 +314,16 @@ void write_tets(Stage& stage, const Samples& samples)
 /// How the stage at `path` finds the .vdb wherever both are moved together.
 std::string relative_asset(const fs::path& path, const fs::path& volume)
 {
+    // Without touching the disk: neither file has to exist yet, and symbolic links stay as the user
+    // wrote them.
     const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
     const fs::path target = fs::absolute(volume).lexically_normal();
     const fs::path relative = target.lexically_relative(folder);
+    // No relative path leads from one root to another; only an absolute one is left.
     if (relative.empty())
         return usd_asset(target.generic_string());
     const bool upwards = *relative.begin() == "..";
-    // Without the point USD would search its own paths first.
+    // Without "./" in front USD would look for the name along its own search paths first.
     return usd_asset((upwards ? "" : "./") + relative.generic_string());
 }
 
@@ -336,7 +362,8 @@ void require_positive(const fs::path& path, const char* what, double value)
                          ", expected a positive finite number");
 }
 
-/// Prims and attributes are the same at all times.
+/// Prims and attributes are the same at all times, only values may differ. So the shells need the
+/// same layers, the same triangles, and a volume at all times or at none.
 void require_alike(const fs::path& path, const std::string& name, const UsdSample& sample,
                    const UsdSample& first)
 {
@@ -359,6 +386,7 @@ void require_fitting(const fs::path& path, const Samples& samples)
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const UsdSample& sample = samples[i];
         const std::string name = "sample " + std::to_string(i) + " at " + usd_value(sample.time);
+        // Negated, so that a time that is not a number is refused as well.
         if (!std::isfinite(sample.time) || (i > 0 && !(sample.time > samples[i - 1].time)))
             refuse(path, name + ": times must be finite and increase");
         if (!sample.shell || sample.shell->stack.layers.empty())
@@ -373,7 +401,8 @@ void require_fitting(const fs::path& path, const Samples& samples)
 
 std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
 {
-    // The four faces as the right-handed TetMesh of USD has them.
+    // The four faces with their normals outward for a positive tet, in the order of USD's
+    // right-handed TetMesh.
     constexpr int kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
     struct Face {
         std::array<std::uint32_t, 3> sorted;
@@ -389,6 +418,8 @@ std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
             faces.push_back({sorted, face});
         }
     }
+    // Sorting brings equal faces together in O(n log n), and no hash or address decides the order;
+    // ties are broken by the corners, so the order is total.
     std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
         return a.sorted != b.sorted ? a.sorted < b.sorted : a.corners < b.corners;
     });
@@ -396,6 +427,8 @@ std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
     for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
         while (end < faces.size() && faces[end].sorted == faces[i].sorted)
             ++end;
+        // A face of one tet only. Faces of two are inside; faces of more, which only shells that do
+        // not conform have, belong to no boundary either.
         if (end == i + 1)
             boundary.push_back(faces[i].corners);
     }

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The options of a USD stage. They say what the numbers mean and change none of them: a stage with
+// another axis or unit has the same coordinates, and the program that opens it does the turning.
+// The rate of frames has no flag, since the command writes one sample; the library can write
+// several.
+
 #include "vdb_shell/houdini/usd_file.h"
 #include "vdb_shell/options/option.h"
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Builds the tree of a document while it is parsed, for both forms. The point is memory: a list of
+// numbers becomes one vector as it grows, and a list of equally long lists of numbers becomes one
+// vector with a width, so a million positions are one block and not a million lists. A list that
+// turns out to be mixed is spelt out into single values, once. A trap: whole numbers and reals in
+// one list all become doubles, which is exact for whole numbers up to 2^53 only.
+
 #include "value.h"
 
 #include "vdb_shell/io/read_file.h"
@@ -10,7 +17,8 @@ namespace vdb_shell::houdini
 namespace
 {
 
-/// The list behind `value`, each element a value of its own again.
+/// The list behind `value`, each element a value of its own again. It happens at most once for each
+/// list: afterwards the list is general and stays so, and the time stays linear.
 List& spelt_out(Value& value)
 {
     const auto spell = [](const auto& numbers) {
@@ -47,6 +55,8 @@ bool is_empty_list(const Value& value)
     return list && list->empty();
 }
 
+/// Text has "1" for the real 1, so a list of reals may begin with whole numbers; the list becomes
+/// one of reals when the first point is met.
 Reals& as_reals(Value& value)
 {
     if (const auto* integers = std::get_if<Integers>(&value.data))
@@ -60,6 +70,7 @@ template <typename T> Numbers<T>* numbers_of_width(Value& value, std::size_t wid
     return numbers && numbers->width == width ? numbers : nullptr;
 }
 
+/// The first number decides the kind of an empty list, the later ones may widen it.
 void append_integer(Value& list, std::int64_t value)
 {
     if (is_empty_list(list))
@@ -87,6 +98,8 @@ void append_list(Value& list, Value element)
 {
     const auto* integers = numbers_of_width<std::int64_t>(element, 0);
     const auto* reals = numbers_of_width<double>(element, 0);
+    // Only a list of plain numbers can be a row, and only if it is as long as the rows before it.
+    // An empty list is no row, as it has no type.
     const std::size_t width = integers ? integers->values.size() : reals ? reals->values.size() : 0;
     const bool fits = is_empty_list(list) || numbers_of_width<std::int64_t>(list, width) ||
                       numbers_of_width<double>(list, width);
@@ -94,6 +107,8 @@ void append_list(Value& list, Value element)
         spelt_out(list).push_back(std::move(element));
         return;
     }
+    // The first row: its vector is taken over as it is, and the width tells from now on that it
+    // stands for rows.
     if (is_empty_list(list)) {
         list = std::move(element);
         std::visit(
@@ -109,6 +124,7 @@ void append_list(Value& list, Value element)
         held->values.insert(held->values.end(), integers->values.begin(), integers->values.end());
         return;
     }
+    // One of the two has reals, so both become reals.
     Reals& held = as_reals(list);
     if (integers)
         held.values.insert(held.values.end(), integers->values.begin(), integers->values.end());
@@ -128,6 +144,7 @@ void TreeBuilder::finish(Value value)
         return;
     }
     Value& into = open_.back();
+    // Keys and values stand in turn; Fields finds out whether they pair up and each key is a text.
     if (Map* map = std::get_if<Map>(&into.data))
         map->items.push_back(std::move(value));
     else
@@ -136,6 +153,7 @@ void TreeBuilder::finish(Value value)
 
 void TreeBuilder::add(Value value)
 {
+    // Keys and values of maps are not compacted, since both stand in one list of items.
     const bool in_list = !open_.empty() && !std::holds_alternative<Map>(open_.back().data);
     if (const auto* number = std::get_if<std::int64_t>(&value.data); in_list && number)
         append_integer(open_.back(), *number);
@@ -157,6 +175,7 @@ void TreeBuilder::real(double value)
 
 void TreeBuilder::open(Value container)
 {
+    // Destroying the tree is recursive, so its depth has to be bounded before it is built.
     if (open_.size() == kDeepest)
         refuse(name_, "its arrays are nested more than " + std::to_string(kDeepest) + " deep");
     if (complete_)
@@ -174,6 +193,8 @@ void TreeBuilder::open_map()
     open({Map{}});
 }
 
+/// Binary documents have separate marks for the ends of lists and maps, which can disagree with
+/// what is open; the text parser has made sure of it already.
 void TreeBuilder::close(bool map)
 {
     if (open_.empty() || std::holds_alternative<Map>(open_.back().data) != map)

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Reads any .vdb and lists what Houdini would drop, change or misread in it: the entry point of the
+// rules, and those that concern names and types of grids. The rules come from the conversion code
+// that OpenVDB publishes for Houdini and from its documentation (docs/vdb_conventions.md has all of
+// them); Houdini itself was not run. The order of the findings follows the order of the grids in
+// the file, so it is the same on each run.
+
 #include "vdb_shell/houdini/vdb_conventions.h"
 
 #include "vdb_shell/core/error.h"
@@ -18,8 +25,9 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The trees that Houdini's own tables know; it makes nothing of the others. A mask's values are
-/// bools too, only its tree tells it.
+/// The trees that Houdini's own tables know; it makes nothing of the others. The name of the tree
+/// decides and not that of the values: a mask's values are bools too, and only its tree tells it
+/// from a grid of bools.
 bool is_houdini_tree(const std::string& type)
 {
     static const std::set<std::string> known{
@@ -29,8 +37,8 @@ bool is_houdini_tree(const std::string& type)
     return known.count(type) > 0;
 }
 
-/// What stands for something else where grids are picked by name: wildcards, sets, attributes,
-/// quotes, ranges.
+/// Whether a name has a character that stands for something else where grids are picked by name:
+/// wildcards, sets, attributes, quotes, ranges. Blanks and control characters separate names there.
 bool has_pattern_character(const std::string& name)
 {
     return std::any_of(name.begin(), name.end(), [](unsigned char c) {
@@ -51,6 +59,8 @@ void check_name(const openvdb::GridBase& grid, const std::set<std::string>& earl
     if (earlier.count(name))
         found.push_back({"unique-name", name, "",
                          "an earlier grid has this name; Houdini appends [0], [1], ... to them"});
+    // Tools of Houdini pick grids by these two names unless told otherwise, and expect the class
+    // that goes with them.
     const openvdb::GridClass grid_class = grid.getGridClass();
     const char* const other_name =
         name == "surface" && grid_class != openvdb::GRID_LEVEL_SET    ? "level sets"
@@ -62,6 +72,8 @@ void check_name(const openvdb::GridBase& grid, const std::set<std::string>& earl
                              "\"; this name is Houdini's default for " + other_name});
 }
 
+/// The outer structure of the file is checked first, because OpenVDB trusts the sizes that stand in
+/// it. All grids are loaded at once: the rules for half floats and points look at values.
 openvdb::GridPtrVecPtr read_grids(const fs::path& path, openvdb::MetaMap::Ptr& metadata)
 {
     openvdb::initialize();
@@ -78,6 +90,8 @@ openvdb::GridPtrVecPtr read_grids(const fs::path& path, openvdb::MetaMap::Ptr& m
 
 } // namespace
 
+/// ASCII letters are compared directly: isalpha depends on the locale, and with some it takes
+/// letters that Houdini refuses.
 bool is_houdini_name(const std::string& name)
 {
     const auto is_letter = [](unsigned char c) {
@@ -90,6 +104,8 @@ bool is_houdini_name(const std::string& name)
 
 const std::vector<std::string>& vdb_convention_rules()
 {
+    // In the order of the documentation. The tests break each rule of this list on purpose, so a
+    // rule without a test shows.
     static const std::vector<std::string> rules{"no-grids",
                                                 "creator",
                                                 "name",
@@ -138,6 +154,8 @@ std::vector<VdbViolation> check_vdb_conventions(const fs::path& path)
     TypesByName types;
     for (const openvdb::GridBase::Ptr& grid : *grids) {
         check_name(*grid, names, found);
+        // After check_name, so that only earlier grids count and the first of several equal names
+        // is not blamed.
         names.insert(grid->getName());
         check_grid_metadata(*grid, types, found);
         if (!is_houdini_tree(grid->type()))

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The rules for metadata of a .vdb that is to be read by Houdini: which keys and types become
+// attributes of primitives or of the detail, and which are dropped or changed without a word. They
+// come from the conversion code that OpenVDB publishes for Houdini and from Houdini's
+// documentation; docs/vdb_conventions.md has the table, and says that Houdini itself was not run.
+// Each function appends what breaks a rule and goes on, so one run names all of it.
+
 #include "vdb_rules.h"
 
 #include <nlohmann/json.hpp>
@@ -23,7 +30,9 @@ bool begins_with(const std::string& text, std::string_view prefix)
     return text.compare(0, prefix.size(), prefix) == 0;
 }
 
-/// What OpenVDB and Houdini themselves keep about a grid, and its types.
+/// The keys that OpenVDB and Houdini themselves keep about a grid, with their types. They are held
+/// against those types only, since none of them becomes an attribute of the user's. The names of
+/// types are OpenVDB's, as they stand in the file.
 const std::map<std::string, std::string>& own_keys()
 {
     static const std::map<std::string, std::string> keys{
@@ -53,7 +62,8 @@ bool becomes_attribute(const std::string& type)
     return kept.count(type) > 0;
 }
 
-/// The same for what stands under `global:`; a vec3i there would lose all but its first number.
+/// The same for what stands under `global:`, which has fewer types. A vec3i is no longer one of
+/// them: it would lose all but its first number.
 bool becomes_detail(const std::string& type)
 {
     static const std::set<std::string> kept{"bool",   "int32", "int64", "float",
@@ -61,6 +71,8 @@ bool becomes_detail(const std::string& type)
     return kept.count(type) > 0;
 }
 
+/// The type is tested first: str() gives some text for every type of metadata, and a number would
+/// pass for JSON that is not an object, with a misleading message.
 void check_dictionary(const std::string& grid, const std::string& key, const Metadata& value,
                       VdbViolations& found)
 {
@@ -72,7 +84,8 @@ void check_dictionary(const std::string& grid, const std::string& key, const Met
                          "the string is not one JSON object; it becomes an empty dictionary"});
 }
 
-/// Metadata that become an attribute of Houdini, under `name`.
+/// Metadata that become an attribute of Houdini under `key`. The rules are independent of each
+/// other, so one entry may break several.
 void check_entry(const std::string& grid, const std::string& key, const Metadata& value,
                  VdbViolations& found)
 {
@@ -84,6 +97,8 @@ void check_entry(const std::string& grid, const std::string& key, const Metadata
                          "a name of letters, digits and _ is expected, no digit first"});
     if (begins_with(key, kDictionaryPrefix))
         check_dictionary(grid, key, value, found);
+    // By that name Houdini takes an integer for a flag, and what is not 0 or 1 is lost when it
+    // saves.
     if (begins_with(key, "is_") && (type == "int32" || type == "int64"))
         found.push_back(
             {"is-bool", grid, key, "the type is " + type + "; Houdini saves it as a bool"});
@@ -96,6 +111,7 @@ int tuple_place(const std::string& key)
     if (open == std::string::npos || key.back() != ']')
         return -1;
     const std::string digits = key.substr(open + 1, key.size() - open - 2);
+    // Keeps std::stoi from throwing on a number that no tuple has.
     constexpr std::size_t kMostDigits = 6;
     if (digits.empty() || digits.size() > kMostDigits ||
         digits.find_first_not_of("0123456789") != std::string::npos)
@@ -107,6 +123,8 @@ void check_global(const GridBase& grid, const std::string& key, const Metadata& 
                   VdbViolations& found)
 {
     const std::string name = key.substr(std::string_view(kGlobalPrefix).size());
+    // Houdini joins `name[0]`, `name[1]` and so on to one attribute with several components; `base`
+    // is its name.
     const std::string base = name.substr(0, name.find('['));
     if (grid.valueType() != "ptdataidx32")
         found.push_back({"global-metadata", grid.getName(), key,
@@ -121,6 +139,8 @@ void check_global(const GridBase& grid, const std::string& key, const Metadata& 
     if (base == name)
         return;
     const int place = tuple_place(name);
+    // Only the element before is looked up: by induction all elements from 0 on are there, or the
+    // first gap has been named.
     const Metadata::ConstPtr before =
         place > 0 ? grid[kGlobalPrefix + base + "[" + std::to_string(place - 1) + "]"] : nullptr;
     if (place < 0)
@@ -153,6 +173,7 @@ void check_file_metadata(const MetaMap& metadata, VdbViolations& found)
         found.push_back({"creator", "", "creator",
                          "expected a string that names the program which wrote the file"});
     for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry)
+        // The creator is OpenVDB's own way to say who wrote the file, and has its rule above.
         if (entry->first != "creator" && entry->second)
             check_entry("", entry->first, *entry->second, found);
 }
@@ -174,6 +195,9 @@ void check_grid_metadata(const GridBase& grid, TypesByName& types, VdbViolations
             check_global(grid, key, value, found);
         else
             check_entry(name, key, value, found);
+        // All grids of a file become primitives of one geometry, where an attribute has one type.
+        // The first grid that has the key decides; each later one of another type is named together
+        // with it.
         const auto [first, is_new] =
             types.metadata.insert({key, TypesByName::Entry{value.typeName(), name}});
         if (!is_new && first->second.type != value.typeName())

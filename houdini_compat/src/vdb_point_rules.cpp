@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The rules for attributes of point grids: what unpacking in Houdini leaves out, shortens or
+// changes. All grids of points of a file unpack into one geometry, where an attribute has one type
+// and size, so clashes between grids are looked for as well. The rules come from the published
+// conversion code (docs/vdb_conventions.md). Types are read from the first leaf: OpenVDB keeps the
+// attributes of all leaves of a grid alike.
+
 #include "vdb_rules.h"
 
 #include <openvdb/points/AttributeArrayString.h>
@@ -18,7 +25,7 @@ using openvdb::GridBase;
 using points::AttributeArray;
 using points::PointDataGrid;
 
-/// The attributes that unpacking keeps; others are left out without a word.
+/// The types of attributes that unpacking keeps; others are left out without a word.
 bool is_kept(const std::string& type)
 {
     static const std::set<std::string> kept{"string", "bool",   "int8",  "int16", "int32", "int64",
@@ -27,14 +34,16 @@ bool is_kept(const std::string& type)
     return kept.count(type) > 0;
 }
 
-/// Types that have a fixed number of components, so that a stride is not looked at.
+/// Types that have a fixed number of components in Houdini. Of several values of such a type a
+/// point gets the first only.
 bool is_compound(const std::string& type)
 {
     return type.compare(0, 3, "vec") == 0 || type.compare(0, 4, "quat") == 0 ||
            type.compare(0, 3, "mat") == 0;
 }
 
-/// The largest magnitude of a vec3i attribute's numbers over the whole grid.
+/// The largest magnitude of a vec3i attribute's numbers over the whole grid. In 64 bits, because
+/// the magnitude of the least int32 does not fit an int32.
 std::int64_t largest_integer(const PointDataGrid& grid, std::size_t index)
 {
     std::int64_t largest = 0;
@@ -50,6 +59,7 @@ std::int64_t largest_integer(const PointDataGrid& grid, std::size_t index)
 void check_type(const PointDataGrid& grid, const std::string& name, std::size_t index,
                 const std::string& type, VdbViolations& found)
 {
+    // What is left out cannot also be changed, so the other rules do not apply.
     if (!is_kept(type)) {
         found.push_back({"attribute-type", grid.getName(), name,
                          "the type is " + type + ", which Houdini leaves out"});
@@ -64,7 +74,8 @@ void check_type(const PointDataGrid& grid, const std::string& name, std::size_t 
         type != "vec3d")
         found.push_back({"role", grid.getName(), name,
                          "the type is " + type + "; Houdini knows this name as a vec3s"});
-    // Houdini carries these as floats.
+    // Houdini passes a vec3i on as float32, which holds all integers up to 2^24. An int32 with a
+    // stride keeps its type and stays exact.
     constexpr std::int64_t kLargestExact = 1 << 24;
     if (type == "vec3i") {
         const std::int64_t largest = largest_integer(grid, index);
@@ -80,6 +91,8 @@ void check_attribute(const PointDataGrid& grid, const std::string& name, std::si
                      TypesByName& types, VdbViolations& found)
 {
     const AttributeArray& array = grid.tree().cbeginLeaf()->constAttributeArray(index);
+    // Strings are stored as indices with a codec of their own; the type of the array would say only
+    // that.
     const std::string type = points::isString(array) ? "string" : array.type().first;
     if (!is_houdini_name(name))
         found.push_back({"attribute-name", grid.getName(), name,
@@ -115,6 +128,7 @@ void check_point_attributes(const GridBase& base, TypesByName& types, VdbViolati
         return;
     const auto& grid = static_cast<const PointDataGrid&>(base);
     const auto leaf = grid.tree().cbeginLeaf();
+    // A grid without points has no leaf, and so no attribute that could be wrong.
     if (!leaf)
         return;
     const points::AttributeSet::Descriptor& descriptor = leaf->attributeSet().descriptor();
@@ -123,6 +137,8 @@ void check_point_attributes(const GridBase& base, TypesByName& types, VdbViolati
         found.push_back({"position", grid.getName(), "P",
                          "it is missing or not vec3s; Houdini unpacks no point without it"});
     for (const auto& [name, index] : descriptor.map())
+        // Groups share arrays of bits under names of OpenVDB's own, which are no attributes to the
+        // user; their real names are checked below.
         if (!points::isGroup(leaf->constAttributeArray(index)))
             check_attribute(grid, name, index, types, found);
     check_groups(grid, descriptor, found);

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The rules for what a grid holds: its class against its values, its background and its voxels; the
+// type of its vectors; and half floats. A wrong class makes no error in Houdini: the grid is just
+// drawn, filtered or transformed as something that it is not (docs/vdb_conventions.md has the
+// table). Only the rule of half floats looks at every value, and only at grids that say they were
+// saved so.
+
 #include "vdb_rules.h"
 
 #include <cmath>
@@ -22,8 +29,8 @@ bool has_reals(const GridBase& grid)
     return type == "float" || type == "double" || type == "vec3s" || type == "vec3d";
 }
 
-/// The string under a key, or `otherwise` when it is missing; a wrong type is another rule's
-/// matter.
+/// The string under a key, or `otherwise` when it is missing. A wrong type counts as missing here,
+/// because it is the matter of the rule "own-metadata", and one fault should be named once.
 std::string text_of(const GridBase& grid, const char* key, const std::string& otherwise)
 {
     const openvdb::Metadata::ConstPtr found = grid[key];
@@ -35,7 +42,8 @@ template <typename Grid> double background_of(const GridBase& grid)
     return double(static_cast<const Grid&>(grid).background());
 }
 
-/// Of a grid of one real a voxel; not a number for the others.
+/// The background of a grid of one real a voxel; not a number for all others, which no class with a
+/// background takes.
 double real_background(const GridBase& grid)
 {
     if (grid.isType<openvdb::FloatGrid>())
@@ -51,10 +59,13 @@ void check_level_set(const GridBase& grid, VdbViolations& found)
     if (std::isnan(background))
         found.push_back({"level-set", grid.getName(), "",
                          "the value type is " + grid.valueType() + ", expected float or double"});
+    // Negated, so that a background that is not a number fails as well.
     else if (!(background > 0.0) || !std::isfinite(background))
         found.push_back({"level-set", grid.getName(), "",
                          "the background is " + std::to_string(background) +
                              ", expected the width of the band outside, more than 0"});
+    // Distances are world units, so a gradient by voxels is right only if all sides of a voxel are
+    // equal.
     const openvdb::Vec3d voxel = grid.voxelSize();
     if (!grid.hasUniformVoxels())
         found.push_back(
@@ -75,6 +86,8 @@ void check_fog_volume(const GridBase& grid, VdbViolations& found)
 void check_class(const GridBase& grid, VdbViolations& found)
 {
     const std::string text = text_of(grid, GridBase::META_GRID_CLASS, "unknown");
+    // There and back: OpenVDB turns a text that it does not know into "unknown", so an unknown
+    // class shows by a text that changes.
     if (GridBase::gridClassToString(GridBase::stringToGridClass(text)) != text) {
         found.push_back({"class", grid.getName(), GridBase::META_GRID_CLASS,
                          "it is \"" + text +
@@ -92,7 +105,8 @@ void check_class(const GridBase& grid, VdbViolations& found)
 }
 
 /// How the vectors turn with their grid, by the names that tools give them; empty where the name
-/// says nothing.
+/// says nothing. Normals and gradients follow the surface and turn by the inverse transpose;
+/// velocities and displacements turn with the points but do not move with them.
 std::string wanted_vector_type(const std::string& name)
 {
     if (name == "gradient" || name == "grad")
@@ -125,6 +139,7 @@ void check_vector_type(const GridBase& grid, VdbViolations& found)
                          "it is \"" + text + "\"; of this name \"" + wanted + "\" is expected"});
 }
 
+/// Inactive values and the background count too, as they may be written as well.
 struct MagnitudeOfLargest {
     double result = 0.0;
     template <typename Grid> void operator()(const Grid& grid)
@@ -135,7 +150,8 @@ struct MagnitudeOfLargest {
     }
     void take(double value)
     {
-        // Not a number stays one in half floats.
+        // A value that is not a number stays one in half floats, so it breaks no rule of range; the
+        // comparison is false for it.
         if (std::abs(value) > result)
             result = std::abs(value);
     }
@@ -156,7 +172,8 @@ void check_half(const GridBase& grid, VdbViolations& found)
             {"half", grid.getName(), key, "it is set, but the value type is " + grid.valueType()});
         return;
     }
-    // What is larger has become infinite in the file.
+    // The largest finite half float. What is larger has become infinite in the file, so the values
+    // read back show it as infinity.
     constexpr double kLargestHalf = 65504.0;
     MagnitudeOfLargest magnitude;
     using Reals = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, openvdb::Vec3SGrid,

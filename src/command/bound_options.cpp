@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes described options; gives the flags of one command, and sets the fields from a file of
+// options and from the flags. CLI11 does the splitting into words, the help and what is required;
+// all values are converted here, by the same code that reads the file, so a flag and a key accept
+// the same things and refuse them in the same words. The order in apply() is what users see:
+// defaults, then the file, then the flags.
+
 #include "command/bound_options.h"
 
 #include "vdb_shell/core/error.h"
@@ -20,7 +27,8 @@ namespace
 
 constexpr const char* kPresetFlag = "--options";
 
-/// In the order of the help; a group that is not here follows.
+/// The groups of the help in the order in which the stages run; a group that is not listed here
+/// comes after them, so that a new one is never lost.
 std::vector<std::string> groups_of(const std::vector<BoundOption>& options)
 {
     std::vector<std::string> groups{"Options",   "Output", "Surface", "Wrap",   "Resampling",
@@ -31,6 +39,8 @@ std::vector<std::string> groups_of(const std::vector<BoundOption>& options)
     return groups;
 }
 
+/// CLI11 takes names as one text with commas; `!` before a name makes it the negation of the flag.
+/// Short names come first, as people expect them in the help.
 std::string names_for_parser(const Option& option)
 {
     std::string names;
@@ -98,13 +108,16 @@ void add_to_parser(CLI::App& app, BoundOption& bound)
 {
     const Option& option = bound.option;
     const std::string names = names_for_parser(option), help = help_of(bound);
-    // Results are looked at by apply(), when the file of options has been read.
+    // CLI11 only stores the words. They are converted by apply(), when the file of options has been
+    // read: conversion while parsing would be overwritten by the file.
     bound.given =
         option.kind == OptionKind::flag
             ? app.add_flag(names, help)
             : app.add_option(names, CLI::callback_t([](const CLI::results_t&) { return true; }),
                              help);
     if (option.kind == OptionKind::flag)
+        // `--half --no-half` means the last one, as with most programs: a script can add a flag to
+        // a line that it does not know.
         bound.given->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     if (option.repeated)
         bound.given->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -141,11 +154,14 @@ void read_preset(BoundOptions& bound, const std::filesystem::path& preset)
     if (!in || !(text << in.rdbuf()))
         throw ReadError(name + ": cannot be read as a file of options");
     nlohmann::ordered_json json = parse_options(text.str(), name);
-    // `info --json` prints them beside the report.
+    // `info --json` prints the options beside the report, and what it prints can be given as the
+    // file.
     if (json.contains("parameters"))
         json = nlohmann::ordered_json(json.at("parameters"));
-    // One file serves all commands: what it says has to be an option of `build`, and what this
-    // command has no use for is left aside.
+    // One file serves all commands: what it says has to be an option of `build`, which has them
+    // all, and what this command has no use for is left aside. Reading it into arguments of `build`
+    // first is what finds misspelt keys; without that every unknown key would look like one of
+    // another command.
     BuildArguments all;
     OptionSections sections = describe(all);
     set_from_json(json, sections, name);
@@ -160,6 +176,7 @@ void set_given(BoundOption& bound)
         throw InvalidOption(option.shorthand + " excludes " + option.flag);
     if (by_shorthand)
         assign_text(option, option.shorthand_for, option.shorthand);
+    // CLI11 has settled here which of the flag and its negations came last.
     else if (option.kind == OptionKind::flag)
         option.set(bound.given->as<bool>());
     else
@@ -168,7 +185,7 @@ void set_given(BoundOption& bound)
 }
 
 /// Of two flags that say the same thing in different ways the one that was given holds, whatever
-/// the file of options says.
+/// the file of options says: the other one goes back to its default. The file itself may name both.
 void settle_exclusions(BoundOptions& bound)
 {
     for (BoundOption& one : bound.options) {
@@ -191,6 +208,8 @@ void require_needs(BoundOptions& bound)
         if (one.option.needs.empty() || !was_given(one))
             continue;
         const BoundOption* other = find(bound, one.option.needs);
+        // What is needed may also come from the file, which shows only in the value: it is no
+        // longer the default.
         if (other && !was_given(*other) && other->option.get() == other->default_value)
             throw InvalidOption(one.option.flag + " needs " + one.option.needs);
     }
@@ -207,6 +226,8 @@ BoundOptions bind(CLI::App& app, OptionSections sections)
         for (const Option& option : section.options)
             bound.options.push_back({option, option.get()});
     }
+    // The fields still have their defaults at this point, and get() has copied them; afterwards
+    // nothing else remembers what the default was.
     bound.sections = std::move(sections);
     for (const std::string& group : groups_of(bound.options))
         for (BoundOption& option : bound.options)
@@ -217,6 +238,8 @@ BoundOptions bind(CLI::App& app, OptionSections sections)
 
 void apply(BoundOptions& bound)
 {
+    // Exclusions and needs are settled last, because both depend on what the file and the flags
+    // have set together.
     const BoundOption* preset = find(bound, kPresetFlag);
     if (preset && was_given(*preset))
         read_preset(bound, preset->given->results().back());

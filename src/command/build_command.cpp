@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The command `build`: a surface or a level set in, files and figures out. What can be refused
+// without work is refused before anything is read: options that contradict each other, unknown
+// formats, folders that cannot be written. The lengths on the command line are in the unit of the
+// file, while the stages work in that of the mesh (--rescale), so options are converted once, after
+// reading.
+
 #include "command/build_command.h"
 
 #include "vdb_shell/core/error.h"
@@ -28,6 +35,8 @@ struct GridName {
 
 GridName split_grid_name(const std::string& name)
 {
+    // The last one counts, as a folder may have such a name too. A colon alone would not do: names
+    // of files may contain it.
     const std::size_t colon = name.rfind(".vdb:");
     if (colon == std::string::npos)
         return {name, ""};
@@ -43,13 +52,15 @@ openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
     return read_float_grid(parts.file, parts.grid);
 }
 
-/// Reads the triangles or the level set, and builds; `options` are left in the unit worked in.
+/// Reads the triangles or the level set, and builds. `options` are left in the unit in which the
+/// stages worked, because the file has to state what its shell was made with.
 ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& options,
                            Interrupter* interrupter)
 {
     std::vector<StageCost> read_cost;
     const GridName source = split_grid_name(arguments.mesh.string());
     const std::string name = arguments.mesh.filename().string();
+    // The small inputs come first: a wrong name of a grid is told before a large mesh is read.
     const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
     ShellResult result;
     if (std::filesystem::path(source.file).extension() == ".vdb") {
@@ -71,12 +82,16 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
                              interrupter);
         result.report.read = read.report;
     }
+    // Reading came before the pipeline and its clock; it is put in front so that the report has all
+    // stages in their order.
     std::vector<StageCost>& stages = result.report.stages;
     stages.insert(stages.begin(), read_cost.begin(), read_cost.end());
     return result;
 }
 
-/// Takes stack and tets out of the result.
+/// Takes stack and tets out of the result, which are the largest things in memory; whatever needs
+/// them has to run before. The report in the file is without times, which would make its bytes
+/// differ from run to run.
 ShellFile to_file(ShellResult& result, const ShellOptions& options, const Outputs& outputs,
                   Interrupter* interrupter)
 {
@@ -94,6 +109,8 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     return file;
 }
 
+/// Overlaps are looked for only where the certificate fails. Where there are none in the report,
+/// the whole shell is certified, and so is each tet.
 std::vector<std::uint8_t> certified_flags(const ShellResult& result)
 {
     const std::optional<Overlaps>& overlaps = result.report.overlaps;
@@ -107,6 +124,8 @@ void require_sensible(const BuildArguments& arguments)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
     require_possible(arguments.outputs, {split_grid_name(arguments.mesh.string()).file});
+    // The report is written last, because it is the only output that can tell how long the others
+    // took.
     if (!arguments.report.empty())
         require_writable(arguments.report);
 }
@@ -115,6 +134,7 @@ void require_sensible(const BuildArguments& arguments)
 
 OptionSections describe(BuildArguments& a)
 {
+    // The order of the sections is that of the help and of the file of options.
     OptionSections sections{{"", {preset_option(a.preset)}}};
     for (OptionSection& section : describe(a.outputs))
         sections.push_back(std::move(section));
@@ -149,6 +169,7 @@ int run_build(const BuildArguments& arguments)
     ShellOptions options = arguments.shell;
     ShellResult result = read_and_build(arguments, options, &interrupter);
     StageClock(write_cost).run("write", [&] {
+        // Before to_file, which takes the tets out of the result.
         const std::vector<std::uint8_t> certified = certified_flags(result);
         write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter),
                       certified);

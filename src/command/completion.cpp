@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Makes a script for bash from the descriptions of all commands. The script is plain text that
+// needs neither vdb_shell nor another program at the time of completion, so it answers at once and
+// works if the program is not in the path. Names of commands, flags and choices are our own and
+// contain no character that bash would read as something else; file names of the user go through a
+// function that keeps blanks.
+
 #include "command/completion.h"
 
 #include <sstream>
@@ -27,6 +34,8 @@ void write_values(std::ostream& out, const CommandEntry& command)
         if (option.flag.empty() || option.kind == OptionKind::flag)
             continue;
         std::string pattern;
+        // The pattern has the command in front, since the same flag may take other values in
+        // another command. A shorthand takes no value.
         for (const std::string& flag : flags_of(option))
             if (flag != option.shorthand)
                 pattern += (pattern.empty() ? "" : "|") + command.name + ":" + flag;
@@ -39,6 +48,8 @@ void write_values(std::ostream& out, const CommandEntry& command)
         } else if (option.kind == OptionKind::text) {
             out << "_vdb_shell_files \"$word\"";
         } else {
+            // For numbers an empty list is better than file names, which bash would offer
+            // otherwise.
             out << "COMPREPLY=()";
         }
         out << "\n        return ;;\n";
@@ -66,6 +77,9 @@ std::string names_of(const std::vector<CommandEntry>& commands, const char* betw
 
 } // namespace
 
+/// The word before the cursor decides first: behind a flag with a value only its values make sense.
+/// Else a word that begins with a dash is completed to flags, the first plain word to a command and
+/// all others to files.
 std::string bash_completion(const std::vector<CommandEntry>& commands)
 {
     std::ostringstream out;

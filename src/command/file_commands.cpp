@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The commands that work on the file of a shell: `info` prints what it holds, `convert` writes
+// other formats, `check` holds it against itself. All of them read the shell whole and through its
+// checksum, so each refuses a file whose arrays are damaged. Houdini's geometry holds the shell but
+// not the grids, which are null then.
+
 #include "command/file_commands.h"
 
 #include "vdb_shell/certify/overlaps.h"
@@ -58,6 +64,7 @@ BoundOptions add_convert_command(CLI::App& app, FileArguments& arguments)
 {
     add_file(app, arguments);
     OptionSections sections = describe(arguments.outputs);
+    // `build` may run for its figures alone; a conversion without output would do nothing.
     find_by_flag(sections.front().options, "--output")->required = true;
     return bind(app, std::move(sections));
 }
@@ -94,7 +101,8 @@ int run_convert(const FileArguments& arguments)
 {
     require_possible(arguments.outputs, {arguments.file});
     const ShellFile file = read_shell(arguments.file);
-    // Not the file's word: what the tets themselves show.
+    // The flags of certified tets are not taken from the file's report: they are what the tets
+    // themselves show, by the exact test of overlaps.
     std::vector<std::uint8_t> certified;
     if (wants_flags(arguments.outputs))
         certified = find_overlaps(file.tets).certified;
@@ -109,6 +117,8 @@ int run_check(const FileArguments& arguments)
     for (const Verification& entry : verify_shell(read_shell(arguments.file), &interrupter)) {
         std::cout << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": " << entry.detail
                   << '\n';
+        // Every entry is printed even after one has failed: which of them fail together is what
+        // tells the cause.
         all_hold = all_hold && entry.holds;
     }
     std::cout << arguments.file.string()

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The command `inspect`: reads a surface as `build` would, says what stands in the way of a shell,
+// and can paint it. The status is a result: 0 when a shell can be built, check_failed when
+// something has to be mended first, so that scripts need not read the text.
+
 #include "command/inspect_command.h"
 
 #include "vdb_shell/core/error.h"
@@ -26,6 +31,7 @@ OptionSections describe(InspectArguments& a)
               .with_names({"-o"})}},
         {"read", describe(a.read)},
         {"level_set", describe(a.inspect)}};
+    // The help of so few options reads better as one group than as the groups of `build`.
     for (OptionSection& section : sections)
         for (Option& o : section.options)
             o.group = "Options";
@@ -44,6 +50,8 @@ BoundOptions add_inspect_command(CLI::App& app, InspectArguments& arguments)
 int run_inspect(const InspectArguments& arguments)
 {
     if (!arguments.picture.empty()) {
+        // The picture need not exist yet, in which case the comparison fails and says no; that is
+        // the answer wanted here.
         std::error_code ignored;
         if (std::filesystem::equivalent(arguments.picture, arguments.mesh, ignored))
             throw InvalidOption(arguments.picture.string() +
@@ -52,6 +60,8 @@ int run_inspect(const InspectArguments& arguments)
     }
     const ReadResult read = read_surface(arguments.mesh, arguments.read);
     InspectOptions options = in_unit(arguments.inspect, read.report.placement.unit);
+    // What rounding to float32 moved is known to the reader alone, and decides whether --recentre
+    // is advised.
     options.largest_rounding = read.report.largest_rounding;
     const MeshInspection inspection = inspect_mesh(read.mesh, options);
     if (!arguments.picture.empty())

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The command `options`: the descriptions of all options as a table for people, as JSON for
+// programs (the node in Houdini, for instance), or as completion for a shell. Everything is made of
+// the same descriptions that the parser uses, so it cannot fall behind. It runs before any value is
+// set, as only the command that was given is applied; so the values of the fields are the defaults.
+
 #include "command/options_command.h"
 
 #include "command/completion.h"
@@ -17,6 +23,8 @@ namespace
 nlohmann::ordered_json schema_of(const std::vector<CommandEntry>& commands)
 {
     nlohmann::ordered_json json;
+    // Raised when keys of this document change their meaning, so that a program can refuse what it
+    // does not know.
     json["schema"] = 1;
     json["version"] = VDB_SHELL_VERSION;
     for (const CommandEntry& command : commands) {
@@ -29,7 +37,8 @@ nlohmann::ordered_json schema_of(const std::vector<CommandEntry>& commands)
     return json;
 }
 
-/// What may stand behind the flag.
+/// What may stand behind the flag. The words are those that a message for a wrong value uses,
+/// without its opening.
 std::string values_of(const Option& option)
 {
     if (option.kind == OptionKind::flag)
@@ -67,6 +76,8 @@ void print_table(const OptionSections& sections)
         if (section.asked)
             print_row(section, *section.asked);
         for (const Option& option : section.options)
+            // The table is of what can stand in a file; options without a key are files and
+            // switches of the command line alone.
             if (!option.key.empty())
                 print_row(section, option);
     }
@@ -98,6 +109,7 @@ int run_options(const OptionsArguments& arguments, const std::vector<CommandEntr
         std::cout << bash_completion(commands);
     else
         for (const CommandEntry& command : commands)
+            // `build` has all options that the other commands share with it.
             if (command.name == "build")
                 print_table(command.bound->sections);
     return success;

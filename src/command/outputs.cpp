@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// From names of files to writers: the extension alone decides the format. All outputs are held
+// against what is known before any work begins, so a run of minutes does not end in a misspelt
+// extension. Each file is written whole or not at all by its own writer; if a later one fails,
+// those before it stay. A new extension also has to be named in the two lists that people read, the
+// help of -o and the message for unknown ones.
+
 #include "command/outputs.h"
 
 #include "vdb_shell/core/error.h"
@@ -28,6 +35,7 @@ Kind kind_of(const fs::path& path)
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".vdb")
         return Kind::vdb;
+    // By the whole name, as `.bgeo.sc` is two extensions to std::filesystem.
     if (houdini::has_geometry_extension(path))
         return Kind::houdini;
     if (extension == ".png")
@@ -43,7 +51,8 @@ Kind kind_of(const fs::path& path)
     return Kind::unknown;
 }
 
-/// The file whose grids a stage shows.
+/// The .vdb to which a USD stage refers. The first one is taken, since all of them hold the same
+/// grids.
 fs::path first_vdb(const Outputs& outputs)
 {
     for (const fs::path& path : outputs.paths)
@@ -52,7 +61,8 @@ fs::path first_vdb(const Outputs& outputs)
     return {};
 }
 
-/// The end of the shell that is not the input.
+/// The surface that was grown: the inner one, or the outermost if the whole shell lies outside of
+/// the input.
 TriangleMesh grown_surface(const ShellStack& stack)
 {
     const bool outward = stack.skin == stack.layers.size();
@@ -85,9 +95,13 @@ void require_possible(const Outputs& outputs, const std::vector<fs::path>& input
                                 path->extension().string() +
                                 "\"; known are .vdb .geo .bgeo .bgeo.sc .usda .vtu .node .ele "
                                 ".mesh .msh .obj .ply .off .stl .png");
+        // Only equal texts are found here: two ways to write one path pass, and then the later
+        // output replaces the earlier one.
         if (std::find(outputs.paths.begin(), path, *path) != path)
             throw InvalidOption(path->string() + ": given twice as an output");
         for (const fs::path& input : inputs) {
+            // An output that does not exist yet cannot be the input; the comparison then fails,
+            // which counts as no.
             std::error_code ignored;
             if (fs::equivalent(*path, input, ignored))
                 throw InvalidOption(path->string() + ": is the input; it is not overwritten");
@@ -125,6 +139,8 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
         case Kind::surface:
             write_mesh(path, grown_surface(file.stack), file.placement);
             break;
+        // The picture shows the outermost and the innermost surface; surfaces between layers show
+        // by the edges of the tets.
         case Kind::picture:
             write_cross_section(path, hull_of(file.stack), file.tets, outputs.picture);
             break;

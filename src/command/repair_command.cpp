@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The command `repair`: reads a surface, mends it, writes it in the coordinates of the input, and
+// prints every change. The mended surface is written even if something is left that no repair can
+// mend: the status says so (check_failed), and what was mended may be of use to another program.
+// The input is never overwritten, because a repair may remove things that somebody wanted.
+
 #include "command/repair_command.h"
 
 #include "vdb_shell/core/error.h"
@@ -51,6 +57,7 @@ int run_repair(const RepairArguments& arguments)
     std::error_code ignored;
     if (std::filesystem::equivalent(arguments.output, arguments.mesh, ignored))
         throw InvalidOption(arguments.output.string() + ": is the input; it is not overwritten");
+    // Before reading: a repair may take long, and its result must have a place to go.
     require_writable(arguments.output);
     SignalInterrupter interrupter(false);
     const ReadResult read = read_surface(arguments.mesh, arguments.read);
@@ -58,11 +65,15 @@ int run_repair(const RepairArguments& arguments)
     const Placement& placement = read.report.placement;
     const RepairResult result =
         repair_mesh(read.mesh, in_unit(arguments.repair, placement.unit), &interrupter);
+    // The placement is undone here, so the output lies where the input lay, also with --recentre
+    // and --rescale.
     write_mesh(arguments.output, result.mesh, placement);
     const std::string name = arguments.mesh.filename().string();
     std::cout << (arguments.json ? repair_json(result.report) + '\n'
                                  : name + ":\n" + repair_text(result.report));
     try {
+        // The test that `build` makes of its input, so success here means that a shell can be
+        // tried.
         require_usable(result.report.after, {}, name);
     } catch (const GeometryError& left) {
         std::cerr << "vdb_shell: after the repair, " << left.what() << '\n';

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// What several commands share about reading a surface: any format by its extension, grids put into
+// the frame of the mesh, and a warning about lost digits. Houdini's formats are read by
+// houdini_compat, of which the library knows nothing, so the choice has to be made here.
+
 #include "command/surface_input.h"
 
 #include "vdb_shell/houdini/polygon_mesh.h"
@@ -21,13 +26,17 @@ openvdb::FloatGrid::Ptr in_place(const openvdb::FloatGrid::Ptr& grid, const Plac
 {
     if (!grid || !placement.moves())
         return grid;
+    // A deep copy, because values change and the caller's grid must not.
     auto moved = grid->deepCopy();
+    // file = origin + unit * mesh, so the way back is first the shift and then the scale. The unit
+    // is a power of two: dividing lengths by it rounds nothing, short of underflow.
     moved->transform().postTranslate(-placement.origin);
     moved->transform().postScale(1.0 / placement.unit);
     const auto divided = [&](const auto& value) {
         value.setValue(static_cast<float>(double(*value) / placement.unit));
     };
     openvdb::tools::foreach (moved->beginValueAll(), divided);
+    // The background too: it is the length wherever nothing was painted.
     openvdb::tools::changeBackground(
         moved->tree(), static_cast<float>(double(moved->background()) / placement.unit));
     return moved;
@@ -38,6 +47,9 @@ void warn_of_lost_digits(const std::filesystem::path& path, const ReadResult& re
     const Bounds bounds = bounds_of(read.mesh.points);
     const openvdb::Vec3d size = bounds.high - bounds.low;
     const double longest = std::max({size[0], size[1], size[2]});
+    // Rounding moves a coordinate by half a step of float32 at most. So above this share the object
+    // has fewer than 2^17 steps along its longest side, of the 2^23 or more that it would have at
+    // the origin.
     constexpr double kShare = 1.0 / (1 << 18);
     if (read.report.largest_rounding > kShare * longest)
         std::cerr << "vdb_shell: warning: " << path.string() << ": rounding to float32 moved "

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes tets, gives a float grid of depth over the voxels whose centres lie in one. It goes by
+// columns: each tet is listed in the columns of leaves (8 by 8 lines along z) that it may meet, the
+// list is sorted by column and tet, and each column is filled by one thread. Where tets overlap the
+// smallest index decides, so the grid has the same bits for any number of threads. Everything is in
+// double and in index space; the grid shows a shell and proves nothing about it. Leaves are filled
+// directly, because OpenVDB's accessors would look up the leaf for each voxel.
+
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/vdb_file.h"
 
@@ -27,8 +35,12 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr int kLeafBits = 3;
 static_assert(kLeafSize == 1 << kLeafBits);
-/// Barycentric slack: a centre on a face must not fall between its two tets by rounding.
+/// Added to the barycentric coordinates, which have no unit. Without it a voxel centre on a face
+/// could fall between the two tets of that face by rounding, and leave a hole in the grid. It is
+/// far above the rounding error of doubles and far below what shows in a voxel.
 constexpr double kSlack = 1e-9;
+/// Voxel coordinates below 2^30 leave room in 32 bits for the box of a tet, for rounding to leaves,
+/// and for the one voxel that depth_lines.cpp goes beyond the box.
 constexpr double kLargestCoordinate = double(1 << 30);
 
 /// An affine function of index space, value at the tet's first corner and slope.
@@ -46,6 +58,8 @@ struct IndexTet {
     bool flat = false;
 };
 
+/// Barycentric coordinates come from the cross products over the determinant (Cramer's rule). An
+/// inverted tet needs no case of its own: numerator and denominator change their signs together.
 IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double layers)
 {
     IndexTet tet;
@@ -63,6 +77,8 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     tet.origin = corner[0];
     const Vec3d b = corner[1] - corner[0], c = corner[2] - corner[0], d = corner[3] - corner[0];
     const double det = b.dot(c.cross(d));
+    // Flat tets have no interior, so they are left out. So are those whose determinant is so small
+    // that the slopes overflow.
     tet.flat = det == 0.0;
     if (tet.flat)
         return tet;
@@ -73,6 +89,8 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     for (std::size_t i = 0; i < 4; ++i) {
         if (i > 0)
             tet.barycentric[i] = {0.0, slopes[i - 1]};
+        // Depth is linear in the tet, so it is the mean of the corners' depths weighted by their
+        // barycentric coordinates.
         const double layer = mesh.layer[mesh.tets[t][int(i)]] / layers;
         tet.depth.value += layer * tet.barycentric[i].value;
         tet.depth.slope += layer * tet.barycentric[i].slope;
@@ -80,6 +98,9 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     return tet;
 }
 
+/// Each face bounds z from below or from above, by the sign of its coordinate's slope along z; a
+/// face that is parallel to z bounds x and y only. Dividing by the slope here saves a division for
+/// each line.
 TetLines lines_through(const IndexTet& tet)
 {
     TetLines lines;
@@ -122,6 +143,8 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     const int x_begin = std::max(tet.low.x(), leaf_x);
     if (x_begin > x_end)
         return;
+    // The lines begin at the leaf's own y, so the groups of eight are the same for all tets of a
+    // column. Those outside of the tet's box are computed as well and left out below.
     std::array<LineEnds, std::size_t(kLeafSize)> ends_over;
     find_line_ends(lines_through(tet), x_begin, std::size_t(x_end - x_begin + 1), leaf_y,
                    ends_over.data());
@@ -139,14 +162,17 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     }
 }
 
-/// Overwrites what is there: to be called with the tets in descending order, so that the smallest
-/// index stays.
+/// Overwrites what is there, so it has to be called with the tets in descending order: then the
+/// smallest index stays. Going up and testing whether a voxel is set would read the mask of each
+/// row first.
 void fill_lines(LeafColumn& column, const IndexTet& tet, const TetInColumn& part,
                 std::vector<DepthRow>& rows)
 {
     rows.clear();
     for (std::size_t i = 0; i < part.count; ++i) {
         const TetInColumn::Line& line = part.lines[i];
+        // Clearing the low bits rounds down for negative coordinates too, which a division would
+        // not do. Line and leaf agree because OpenVDB's leaves begin at multiples of eight.
         for (int z = line.first & ~(kLeafSize - 1); z <= line.last; z += kLeafSize) {
             std::unique_ptr<Leaf>& leaf = column.leaf[std::size_t(z - column.low_z) / kLeafSize];
             if (!leaf)
@@ -155,6 +181,8 @@ void fill_lines(LeafColumn& column, const IndexTet& tet, const TetInColumn& part
                       end = std::min(line.last - z + 1, kLeafSize);
             rows.push_back({leaf->buffer().data() + std::ptrdiff_t(line.row) * kLeafSize,
                             line.depth, z, begin, end});
+            // In OpenVDB's leaves z runs fastest. So the voxels of one line are eight values in a
+            // row, and their mask is one byte of it.
             auto& bits = leaf->getValueMask().getWord<std::uint8_t>(openvdb::Index(line.row));
             bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
         }
@@ -173,8 +201,9 @@ struct Job {
     }
 };
 
-/// Whether a line of the column of leaves may meet the tet: each half-space is asked for the
-/// heights that it leaves the column, at its best place.
+/// Whether a line of the column of leaves may meet the tet. Each half-space bounds the heights from
+/// one side, and it is taken at the place of the column where it allows most. So the answer errs
+/// towards yes, which costs time only; a wrong no would leave a hole.
 bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
 {
     // Far above the rounding error of heights and weights.
@@ -190,6 +219,8 @@ bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
         const double slack =
             2 * kSlack +
             kRounding * size * (std::abs(slope[0]) + std::abs(slope[1]) + std::abs(slope[2]));
+        // A linear function has its maximum over a rectangle in a corner, and the signs of its
+        // slopes say in which.
         const double best = weight.value + slope[0] * (slope[0] > 0.0 ? x_high : x_low) +
                             slope[1] * (slope[1] > 0.0 ? y_high : y_low) + slack;
         if (slope[2] > 0.0)
@@ -207,6 +238,7 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
     if (tet.flat || tet.low.x() > tet.high.x() || tet.low.y() > tet.high.y() ||
         tet.low.z() > tet.high.z())
         return;
+    // The shift rounds towards minus infinity, as leaf coordinates need.
     for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
         for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
             if (may_meet(tet, x * kLeafSize, y * kLeafSize))
@@ -215,7 +247,8 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<Job>& jobs)
 
 constexpr std::size_t kTetsInPart = 256;
 
-/// Tets in parts of so many, and what there is to do for those of each.
+/// Tets in parts of a fixed size, and the jobs of each part. The size does not depend on the number
+/// of threads, so the jobs come in the same order whichever thread does which part.
 struct Parts {
     std::vector<std::vector<IndexTet>> tets;
     std::vector<std::vector<Job>> jobs;
@@ -263,6 +296,7 @@ LeafColumn fill_column(const Parts& parts, const Job* first, const Job* last)
         high = std::max(high, parts.tet_of(*job).high.z());
     }
     LeafColumn column{first->x * kLeafSize, first->y * kLeafSize, low & ~(kLeafSize - 1), {}};
+    // Leaves are made when the first voxel needs them, so gaps in a column cost one pointer each.
     column.leaf.resize(std::size_t(high - column.low_z) / kLeafSize + 1);
     std::vector<DepthRow> rows;
     while (last-- != first) {
@@ -305,6 +339,8 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     const StageProgress progress(interrupter, "Shell depth");
     auto grid = empty_depth_grid(voxel_size);
     const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
+    // Prism layers count from 0, so the number of layers is one more than the largest; a mesh
+    // without tets gets 1, which keeps the division defined.
     const double layers = deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
     const Parts parts = make_parts(tets, voxel_size, layers);
     const auto jobs = bucket_sort_by_column<Job>(
@@ -317,6 +353,8 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     const std::size_t columns = starts.size() - 1;
     std::vector<LeafColumn> filled(columns);
 
+    // Columns are moved into the tree after each fifth of them, which bounds what exists beside the
+    // tree, and lets the user stop in between.
     constexpr std::size_t kBatches = 5;
     for (std::size_t batch = 0; batch < kBatches; ++batch) {
         progress.stop_if_interrupted(int(100 * batch / kBatches));
@@ -330,6 +368,8 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
                                              jobs.data() + starts[column + 1]);
             },
             1);
+        // One thread adds the leaves: changing the upper nodes of a tree is not safe for several,
+        // and the order of the columns makes the tree the same each time.
         for (std::size_t column = begin; column < end; ++column) {
             for (std::unique_ptr<Leaf>& leaf : filled[column].leaf)
                 if (leaf)

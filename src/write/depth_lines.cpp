@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The two inner loops of depth_grid.cpp, for eight lines or eight voxels at a time: where lines
+// along z enter and leave a tet, and the depths of a leaf's row. The file is compiled once for each
+// instruction set that Highway knows, and the best one is chosen when the program runs. The groups
+// have four doubles and eight floats on all of them, so the lines are always taken in the same
+// groups. A trap: the includes above HWY_BEFORE_NAMESPACE are seen once, all that follows several
+// times.
+
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -24,13 +32,17 @@ alignas(kLanesAlignment) constexpr float kUpToSeven[kLanes] = {0, 1, 2, 3, 4, 5,
 HWY_INLINE void find_ends(const TetLines& tet, double dx, Doubles dy, std::int32_t* first,
                           std::int32_t* last)
 {
-    // Bounds outside of the tet's box stay next to it, where they are integers that exist.
+    // Bounds may be huge where a side of the tet is nearly parallel to z, and converting those to
+    // integers would be undefined. They are cut off one voxel outside of the tet's box, which is
+    // far enough to leave the line empty and near enough to be an integer.
     const Doubles least(tet.low_z - 1.0), most(tet.high_z + 1.0);
     Doubles low = least + 1.0, high = most - 1.0;
     for (std::size_t i = 0; i < tet.floors; ++i)
         raise_to(low, tet.floor[i].at + tet.floor[i].by_x * dx + tet.floor[i].by_y * dy);
     for (std::size_t i = 0; i < tet.ceilings; ++i)
         lower_to(high, tet.ceiling[i].at + tet.ceiling[i].by_x * dx + tet.ceiling[i].by_y * dy);
+    // A side that is parallel to z bounds no interval: it takes the line as a whole or not at all.
+    // Putting the upper bound below the box empties the line without a branch.
     for (std::size_t i = 0; i < tet.sides; ++i) {
         const Doubles weight =
             tet.side[i].at + tet.side[i].by_x * dx + tet.slack + tet.side[i].by_y * dy;
@@ -51,6 +63,8 @@ void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEn
     }
 }
 
+/// The sum is made in double and rounded to float once, after the clamp. The clamp is needed
+/// because voxels may lie outside of the tet by the slack, where the linear function leaves [0, 1].
 HWY_INLINE Group<float, kDoubleLanes> depth_from(const DepthRow& row, const DepthAlongZ& depth,
                                                  double from)
 {
@@ -66,7 +80,9 @@ void fill_depth_rows(const DepthRow* rows, std::size_t count, const DepthAlongZ&
         const Floats depths(depth_from(*row, depth, 0.0), depth_from(*row, depth, 4.0));
         const auto inside =
             (place >= static_cast<float>(row->begin)) & (place < static_cast<float>(row->end));
-        // All eight at a time are faster than a loop of few.
+        // All eight are computed and those outside are put back as they were: for so few voxels
+        // that is faster than a loop over those inside. The row belongs to one leaf, which one
+        // thread fills, so putting back races with nobody.
         store(select(inside, depths, Floats::load(row->value)), row->value);
     }
 }

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes tets or triangles and a plane across an axis; gives the sections, in double. The idea that
+// avoids all special cases: a point on the plane counts as above it, as if the plane were moved by
+// less than any number. Then a tet is cut in three edges, in four, or not at all, and a triangle in
+// two or in none. Points of a section depend on the edge alone, so sections of neighbours share
+// their corners bit for bit; the drawing relies on that.
+
 #include "write/plane_cut.h"
 
 #include "mesh/topology.h"
@@ -14,7 +21,10 @@ namespace
 using openvdb::Vec2d;
 using openvdb::Vec3s;
 
-/// Where the edge between two points meets the plane, the same whichever end comes first.
+/// Where the edge between two points meets the plane, the same whichever end comes first. The ends
+/// are ordered by index, as rounding would differ if two tets went along the edge in opposite
+/// directions. The denominator is not 0: the edge has one end on each side of the plane, so the
+/// coordinates are different floats, and their difference in double is not 0 either.
 Vec2d crossing(const std::vector<Vec3s>& points, std::uint32_t a, std::uint32_t b,
                const CutPlane& plane)
 {
@@ -47,6 +57,8 @@ CutPolygon cut_tet(const TetMesh& mesh, std::size_t t, const CutPlane& plane)
     const auto meet = [&](std::uint32_t a, std::uint32_t b) {
         return crossing(mesh.points, a, b, plane);
     };
+    // Two against two: consecutive corners of this list lie on a common face of the tet, so they go
+    // round the section once and the polygon does not cross itself.
     if (aboves == 2) {
         polygon.corners = 4;
         polygon.corner = {meet(below[0], above[0]), meet(below[0], above[1]),
@@ -68,6 +80,8 @@ CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds)
 {
     CutPlane plane;
     plane.normal = int(options.axis);
+    // The section across x shows y and z, across y it shows x and z, across z it shows x and y; the
+    // first of each pair points to the right.
     plane.right = plane.normal == 0 ? 1 : 0;
     plane.up = plane.normal == 2 ? 1 : 2;
     const double low = bounds.low[plane.normal], high = bounds.high[plane.normal];
@@ -77,6 +91,10 @@ CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds)
 
 std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangles)
 {
+    // Uses of the same edge stand beside each other after sorting. A triangle of a manifold surface
+    // has three neighbours, so six tints always leave one free; more than that are there only to
+    // make the picture less regular. Tints follow from the order of the triangles and from nothing
+    // random.
     std::vector<std::vector<std::uint32_t>> neighbours(triangles.size());
     const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
     for (std::size_t i = 0; i + 1 < uses.size(); ++i)
@@ -89,14 +107,18 @@ std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangl
         unsigned taken = 0;
         for (const std::uint32_t neighbour : neighbours[p])
             taken |= 1u << tints[neighbour];
-        // A hash picks where to start, or two tints would do most of the surface.
+        // A hash picks where to start, or two tints would cover most of the surface. It is
+        // Fibonacci hashing (Knuth, The Art of Computer Programming, volume 3, "Hashing"): the
+        // factor is 2^32 over the golden ratio.
         const std::uint32_t start = (p * 2654435769u) >> 16;
         for (std::uint32_t step = 0; step < kTintCount && tints[p] == kTintCount; ++step) {
             const auto tint = std::uint8_t((start + step) % kTintCount);
             if ((taken & (1u << tint)) == 0)
                 tints[p] = tint;
         }
-        // More neighbours than tints: only around an edge of many triangles.
+        // No tint is left where a triangle has six neighbours or more, which happens only around
+        // edges of more than two triangles. Then two neighbours may look the same, and nothing
+        // worse happens.
         tints[p] = std::min<std::uint8_t>(tints[p], kTintCount - 1);
     }
     return tints;
@@ -127,12 +149,16 @@ std::vector<CutSegment> cut_surface(const std::vector<Vec3s>& points,
         int ends = 0;
         for (int side = 0; side < 3; ++side) {
             const std::uint32_t a = t[side], b = t[(side + 1) % 3];
+            // The direction follows from the triangle's own orientation, counter-clockwise seen
+            // from outside: the segment begins where its side rises through the plane.
             const bool rises = is_above(points[b], plane);
             if (is_above(points[a], plane) == rises)
                 continue;
             (rises ? segment.from : segment.to) = crossing(points, a, b, plane);
             ++ends;
         }
+        // A triangle with all corners on one side; an odd number of ends cannot occur, because
+        // going round a triangle changes sides an even number of times.
         if (ends != 2)
             continue;
         if (mirrored)

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a consistent stack and its tets; gives three OpenVDB point grids from which the shell can
+// be read back bit for bit. Two traps shape it. OpenVDB decides the order of points inside a grid,
+// so every point carries its `id`. And it stores the position P relative to the voxel, in float32,
+// which need not give the same float again, so the exact position stands in the attribute `rest`.
+// What an attribute means is in docs/file_format.md.
+
 #include "write/point_grids.h"
 
 #include "core/parallel.h"
@@ -33,10 +40,13 @@ openvdb::math::Transform::Ptr transform_for(const std::vector<Vec3s>& positions)
         return transform;
     const Bounds bounds = bounds_of(positions);
     const Vec3d e = bounds.high - bounds.low;
+    // The points lie on surfaces, not in a volume. So the voxel is chosen for a number of points
+    // per area, with the box's own surface in place of the shell's.
     const double area = 2.0 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]);
     const double longest = std::max({e[0], e[1], e[2]});
     const double from_area = std::sqrt(kPointsPerVoxel * area / double(positions.size()));
-    // A box without area is a line or a point.
+    // A box without area is that of a line or of a point, where the estimate above gives 0; the
+    // points are then counted along the longest side.
     const double voxel = std::max(from_area, longest / double(positions.size()));
     // OpenVDB refuses maps whose determinant is next to zero.
     constexpr double kSmallestVoxel = 1e-4;
@@ -61,11 +71,15 @@ public:
         grid_->setName(name);
     }
 
-    /// get(point, element) is the attribute's value.
+    /// get(point, element) is the attribute's value. Leaves are filled in parallel; each writes its
+    /// own arrays and reads shared data only. Rows are visited in the order of the index grid,
+    /// because that is the order in which createPointDataGrid laid the points down.
     template <typename T, typename Get>
     void add(const std::string& name, openvdb::Index stride, const Get& get)
     {
         auto& tree = grid_->tree();
+        // A shell without tets has an empty grid, and an attribute cannot be appended to a tree
+        // without leaves. The reader needs none either, as it expects no rows.
         const auto first = tree.cbeginLeaf();
         if (!first)
             return;
@@ -108,6 +122,7 @@ public:
     template <typename Get>
     void add_group(const std::string& name, std::size_t count, const Get& get)
     {
+        // Shorts, because that is the type which OpenVDB's setGroup takes.
         std::vector<short> member(count);
         for (std::size_t i = 0; i < count; ++i)
             member[i] = get(i) ? 1 : 0;
@@ -123,6 +138,7 @@ private:
     PointDataGrid::Ptr grid_;
 };
 
+/// Where a prism or a tet is drawn. Nothing is read back from it, so its rounding does not matter.
 template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
 {
     Vec3d sum(0.0);
@@ -131,6 +147,8 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
     return Vec3s(sum / double(count));
 }
 
+/// Layers on one side of the skin share their reasons (require_consistent checks that), so the last
+/// layer speaks for all below the skin and the first for all above.
 void add_stop_reasons(Builder& builder, const ShellStack& stack, const ShellPoints& points)
 {
     const auto add = [&](const char* name, const PrismShell& layer) {
@@ -228,6 +246,8 @@ const Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size
     return stack.surface(last ? surface - 1 : surface + 1)[vertex];
 }
 
+/// The sum over the layers and not the distance of the two ends: on both sides of the skin the
+/// pillar may have a bend.
 float thickness_of(const ShellStack& stack, std::size_t vertex)
 {
     double sum = 0.0;
@@ -242,6 +262,8 @@ bool pinned_throughout(const ShellStack& stack, std::size_t vertex)
                        [&](const PrismShell& layer) { return layer.pinned(vertex); });
 }
 
+/// The cross product is twice the area times the normal, so large triangles weigh more. The sum
+/// goes over the triangles in their order, in one thread, so it is rounded the same way each time.
 std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
                                  const std::vector<Vec3I>& triangles)
 {
@@ -266,6 +288,8 @@ ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
     points.id.assign(stack.surfaces(), std::vector<std::uint32_t>(vertices));
     for (std::size_t k = 0; k < stack.surfaces(); ++k)
         for (std::uint32_t v = 0; v < vertices; ++v) {
+            // A pinned pillar has both ends at one place and gets one point. Two points at the same
+            // place would part the tets there.
             if (k > 0 && stack.layers[k - 1].pinned(v)) {
                 points.id[k][v] = points.id[k - 1][v];
                 continue;

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Two guards of every format that holds a whole shell. require_consistent throws unless stack and
+// tets fit together as make_tets leaves them; the writers call it, so that no file is made which
+// the reader would refuse, and the readers call it on what a file gave. checksum_of is a number for
+// all arrays of the shell: 64-bit FNV-1a (Fowler, Noll and Vo), which finds damage and mix-ups but
+// stops nobody who forges a file. Both compare bits and not values, as -0 and 0 are different
+// floats in a file.
+
 #include "vdb_shell/core/error.h"
 
 #include "write/point_grids.h"
@@ -41,6 +49,7 @@ void require_finite(const std::vector<Vec3s>& points, const char* what)
                 what, i);
 }
 
+/// Three values below 3 that set three different bits are each there once.
 bool is_permutation(const std::array<std::uint8_t, 3>& order)
 {
     unsigned seen = 0;
@@ -69,6 +78,8 @@ void require_sizes(const ShellStack& stack, const TetMesh& tets)
     require_size(tets.layer.size(), tets.points.size(), "layer");
     require_size(tets.prism.size(), tets.tets.size(), "tets.prism");
     require_size(tets.prism_layer.size(), tets.tets.size(), "tets.prism_layer");
+    // The product bounds the number of points: a surface has at most one for each vertex. After
+    // this test all counts can be cast to int32.
     constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
     for (const std::size_t count :
          {stack.surfaces() * vertices, tets.tets.size(), stack.layers.size() * triangles})
@@ -87,9 +98,13 @@ void require_layers_fit(const ShellStack& stack)
         for (std::size_t v = 0; v < layer.outer.size(); ++v) {
             require(same_bits(above.inner[v], layer.outer[v]),
                     "a layer does not begin where the one above ends", v);
+            // A pinned pillar is one whose ends are equal as numbers. The files store one point for
+            // both ends, so ends that differ in the sign of a zero could not be read back.
             require(!above.pinned(v) || !layer.pinned(v) ||
                         same_bits(layer.outer[v], layer.inner[v]),
                     "a pinned pillar's ends differ in the sign of a zero", v);
+            // Above the skin the pillars grew outwards, below it inwards; only there may the reason
+            // change.
             require(k == stack.skin || above.stop[v] == layer.stop[v],
                     "a pillar has two reasons to end on one side of the skin", v);
         }
@@ -128,11 +143,15 @@ void require_layer(const PrismShell& layer, const PrismSplit& split)
         require(int(layer.stop[v]) < kStopReasonCount, "a stop reason is out of range", v);
 }
 
+/// The constants are the offset basis and the prime of the 64-bit variant. Bytes are taken as they
+/// lie in memory, so the number is the same on machines of the same byte order.
 class Fnv1a
 {
 public:
     template <typename T> void add(const std::vector<T>& values)
     {
+        // The length comes first, or moving an element from the end of one array to the start of
+        // the next would go unnoticed.
         const std::uint64_t count = values.size();
         add_bytes(&count, sizeof count);
         add_bytes(values.data(), values.size() * sizeof(T));
@@ -160,13 +179,13 @@ private:
 
 bool same_bits(const Vec3s& a, const Vec3s& b)
 {
-    // The bits are what is asked for: values that compare equal need not have the same ones.
-    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    // The bits matter here: values that compare equal need not have the same ones.
     return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
 }
 
 void require_consistent(const ShellStack& stack, const TetMesh& tets)
 {
+    // Sizes are tested first: all later tests index one array by the length of another.
     require_sizes(stack, tets);
     for (std::size_t k = 0; k < stack.layers.size(); ++k)
         require_layer(stack.layers[k], stack.splits[k]);
@@ -184,6 +203,8 @@ void require_consistent(const ShellStack& stack, const TetMesh& tets)
 std::string checksum_of(const ShellStack& stack, const TetMesh& tets)
 {
     Fnv1a hash;
+    // The order of the arrays is part of the format: another order gives another number, and all
+    // files written so far would be refused.
     for (std::size_t k = 0; k < stack.surfaces(); ++k)
         hash.add(stack.surface(k));
     hash.add(stack.triangles());

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes the three point grids of a file and the counts of its metadata; gives stack and tets, or
+// ReadError that names grid, attribute and row. The file is not trusted: every index is held
+// against its limit before it is used, memory is taken only for rows that have been counted, and
+// what the file says twice has to agree. What passes fits together as make_tets leaves it
+// (require_consistent has the last word); whether it is the shell that was written is for the
+// checksum, which the caller compares.
+
 #include "vdb_shell/core/error.h"
 
 #include "write/point_grids.h"
@@ -36,6 +44,8 @@ public:
         if (rows != count_)
             fail("holds " + std::to_string(rows) + " points, the metadata says " +
                  std::to_string(count_));
+        // As many rows as ids, each in range and none twice: so each id is there exactly once, and
+        // the arrays that are filled below have no gaps.
         std::vector<bool> seen(count_, false);
         for_each_row<std::int32_t>("id", 1, [&](std::size_t id, openvdb::Index, std::int32_t) {
             if (seen[id])
@@ -44,7 +54,8 @@ public:
         });
     }
 
-    /// set(id, element, value) for every row; ids are in range.
+    /// set(id, element, value) for every row; ids are in range. Arrays of a damaged leaf may have
+    /// different lengths, so the lengths are compared leaf by leaf before a row is read.
     template <typename T, typename Set>
     void for_each_row(const std::string& name, openvdb::Index stride, const Set& set) const
     {
@@ -64,7 +75,8 @@ public:
         }
     }
 
-    /// The value as an index below `limit`, or ReadError.
+    /// The value as an index below `limit`, or ReadError. It comes as 64 bits, which hold every
+    /// int32 of a file and, for `tet_point`, one more than that.
     std::uint32_t in_range(std::int64_t value, std::size_t limit, const char* attribute,
                            std::size_t row) const
     {
@@ -102,6 +114,8 @@ private:
     const AttributeArray& array(const Leaf& leaf, const std::string& name,
                                 openvdb::Index stride) const
     {
+        // It is looked up in each leaf: those of a damaged file need not all have the same
+        // attributes.
         const AttributeArray* found = leaf.attributeSet().getConst(name);
         if (!found)
             fail("attribute \"" + name + "\" is missing");
@@ -119,7 +133,8 @@ private:
     std::string where_;
 };
 
-/// The points by id, as the file has them.
+/// The points by id, as the file has them. The redundant ones are kept until they have been
+/// compared.
 struct Rows {
     std::vector<Vec3s> rest, opposite;
     std::vector<std::uint32_t> vertex, layer, stop;
@@ -143,6 +158,7 @@ Rows read_rows(const Reader& reader, const ShellCounts& counts)
     read("stop_reason", kStopReasonCount, rows.stop);
     if (counts.skin > 0 && counts.skin < counts.layers)
         read(kOuterStop, kStopReasonCount, rows.outer_stop);
+    // Shifted by one, so that -1 for "no tet uses it" becomes 0 and one test of range covers both.
     rows.tet_point.resize(std::size_t(counts.points));
     const auto limit = std::size_t(counts.tet_points) + 1;
     reader.for_each_row<std::int32_t>(
@@ -157,7 +173,9 @@ Rows read_rows(const Reader& reader, const ShellCounts& counts)
 using OwnRows = std::vector<std::vector<std::uint32_t>>;
 constexpr std::uint32_t kNone = ~std::uint32_t(0);
 
-/// Rows are in the order of surfaces, then of vertices.
+/// Rows are in the order of surfaces, then of vertices, and the outermost surface has all vertices.
+/// The order is demanded rather than accepted as it comes, because ids are part of the format:
+/// `prism_pts` and `tet` name them, and number_points would give others.
 OwnRows find_own_rows(const Reader& reader, const Rows& rows, const ShellCounts& counts)
 {
     const auto vertices = std::size_t(counts.vertices);
@@ -186,6 +204,8 @@ std::vector<Vec3s> surface_below(const Reader& reader, const Rows& rows,
     std::vector<Vec3s> surface = above;
     for (std::size_t v = 0; v < surface.size(); ++v) {
         if (own_above[v] != kNone)
+            // The point above says where its pillar ends; if it has no row of its own either, the
+            // pillar is pinned and the surface above already has the place.
             surface[v] = rows.opposite[own_above[v]];
         else if (own[v] != kNone)
             surface[v] = rows.rest[own[v]];
@@ -212,6 +232,8 @@ void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& cou
     const auto vertices = std::size_t(counts.vertices);
     const OwnRows own = find_own_rows(reader, rows, counts);
     stack.skin = std::size_t(counts.skin);
+    // find_own_rows has made sure that the first rows are the vertices of the outermost surface;
+    // read_point_grids that there are as many.
     std::vector<Vec3s> above(rows.rest.begin(), rows.rest.begin() + counts.vertices);
     for (std::size_t k = 0; k < std::size_t(counts.layers); ++k) {
         PrismShell layer;
@@ -262,6 +284,7 @@ std::vector<std::array<std::uint32_t, 6>> read_prisms(const Reader& reader,
     reader.indices(
         "prism_pts", 6, std::size_t(counts.points),
         [&](std::size_t id, openvdb::Index i, std::uint32_t value) { corners[id][i] = value; });
+    // Prisms are numbered layer by layer, so quotient and remainder are the layer and the triangle.
     const std::size_t faces = prisms / layers;
     stack.splits.resize(layers);
     for (PrismSplit& split : stack.splits)
@@ -269,6 +292,7 @@ std::vector<std::array<std::uint32_t, 6>> read_prisms(const Reader& reader,
     reader.indices("split_order", 3, 3, [&](std::size_t id, openvdb::Index i, std::uint32_t value) {
         stack.splits[id / faces].order[id % faces][i] = std::uint8_t(value);
     });
+    // The outermost prisms have the triangles: there ids of points are numbers of vertices.
     std::vector<Vec3I> triangles(faces);
     for (std::size_t p = 0; p < faces; ++p)
         for (int corner = 0; corner < 3; ++corner)
@@ -282,6 +306,8 @@ std::vector<std::array<std::uint32_t, 6>> read_prisms(const Reader& reader,
 void require_pillars(const Reader& reader, const ShellStack& stack,
                      const std::vector<std::array<std::uint32_t, 6>>& corners)
 {
+    // Numbered afresh by the function that the writer used, without tets, as only the points are
+    // compared.
     const ShellPoints expected = number_points(stack, {});
     const std::vector<Vec3I>& triangles = stack.triangles();
     for (std::size_t p = 0; p < corners.size(); ++p)
@@ -321,6 +347,8 @@ void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts
 void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const std::string& name,
                       ShellStack& stack, TetMesh& tets)
 {
+    // All three constructors count their rows first. Only then do the metadata's numbers decide on
+    // any allocation.
     const Reader points(*grids.points, counts.points, name);
     const Reader prisms(*grids.prisms, counts.prisms, name);
     const Reader tet_rows(*grids.tets, counts.tets, name);
@@ -338,6 +366,7 @@ void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const 
     read_tets(tet_rows, rows, counts, tets);
     try {
         require_consistent(stack, tets);
+        // To the writer an inconsistent shell is a wrong argument, here it is a damaged file.
     } catch (const InvalidOption& error) {
         throw ReadError(name + ": the point grids do not fit together: " + error.what());
     }

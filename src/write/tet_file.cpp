@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Chooses the writer of a file of tets by its extension and makes the file appear whole or not at
+// all. The formats themselves are in vtu_file.cpp and tet_text_files.cpp. TetGen's format is the
+// exception with two files, of which each is useless without the other; either extension writes
+// both. Known extensions stand in one list, which the command shows and this file tests.
+
 #include "vdb_shell/write/tet_file.h"
 
 #include "vdb_shell/core/error.h"
@@ -17,6 +23,8 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// The cast to unsigned char is needed: tolower is undefined for negative values, and names may
+/// have bytes beyond ASCII.
 std::string lower_extension(const fs::path& path)
 {
     std::string extension = path.extension().string();
@@ -33,6 +41,8 @@ void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& pl
     write_atomically(ele, [&](const fs::path& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         write_tetgen_ele(out, tets);
+        // Closed before it is tested, because the last bytes may fail only when the buffer is
+        // written out.
         out.close();
         if (!out)
             throw WriteError(ele.string() + ": cannot be written: the disk is full or the file "
@@ -63,6 +73,8 @@ const std::vector<std::string>& tet_file_extensions()
 void write_tets(const fs::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified, const Placement& placement)
 {
+    // Only .vtu has a place for the flags; the other formats drop them, but a wrong number is
+    // refused for all.
     if (!certified.empty() && certified.size() != tets.tets.size())
         throw InvalidOption(path.string() + ": " + std::to_string(certified.size()) +
                             " flags of certified tets for " + std::to_string(tets.tets.size()) +

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Tets as text: TetGen's .node and .ele, Medit's .mesh, Gmsh's .msh (format 4.1). Digits are the
+// shortest that give the same double again and independent of the locale (TextOut), so the float32
+// that were certified survive the text. Points keep their order; indices begin at 0 for TetGen and
+// at 1 for Medit and Gmsh. What stands where is in docs/file_format.md.
+
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include "vdb_shell/write/text_out.h"
@@ -17,11 +23,14 @@ void write_corners(TextOut& text, const openvdb::Vec4I& tet, std::uint32_t base)
 
 openvdb::Vec3d placed(const Placement& placement, const openvdb::Vec3s& point)
 {
-    // Adding an origin of 0 would turn -0 into 0.
+    // Adding an origin of 0 would turn -0 into 0, which are different floats and would change the
+    // bytes of a file that is read back.
     return placement.moves() ? placement.in_file(point) : openvdb::Vec3d(point);
 }
 
-/// One named scalar per node or element, tags from 1.
+/// One named scalar per node or element, tags from 1. The numbers between the name and the values
+/// are Gmsh's tags: one string, one real (the time, 0), three integers (the step, the number of
+/// components, the number of values).
 template <typename T>
 void write_gmsh_data(TextOut& text, const char* section, const char* name,
                      const std::vector<T>& values)
@@ -32,6 +41,8 @@ void write_gmsh_data(TextOut& text, const char* section, const char* name,
     text << "$End" << section << '\n';
 }
 
+/// One entity, a volume, with the box that format 4.1 asks for. Scaling by a power of two and
+/// adding in double is what placed() does to the points, so the box holds them.
 void write_gmsh_entities(TextOut& text, const TetMesh& tets, const Placement& placement)
 {
     const Bounds bounds = tets.points.empty() ? Bounds{} : bounds_of(tets.points);
@@ -80,7 +91,8 @@ void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placem
     for (const openvdb::Vec4I& tet : tets.tets) {
         for (int corner = 0; corner < 4; ++corner)
             text << tet[corner] + 1u << ' ';
-        // One region: remeshers keep the borders between references, which prisms must not become.
+        // One region for all tets: remeshers keep the borders between different references, and
+        // faces between prisms must not become such borders.
         text << "1\n";
     }
     text << "End\n";
@@ -95,6 +107,7 @@ void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placeme
     text << "$Nodes\n1 " << points << " 1 " << points << "\n3 1 0 " << points << '\n';
     for (std::size_t i = 0; i < points; ++i)
         text << i + 1 << '\n';
+    // Format 4.1 lists all tags of a block first and then all coordinates.
     for (const openvdb::Vec3s& point : tets.points)
         text << placed(placement, point) << '\n';
     constexpr int kFourNodeTet = 4;

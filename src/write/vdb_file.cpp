@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Writes a shell as .vdb (level set, depth, three grids of points, metadata) and reads it back bit
+// for bit. Reading trusts nothing: the outer structure of the file is checked before OpenVDB sees
+// it (io), the metadata and the grids by their own readers, and last the checksum of all arrays.
+// Whatever a library throws at damaged data leaves here as ReadError; what OpenVDB fails to notice
+// in the data of voxels can crash it (docs/file_format.md). A trap: floats are certified in
+// the mesh's own frame, so grids are moved by their transforms only and no coordinate is ever
+// changed.
+
 #include "vdb_shell/write/vdb_file.h"
 
 #include "vdb_shell/core/error.h"
@@ -31,7 +40,8 @@ using openvdb::GridBase;
 constexpr const char* kSurfaceGrid = "surface";
 constexpr const char* kDepthGrid = "depth";
 
-/// Beyond their range half floats become infinite, without a word.
+/// Half floats beyond 65504 become infinite without a word. All values are looked at, tiles and
+/// inactive voxels too, because those may be written as well.
 void require_half_range(const FloatGrid& grid)
 {
     constexpr double kLargestHalf = 65504.0;
@@ -44,8 +54,9 @@ void require_half_range(const FloatGrid& grid)
                             "; half floats end at 65504, write it without --half");
 }
 
-/// Moves a grid by its transform alone, which is of doubles. Precondition: voxels are cubes along
-/// the axes, as the grids of a shell that was read from a mesh are.
+/// Moves a grid by its transform alone, which has doubles, so that no voxel and no point is
+/// touched. Precondition: voxels are cubes along the axes, as the grids of a shell that was read
+/// from a mesh are.
 void put_in_place(GridBase& grid, const openvdb::Vec3d& shift)
 {
     if (shift == openvdb::Vec3d(0.0))
@@ -59,7 +70,8 @@ void put_in_place(GridBase& grid, const openvdb::Vec3d& shift)
     grid.setTransform(moved);
 }
 
-/// Shares the voxels, so that name and metadata can be set without touching the caller's grid.
+/// A copy with its own name, metadata and transform that shares the voxels with the caller's grid:
+/// it costs no memory to speak of, and the caller's grid stays as it is.
 FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, bool half,
                           const Placement& placement)
 {
@@ -79,7 +91,8 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, boo
 /// Opens a file whose outer structure has been checked.
 void open_file(openvdb::io::File& file)
 {
-    // Delayed loading would keep the file mapped, and faults late where it is damaged.
+    // Delayed loading would keep the file mapped, so that damage is found late, and in the wrong
+    // place: at the first access to a voxel, outside of guarded().
     file.open(/*delayLoad=*/false);
 }
 
@@ -114,7 +127,9 @@ PointGrids read_points_of(openvdb::io::File& file, const std::string& where)
             read_grid<PointDataGrid>(file, where, kTetsGrid)};
 }
 
-/// Runs `read`, turning what OpenVDB and the allocator throw at damaged data into ReadError.
+/// Runs `read`, turning what OpenVDB and the allocator throw at damaged data into ReadError. Errors
+/// of our own pass as they are, since they already name the place. bad_alloc is caught too: a
+/// damaged length may ask for more memory than there is.
 template <typename Read> auto guarded(const fs::path& path, const Read& read)
 {
     openvdb::initialize();
@@ -131,6 +146,7 @@ template <typename Read> auto guarded(const fs::path& path, const Read& read)
 /// The point grids of another file must be those of this shell.
 void require_same_shell(const ShellInfo& main, const fs::path& points)
 {
+    // Names prove nothing: a file of the same name may be left from an earlier run.
     const ShellInfo beside = read_shell_info(points);
     if (beside.checksum != main.checksum)
         throw ReadError(points.string() + ": its points are those of another shell: checksum " +
@@ -175,6 +191,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     const bool beside = options.points == PointPlacement::beside;
     openvdb::MetaMap metadata;
     PointGrids made;
+    // Checksum and grids each go over all arrays of the shell, and neither needs the other.
     run_together([&] { metadata = shell_metadata(path, file, options.points); },
                  [&] { made = make_point_grids(file.stack, file.tets); });
     openvdb::GridPtrVec volumes{
@@ -185,6 +202,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
                                std::move(made.tets)};
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
+    // The grids of points were made for this call, so they may be changed in place.
     for (const GridBase::Ptr& grid : points)
         put_in_place(*grid, file.placement.shift());
     for (const GridBase::Ptr& grid : points)
@@ -214,6 +232,8 @@ ShellInfo read_shell_info(const fs::path& path)
 ShellFile read_shell_vdb(const fs::path& path)
 {
     return guarded(path, [&] {
+        // The metadata come first, through a file object of their own: they are small, and most
+        // files that are no shell are refused by them before a grid is loaded.
         const ShellInfo info = read_shell_info(path);
         openvdb::io::File file(path.string());
         open_file(file);
@@ -221,15 +241,20 @@ ShellFile read_shell_vdb(const fs::path& path)
         result.surface = read_grid<FloatGrid>(file, path.string(), kSurfaceGrid);
         result.depth = read_grid<FloatGrid>(file, path.string(), kDepthGrid);
         result.placement = info.placement;
+        // In memory all is in the mesh's frame, which the pillars are in. Moving back undoes the
+        // writer's step on the transform alone.
         put_in_place(*result.surface, -info.placement.shift());
         put_in_place(*result.depth, -info.placement.shift());
         const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
                                  info.tets,     info.layers, info.skin};
         read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
                          result.stack, result.tets);
+        // The file has the sum over all layers; it is put into the first layer.
         result.stack.splits.front().ripples = std::size_t(info.ripples);
         result.parameters_json = info.parameters_json;
         result.report_json = info.report_json;
+        // It comes last, because only whole arrays have a checksum. Damage that kept every index in
+        // range is found here.
         const std::string found = checksum_of(result.stack, result.tets);
         if (found != info.checksum)
             throw ReadError(path.string() + ": the shell's arrays have checksum " + found +

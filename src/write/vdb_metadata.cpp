@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// The metadata of a shell's .vdb: written from the shell, read back with every entry held against
+// its type and range. The counts let the reader bound its memory before it looks at a grid, and the
+// checksum ties the point grids to their file. A file of one layer below the surface says nothing
+// of layers: it is of schema 1, which older readers take. The table of entries is in
+// docs/file_format.md. The copies on single grids are for Houdini, which makes attributes of a
+// grid's metadata; they are never read here.
+
 #include "write/vdb_metadata.h"
 
 #include "vdb_shell/core/error.h"
@@ -51,7 +59,8 @@ constexpr const char* kGridNames = "surface depth shell_points shell_prisms shel
     throw ReadError(path.string() + ": " + what);
 }
 
-/// An entry by its exact type.
+/// An entry by its exact type. OpenVDB's own accessor would throw as well, but its message names
+/// neither the file nor what was expected.
 template <typename T>
 const T& entry(const openvdb::MetaMap& metadata, const fs::path& path, const char* key)
 {
@@ -67,6 +76,7 @@ const T& entry(const openvdb::MetaMap& metadata, const fs::path& path, const cha
 
 std::int64_t count_entry(const openvdb::MetaMap& metadata, const fs::path& path, const char* key)
 {
+    // The ids of points, prisms and tets are int32, so no count needs more.
     const std::int32_t count = entry<std::int32_t>(metadata, path, key);
     if (count < 0)
         fail(path, std::string("metadata \"") + key + "\" is " + std::to_string(count) +
@@ -74,6 +84,8 @@ std::int64_t count_entry(const openvdb::MetaMap& metadata, const fs::path& path,
     return count;
 }
 
+/// The schema is read before all else: a newer one may give other entries another meaning, and the
+/// message should say that rather than name some missing entry.
 int schema_of(const openvdb::MetaMap& metadata, const fs::path& path)
 {
     if (!metadata[kSchemaKey])
@@ -99,6 +111,9 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
     if (!plain)
         fail(path, std::string("metadata \"") + kPointsFileKey + "\" is \"" + stated +
                        "\", expected a file name without a folder");
+    // The file with the points carries the same metadata, so it may be the one that is opened. Else
+    // the name that fits the file's present name is tried first: both may have been renamed
+    // together. Whether the file found is the right one is for the checksum to tell.
     const bool is_points_file = path.filename() == fs::path(stated);
     if (is_points_file || fs::exists(renamed, ignored))
         return is_points_file ? path : renamed;
@@ -134,6 +149,8 @@ void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Plac
     placement.unit = entry<double>(metadata, path, kUnitKey);
     int exponent = 0;
     if (!placement.origin.isFinite() || !(placement.unit > 0) || !std::isfinite(placement.unit) ||
+        // frexp gives the fraction 0.5 for powers of two alone. Any other unit would round the
+        // coordinates once more, and the file would no longer hold the floats that were certified.
         std::frexp(placement.unit, &exponent) != 0.5)
         fail(path, std::string("metadata \"") + kOriginKey + "\" is " + placement.origin.str() +
                        " and \"" + kUnitKey + "\" is " + std::to_string(placement.unit) +
@@ -148,6 +165,7 @@ std::size_t ripples_of(const ShellStack& stack)
     return sum;
 }
 
+/// The number of ripples is a figure for people; too large a one is cut off rather than refused.
 std::int32_t as_int32(std::size_t value)
 {
     return std::int32_t(
@@ -172,6 +190,8 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     const ShellCounts counts = counts_of(file.stack, file.tets);
     map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
     map.insertMeta(kSchemaKey, Int32Metadata(layered(counts) ? kLayeredSchema : 1));
+    // The casts are safe: require_consistent has bounded these counts by int32, and it runs before
+    // this.
     map.insertMeta(kVerticesKey, Int32Metadata(std::int32_t(counts.vertices)));
     map.insertMeta(kPointsKey, Int32Metadata(std::int32_t(counts.points)));
     map.insertMeta(kTetPointsKey, Int32Metadata(std::int32_t(counts.tet_points)));

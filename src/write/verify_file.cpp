@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes a shell as a file gave it, and says of each claim of the file whether it holds. Nothing is
+// taken over from the report but the claims themselves: surface, tets, signs, certificate,
+// overlaps, volume and grids are computed afresh from the stored floats, by the exact tests that
+// certified the shell when it was built. So the certificate of a file that passes is proven anew
+// (docs/theory.md, "The whole shell"), whoever wrote the file. A figure that is missing compares as
+// unequal to every number; a file without certificate or overlaps claims nothing of them, and
+// cannot fail there.
+
 #include "vdb_shell/write/verify_file.h"
 
 #include "vdb_shell/certify/conformity.h"
@@ -23,6 +32,7 @@ namespace
 
 using nlohmann::json;
 
+/// Bytes and not values, so that zeros of either sign differ. The types have no padding.
 template <typename T> bool same_bytes(const std::vector<T>& a, const std::vector<T>& b)
 {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
@@ -56,6 +66,9 @@ const std::vector<openvdb::Vec3s>& skin_of(const ShellFile& file)
     return file.stack.surface(file.stack.skin);
 }
 
+/// The surface need not be free of self-intersections: a shell may be built on one that crosses
+/// itself (docs/theory.md, "A surface that crosses itself"). The number that the file states has to
+/// be the right one.
 Verification verify_surface(const ShellFile& file, const json& report)
 {
     const MeshCheck check = check_mesh({skin_of(file), file.stack.triangles()});
@@ -72,6 +85,8 @@ Verification verify_surface(const ShellFile& file, const json& report)
 
 Verification verify_tets(const ShellFile& file)
 {
+    // The way from prisms to tets has no freedom left once the split orders are fixed, so the tets
+    // of the file have to be the very same.
     const TetMesh expected = make_tets(file.stack);
     const bool same = same_bytes(expected.points, file.tets.points) &&
                       same_bytes(expected.tets, file.tets.tets) &&
@@ -107,6 +122,8 @@ json certificate_claim(const json& report)
     return report.is_object() ? report.value("certificate", json::object()) : json::object();
 }
 
+/// The two tests differ in strength: a shell that was certified by the tets that were chosen may
+/// fail the twelve of a prism. The one that the file names is the one that is run.
 PrismTest claimed_test(const json& claim)
 {
     const bool twelve = claim.is_object() && claim.contains("test") &&
@@ -179,6 +196,8 @@ Verification verify_level_set(const ShellFile& file, const json& report)
 
 Verification verify_depth(const ShellFile& file, Interrupter* interrupter)
 {
+    // Topology alone is compared: the values differ from fresh ones where the file was written with
+    // half floats.
     const openvdb::FloatGrid::Ptr depth =
         shell_depth_grid(file.tets, file.surface->voxelSize()[0], interrupter);
     return {"depth grid is that of the tets",
@@ -192,6 +211,8 @@ Verification verify_depth(const ShellFile& file, Interrupter* interrupter)
 
 std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter)
 {
+    // A report that is no JSON makes a discarded value, which has no claims; the findings then say
+    // so instead of an exception.
     const json report = json::parse(file.report_json, nullptr, false);
     const json claim = certificate_claim(report);
     const PrismTest test = claimed_test(claim);
@@ -202,8 +223,12 @@ std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* inter
                                     verify_signs(file, report),
                                     verify_certificate(certificate, test, claim),
                                     verify_volume(file, report)};
+    // A certified shell has no overlap (docs/theory.md, "The whole shell"), so they are looked for,
+    // tet by tet, only where the certificate leaves some to find, or where the file states a
+    // number.
     if (!certificate.certified() || report.contains(json::json_pointer("/overlaps/pairs")))
         found.push_back(verify_overlaps(file, report, interrupter));
+    // Files of Houdini geometry hold no grids, so there is nothing to compare.
     if (file.surface && file.depth) {
         found.push_back(verify_level_set(file, report));
         found.push_back(verify_depth(file, interrupter));

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Tets as VTK's XML file of an unstructured grid. The arrays are in base 64 inside of the XML: they
+// are exact, and any XML parser reads the file, which it would not with raw data appended. There is
+// no compression, so the bytes depend on no library. Coordinates are Float32 as long as no
+// placement moves them; else they are Float64, since the sum with the origin need not fit a float.
+// What the arrays hold is in docs/file_format.md.
+
 #include "vdb_shell/write/text_out.h"
 #include "write/tet_formats.h"
 
@@ -13,6 +20,8 @@ namespace
 
 constexpr std::uint8_t kVtkTetra = 10;
 
+/// The arrays are written as they lie in memory, so the header tells the byte order of this
+/// machine.
 const char* byte_order()
 {
     const std::uint16_t one = 1;
@@ -48,7 +57,8 @@ void write_array(TextOut& text, const char* type, const char* name, int componen
     const std::uint64_t size = values.size() * sizeof(T);
     text << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
          << components << "\" format=\"binary\">\n";
-    // The length is a base-64 block of its own.
+    // The length is a base-64 block of its own, padded before the data begin: VTK decodes the
+    // header before it knows how much follows.
     text << base64(reinterpret_cast<const unsigned char*>(&size), sizeof size)
          << base64(reinterpret_cast<const unsigned char*>(values.data()), std::size_t(size))
          << "\n</DataArray>\n";
@@ -57,6 +67,7 @@ void write_array(TextOut& text, const char* type, const char* name, int componen
 void write_cells(TextOut& text, const TetMesh& tets)
 {
     const std::size_t count = tets.tets.size();
+    // `offsets` has the end of each cell in the list of corners, not its start.
     std::vector<std::int64_t> corners(4 * count), ends(count);
     for (std::size_t t = 0; t < count; ++t) {
         for (std::size_t corner = 0; corner < 4; ++corner)
@@ -72,6 +83,7 @@ void write_cells(TextOut& text, const TetMesh& tets)
 
 void write_points(TextOut& text, const TetMesh& tets, const Placement& placement)
 {
+    // Vectors are written as one run of numbers, which holds only if they have no padding.
     static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
     static_assert(sizeof(openvdb::Vec3d) == 3 * sizeof(double));
     if (!placement.moves())
