@@ -232,10 +232,11 @@ template <typename T, typename... Values> constexpr std::size_t fields_of()
         return sizeof...(Values);
 }
 
-template <typename T> void expect_all_described(const char* name)
+/// All fields but `apart`, which are no options of a user's.
+template <typename T> void expect_all_described(const char* name, std::size_t apart = 0)
 {
     T options;
-    EXPECT_EQ(describe(options).size(), fields_of<T>())
+    EXPECT_EQ(describe(options).size() + apart, fields_of<T>())
         << name << " has a field that is not described";
 }
 
@@ -246,7 +247,9 @@ TEST(ShellOptions, EveryFieldIsDescribed)
     expect_all_described<CoverageOptions>("CoverageOptions");
     expect_all_described<DecimateOptions>("DecimateOptions");
     expect_all_described<DirectionOptions>("DirectionOptions");
-    expect_all_described<GrowOptions>("GrowOptions");
+    // The schedule is for those who change growth: every other number, none of which bears on
+    // validity (growth/schedule.h).
+    expect_all_described<GrowOptions>("GrowOptions", 1);
     expect_all_described<LayerOptions>("LayerOptions");
     expect_all_described<LevelSetOptions>("LevelSetOptions");
     expect_all_described<LimitOptions>("LimitOptions");
