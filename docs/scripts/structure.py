@@ -5,9 +5,9 @@
     structure.py CHECKOUT [CHECKOUT ...]
 
 Counts lines, comments, long files, long functions, constants of growth, includes against the order
-of docs/architecture.md (of the last checkout: earlier ones may not have had one), folders that
-include each other in a circle, and files that know the option --thickness. Functions are found by
-their braces at the level of a namespace: exact for sources that clang-format has laid out.
+of docs/architecture.md (of the last checkout: earlier ones may not have had one), and folders that
+include each other in a circle. Functions are found by their braces at the level of a namespace:
+exact for sources that clang-format has laid out.
 """
 import pathlib
 import re
@@ -87,8 +87,6 @@ def figures(top, order):
     pairs = list(includes(top))
     place = {name: k for k, name in enumerate(order)}
     known = [(a, b) for a, b in pairs if a in place and b in place]
-    option = re.compile(r"--thickness(?![\w-])|\bline_step\.thickness\b|LineStepOptions::thickness|\boptions\.thickness\b|\bo\.thickness\b")
-    knows = [path for _, path in sources(top) if option.search(path.read_text())]
     return {
         "lines of library and command": sum(p.read_text().count("\n") for _, p in sources(top)),
         "comment lines in sources, %": round(100 * comments / code, 1),
@@ -98,7 +96,6 @@ def figures(top, order):
         "constants in growth": sum(len(re.findall(r"^\s*(?:static |inline )*constexpr (?!.*\()", p.read_text(), re.M)) for p in constants),
         "includes against the order": sum(place[b] > place[a] for a, b in known),
         "rooms in a circle of includes": len(in_circles(pairs)),
-        "sources that know --thickness": len(knows),
     }
 
 
