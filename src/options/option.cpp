@@ -271,7 +271,7 @@ OptionList in_group(const std::string& group, OptionList options)
 
 std::string expectation(const Option& option)
 {
-    const std::string range = option.range.text();
+    std::string range = option.range.text();
     switch (option.kind) {
     case OptionKind::flag:
         return "true or false";

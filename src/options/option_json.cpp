@@ -86,7 +86,9 @@ bool set_entry(const std::string& key, const ordered_json& json, OptionSections&
         if (!section.key.empty())
             continue;
         if (Option* option = find_by_key(section.options, key)) {
-            assign(*option, value_of(json, name + ": " + key), name + ": " + key);
+            std::string place = name;
+            place.append(": ").append(key);
+            assign(*option, value_of(json, place), place);
             return true;
         }
     }

@@ -17,6 +17,8 @@
 #include "pipeline/sides.h"
 #include "report/stage_clock.h"
 
+#include <openvdb/openvdb.h>
+
 #include <utility>
 
 namespace vdb_shell

@@ -12,6 +12,7 @@
 #include "mesh/triangle_area.h"
 #include "step/thickness.h"
 
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>

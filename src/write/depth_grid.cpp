@@ -15,6 +15,8 @@
 #include "core/stage_progress.h"
 #include "write/depth_lines.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -146,7 +148,7 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     // The lines begin at the leaf's own y, so the groups of eight are the same for all tets of a
     // column. Those outside of the tet's box are computed as well and left out below.
     std::array<LineEnds, std::size_t(kLeafSize)> ends_over;
-    find_line_ends(lines_through(tet), x_begin, std::size_t(x_end - x_begin + 1), leaf_y,
+    find_line_ends(lines_through(tet), x_begin, std::size_t(x_end - x_begin) + 1, leaf_y,
                    ends_over.data());
     for (int x = x_begin; x <= x_end; ++x) {
         const LineEnds& ends = ends_over[std::size_t(x - x_begin)];
