@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>

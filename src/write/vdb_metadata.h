@@ -3,6 +3,8 @@
 
 #include "vdb_shell/write/vdb_file.h"
 
+#include <openvdb/openvdb.h>
+
 namespace vdb_shell
 {
 
