@@ -17,7 +17,6 @@
 
 #include <cassert>
 #include <cmath>
-#include <sstream>
 
 namespace vdb_shell
 {

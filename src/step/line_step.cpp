@@ -22,7 +22,6 @@
 
 #include <cassert>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 namespace vdb_shell

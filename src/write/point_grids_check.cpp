@@ -180,7 +180,12 @@ private:
 bool same_bits(const Vec3s& a, const Vec3s& b)
 {
     // The bits matter here: values that compare equal need not have the same ones.
-    return std::memcmp(a.asPointer(), b.asPointer(), 3 * sizeof(float)) == 0;
+    const auto bits = [](const Vec3s& vector) {
+        std::array<std::uint32_t, 3> words;
+        std::memcpy(words.data(), vector.asPointer(), sizeof(words));
+        return words;
+    };
+    return bits(a) == bits(b);
 }
 
 void require_consistent(const ShellStack& stack, const TetMesh& tets)
