@@ -173,6 +173,33 @@ void BoxTree::refit(const std::vector<FloatBox>& boxes, const std::vector<std::u
     fit_nodes();
 }
 
+void BoxTree::index_parents()
+{
+    place_.resize(item_.size());
+    for (std::size_t i = 0; i < item_.size(); ++i)
+        place_[static_cast<std::size_t>(item_[i])] = i;
+    lane_of_place_.resize(item_.size());
+    lane_of_node_.assign(nodes_.size(), {-1, 0});
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        for (unsigned lane = 0; lane < nodes_[i].children; ++lane)
+            (nodes_[i].leaf ? lane_of_place_
+                            : lane_of_node_)[static_cast<std::size_t>(nodes_[i].child[lane])] = {
+                static_cast<int>(i), lane};
+}
+
+void BoxTree::widen(std::size_t i, const FloatBox& box)
+{
+    const std::size_t place = place_[i];
+    boxes_[place].add(box);
+    for (Lane at = lane_of_place_[place]; at.node >= 0;
+         at = lane_of_node_[static_cast<std::size_t>(at.node)]) {
+        FourBoxes& boxes = nodes_[static_cast<std::size_t>(at.node)].box;
+        FloatBox wider = boxes.get(at.lane);
+        wider.add(box);
+        boxes.set(at.lane, wider);
+    }
+}
+
 void BoxTree::fit_nodes()
 {
     std::vector<FloatBox> around(nodes_.size());

@@ -81,6 +81,12 @@ public:
     /// Only those marked in `changed` are looked at; empty: all.
     void refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed = {});
 
+    /// Makes ready for widen(); to be called after each build().
+    void index_parents();
+    /// Box i becomes as much larger as to hold `box` too, at a cost of the depth of the tree.
+    /// Precondition: index_parents.
+    void widen(std::size_t i, const FloatBox& box);
+
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const FloatBox& query, Visit&& visit) const
     {
@@ -202,6 +208,14 @@ private:
     std::vector<int> item_;       ///< in the order of the leaves
     std::vector<FloatBox> boxes_; ///< of the items, in that order
     std::vector<Node> nodes_;     ///< each before its children
+    /// Of index_parents: the place of each item; the node and the lane that hold a place, and the
+    /// node and the lane that hold a node, of the root -1.
+    struct Lane {
+        int node;
+        unsigned lane;
+    };
+    std::vector<std::size_t> place_;
+    std::vector<Lane> lane_of_place_, lane_of_node_;
 };
 
 } // namespace vdb_shell
