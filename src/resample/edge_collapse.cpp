@@ -225,7 +225,7 @@ private:
                     corners[k] = corners[k] == v ? u : corners[k];
         }
         if (bounds_distance())
-            hand_over_samples(v);
+            reassign_samples(v);
         // The sum of both quadrics goes on counting every plane that the vertex has stood for;
         // planes of triangles with both ends count more than once, as in the source of the method.
         quadric_[u] += quadric_[v];
@@ -235,7 +235,7 @@ private:
     /// After v has gone: it and the samples of its triangles go to the nearest of the triangles
     /// that are left around it, because later collapses test the samples of the triangles around
     /// their vertex only.
-    void hand_over_samples(std::uint32_t v)
+    void reassign_samples(std::uint32_t v)
     {
         std::vector<std::uint32_t> samples{v};
         Fan fan;

@@ -81,7 +81,7 @@ LineEnd bisect_line(Field& field, const Line& line, const MarchRules& rules)
 }
 
 /// The stop test along one line. relative_normal remembers the least slope it has seen, so lengths
-/// are asked in ascending order.
+/// are tested in ascending order.
 class RunningTest
 {
 public:

@@ -74,10 +74,10 @@ TEST(SparseStep, StepsFromTheVerticesAskedForAlone)
         const LineLengths some =
             step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr, &only);
         for (std::uint32_t v = 0; v < stage.mesh.points.size(); ++v) {
-            const bool asked = std::find(only.begin(), only.end(), v) != only.end();
-            EXPECT_EQ(some.length[v], asked ? whole.length[v] : 0.0);
-            EXPECT_EQ(some.steps[v], asked ? whole.steps[v] : 0U);
-            EXPECT_EQ(some.reason[v], asked ? whole.reason[v] : StopReason::none);
+            const bool listed = std::find(only.begin(), only.end(), v) != only.end();
+            EXPECT_EQ(some.length[v], listed ? whole.length[v] : 0.0);
+            EXPECT_EQ(some.steps[v], listed ? whole.steps[v] : 0U);
+            EXPECT_EQ(some.reason[v], listed ? whole.reason[v] : StopReason::none);
         }
     }
 }
