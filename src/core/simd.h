@@ -11,8 +11,8 @@
 /// code for processors that do not have the instructions. It is laid out as Highway's guide has it,
 /// with this header first and core/simd-inl.h, the operations, after foreach_target.h.
 ///
-/// The bits of a result are the same on every target, as tests/core/simd_test.cpp holds: work is
-/// divided into groups of fixed size whatever the width of the processor's vectors, lanes do not
+/// The bits of a result are the same on every target, as tests/pipeline/simd_test.cpp holds: work
+/// is divided into groups of fixed size whatever the width of the processor's vectors, lanes do not
 /// depend on each other, sums over lanes have one order, and products and sums are not contracted
 /// (no hn::MulAdd here, -ffp-contract=off in CMakeLists.txt).
 

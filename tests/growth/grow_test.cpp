@@ -7,7 +7,6 @@
 #include "growth/move_tests.h"
 #include "growth/pins.h"
 #include "growth/predicates.h"
-#include "support/files.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
 #include "vdb_shell/certify/certificate.h"
@@ -15,9 +14,7 @@
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/pipeline.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -421,25 +418,6 @@ TEST(Grow, RoundsToFloat32ForGood)
             std::memcpy(&bits, &coordinate, sizeof bits);
             EXPECT_EQ(bits & ((std::uint64_t(1) << 29) - 1), 0U) << "more than float32's 24 bits";
         }
-    }
-}
-
-TEST(Grow, FillsRealMeshes)
-{
-    VDB_SHELL_NEEDS_REAL_MESHES();
-    for (const char* name : {"cow.obj", "diku.obj", "lamp.obj", "teapot.obj"}) {
-        SCOPED_TRACE(name);
-        const ReadResult read = read_mesh(test::real_meshes() / "paper" / name, {});
-        ShellOptions options;
-        options.level_set.resolution = 64;
-        const ShellResult result = build_shell(read.mesh, options, name);
-        EXPECT_EQ(result.report.signs.inverted.count, 0U);
-        EXPECT_EQ(result.report.signs.flat.count, 0U);
-        expect_twelve_positive(result.stack.layers[0]);
-        EXPECT_EQ(result.report.coverage.samples, ShellOptions{}.coverage.samples);
-        EXPECT_EQ(result.report.coverage.in_several, 0U);
-        EXPECT_EQ(result.report.coverage.outside_covered, 0U);
-        EXPECT_GT(result.report.fill, 0.95);
     }
 }
 
