@@ -15,6 +15,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 // Grown shells, and what has to hold for stacks made of them.
 
@@ -112,6 +114,25 @@ template <typename Call> std::string refusal_of(const Call& call)
         return error.what();
     }
     return "accepted";
+}
+
+/// call(x) refuses, by name and value, every x that is no positive finite number.
+template <typename Call> void expect_positive_finite(const std::string& name, const Call& call)
+{
+    const std::pair<double, const char*> numbers[] = {
+        {0.0, "0"}, {-0.5, "-0.5"}, {INFINITY, "inf"}, {NAN, "nan"}};
+    for (const auto& [number, shown] : numbers) {
+        const std::string said = refusal_of([&, x = number] { call(x); });
+        EXPECT_EQ(said.find(name + " is " + shown + ", must be "), 0U) << said;
+        EXPECT_NE(said.find("above 0"), std::string::npos) << said;
+    }
+}
+
+/// call(interrupter) ends when the interrupter wants it.
+template <typename Call> void expect_cancelled(const Call& call)
+{
+    StopAtOnce interrupter;
+    EXPECT_THROW(call(&interrupter), Cancelled);
 }
 
 } // namespace vdb_shell::test
