@@ -4,11 +4,12 @@
 
     report_keys.py COMMAND FOLDER
 
-COMMAND is the program, FOLDER that of the project. Builds shells of small surfaces, so that together the reports have
-all parts, and collects the keys of every object by its path: "refine.rounds[]" are the entries of that list. Each
-row "| `path` | keys | ... |" of the section "Report (JSON)" has to name all keys that were found under that path, and no
-others, in the order of the reports. An object without a row of its path is as the row of its last names tells, or one of
-the shapes of the second table.
+COMMAND is the program, FOLDER that of the project. Builds shells of small surfaces, so that together
+the reports have all parts, and collects the keys of every object by its path: "refine.rounds[]" are
+the entries of that list. Each row "| `path` | keys | ... |" of the section "Report (JSON)" has to name
+all keys that were found under that path, and no others, in the order of the reports. An object
+without a row of its path is as the row of the end of its path tells, or one of the shapes of the
+second table.
 Prints what differs and ends with status 1, or says how many keys were compared.
 """
 import json
@@ -80,7 +81,8 @@ def rows_of(page):
 
 def row_for(path, rows):
     parts = path.split(".")
-    return next((rows[tail] for tail in (".".join(parts[i:]) for i in range(len(parts))) if tail in rows), None)
+    tails = (".".join(parts[i:]) for i in range(len(parts)))
+    return next((rows[tail] for tail in tails if tail in rows), None)
 
 
 def faults(found, rows, shapes):
