@@ -44,4 +44,17 @@ public:
 std::unique_ptr<DocumentWriter> make_text_writer(Sink out);
 std::unique_ptr<DocumentWriter> make_binary_writer(Sink out);
 
+/// A key of a map with its value, or an entry of a flat list of both.
+inline void key_text(DocumentWriter& out, const char* key, std::string_view value)
+{
+    out.text(key);
+    out.text(value);
+}
+
+inline void key_integer(DocumentWriter& out, const char* key, std::size_t value)
+{
+    out.text(key);
+    out.integer(static_cast<std::int64_t>(value));
+}
+
 } // namespace vdb_shell::houdini

@@ -12,16 +12,14 @@
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/shell_points.h"
-#include "vdb_shell/write/text_out.h"
 
+#include "usd_extent.h"
+#include "usd_stage.h"
 #include "usd_text.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 namespace vdb_shell
 {
@@ -35,111 +33,8 @@ using openvdb::Vec3s;
 using openvdb::Vec4I;
 
 using Samples = std::vector<UsdSample>;
-using Text = std::function<std::string(const UsdSample&)>;
 
-/// Rounding to float32 may go inwards, and an extent that is too small makes viewers cull what they
-/// should show. So each side is moved to the next float outwards where rounding went the wrong way.
-std::string extent_of(const Vec3d& low, const Vec3d& high)
-{
-    Vec3s corners[2];
-    for (int axis = 0; axis < 3; ++axis) {
-        corners[0][axis] = float(low[axis]);
-        if (corners[0][axis] > low[axis])
-            corners[0][axis] = std::nextafter(corners[0][axis], -HUGE_VALF);
-        corners[1][axis] = float(high[axis]);
-        if (corners[1][axis] < high[axis])
-            corners[1][axis] = std::nextafter(corners[1][axis], HUGE_VALF);
-    }
-    return usd_array(std::vector<Vec3s>{corners[0], corners[1]});
-}
-
-std::string extent_of(const std::vector<Vec3s>& points)
-{
-    const Bounds bounds = points.empty() ? Bounds{} : bounds_of(points);
-    return extent_of(bounds.low, bounds.high);
-}
-
-/// The box of all active voxels of both grids. Voxels are taken as boxes and not as centres, hence
-/// the halves.
-std::string extent_of_volume(const ShellFile& shell)
-{
-    Vec3d low(HUGE_VAL), high(-HUGE_VAL);
-    for (const auto& grid : {shell.surface, shell.depth}) {
-        const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-        if (box.empty())
-            continue;
-        const auto world = grid->transform().indexToWorld(
-            openvdb::BBoxd(box.min().asVec3d() - 0.5, box.max().asVec3d() + 0.5));
-        low = openvdb::math::minComponent(low, world.min());
-        high = openvdb::math::maxComponent(high, world.max());
-    }
-    const Vec3d shift = shell.placement.shift();
-    // No active voxel at all left the box at its start values, which are inverted.
-    return low[0] > high[0] ? extent_of({}) : extent_of(low + shift, high + shift);
-}
-
-/// The stage under construction: prims in braces, each attribute on a line of its own.
-class Stage
-{
-public:
-    Stage(std::ostream& out, const Samples& samples) : text_(out), samples_(samples) {}
-
-    void line(const std::string& text)
-    {
-        text_ << std::string(text.empty() ? 0 : 4 * depth_, ' ') << text << '\n';
-    }
-
-    void open(const std::string& prim)
-    {
-        line(prim);
-        line("{");
-        ++depth_;
-    }
-    void close()
-    {
-        --depth_;
-        line("}");
-    }
-
-    /// `declaration` is type and name, `metadata` what stands behind the value. Whether a value
-    /// changes with time is decided by its text: equal texts are equal values, and the text has to
-    /// be made in any case. All samples of one attribute are in memory at once, those of different
-    /// attributes are not.
-    void attribute(const std::string& declaration, const Text& value,
-                   const std::string& metadata = {})
-    {
-        std::vector<std::string> values;
-        for (const UsdSample& sample : samples_)
-            values.push_back(value(sample));
-        const std::string behind = metadata.empty() ? metadata : " (" + metadata + ")";
-        if (std::all_of(values.begin(), values.end(),
-                        [&](const std::string& one) { return one == values.front(); })) {
-            line(declaration + " = " + values.front() + behind);
-            return;
-        }
-        // With time samples, metadata need a declaration without a value to stand behind.
-        if (!metadata.empty())
-            line(declaration + behind);
-        line(declaration + ".timeSamples = {");
-        ++depth_;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            line(usd_value(samples_[i].time) + ": " + values[i] + ",");
-        --depth_;
-        line("}");
-    }
-
-    void primvar(const std::string& declaration, const Text& value)
-    {
-        attribute(declaration, value, "interpolation = \"vertex\"");
-    }
-
-private:
-    TextOut text_;
-    const Samples& samples_;
-    std::size_t depth_ = 0;
-};
-
-void write_header(Stage& stage, const Samples& samples, const UsdOptions& options)
+void write_header(UsdStage& stage, const Samples& samples, const UsdOptions& options)
 {
     stage.line("#usda 1.0");
     stage.line("(");
@@ -172,7 +67,7 @@ bool has_layers(const Samples& samples)
     return stack.layers.size() > 1 || stack.skin > 0;
 }
 
-void write_stops(Stage& stage, const Samples& samples)
+void write_stops(UsdStage& stage, const Samples& samples)
 {
     const auto reasons_of = [](const PrismShell& layer) {
         std::vector<std::int32_t> reasons;
@@ -198,7 +93,7 @@ std::string usd_triple(const Vec3d& v)
 /// Puts the prim where the file of the surface has it: file = origin + unit * mesh. USD applies the
 /// last operation of the order first, so the scale stands behind the translation. Grids of a .vdb
 /// have the origin in their own transforms and need the unit alone.
-void write_placement(Stage& stage, const Samples& samples, bool with_origin)
+void write_placement(UsdStage& stage, const Samples& samples, bool with_origin)
 {
     // All samples get the operations if one of them moves, because the order of operations cannot
     // change with time.
@@ -216,7 +111,7 @@ void write_placement(Stage& stage, const Samples& samples, bool with_origin)
                (with_origin ? "\"xformOp:translate\", " : "") + "\"xformOp:scale\"]");
 }
 
-void write_surface(Stage& stage, const Samples& samples)
+void write_surface(UsdStage& stage, const Samples& samples)
 {
     stage.open("def Mesh \"surface\"");
     stage.attribute("float3[] extent", [](const UsdSample& s) { return extent_of(skin_of(s)); });
@@ -254,7 +149,7 @@ template <typename Value> std::string per_point(const UsdSample& sample, const V
     return usd_array(values);
 }
 
-void write_tet_primvars(Stage& stage)
+void write_tet_primvars(UsdStage& stage)
 {
     stage.primvar("float[] primvars:depth", [](const UsdSample& s) {
         const double layers = double(s.shell->stack.layers.size());
@@ -274,7 +169,7 @@ void write_tet_primvars(Stage& stage)
 
 /// Custom properties and not primvars: uniform primvars of a TetMesh have one value for each face
 /// that is drawn, not one for each tet.
-void write_tet_properties(Stage& stage, const Samples& samples)
+void write_tet_properties(UsdStage& stage, const Samples& samples)
 {
     if (has_layers(samples)) {
         stage.attribute("custom int[] userProperties:layer", [](const UsdSample& s) {
@@ -292,7 +187,7 @@ void write_tet_properties(Stage& stage, const Samples& samples)
                         [](const UsdSample& s) { return std::to_string(s.shell->stack.skin); });
 }
 
-void write_tets(Stage& stage, const Samples& samples)
+void write_tets(UsdStage& stage, const Samples& samples)
 {
     stage.open("def TetMesh \"tets\"");
     stage.attribute("float3[] extent",
@@ -327,7 +222,7 @@ std::string relative_asset(const fs::path& path, const fs::path& volume)
     return usd_asset((upwards ? "" : "./") + relative.generic_string());
 }
 
-void write_grids(Stage& stage, const Samples& samples, const fs::path& path)
+void write_grids(UsdStage& stage, const Samples& samples, const fs::path& path)
 {
     stage.open("def Volume \"grids\"");
     stage.attribute("float3[] extent",
@@ -442,7 +337,7 @@ void write_usd(const fs::path& path, const Samples& samples, const UsdOptions& o
     require_positive(path, "metres per unit", options.meters_per_unit);
     require_positive(path, "frames per second", options.frames_per_second);
     write_stream_atomically(path, [&](std::ostream& out) {
-        Stage stage(out, samples);
+        UsdStage stage(out, samples);
         write_header(stage, samples, options);
         stage.open("def Xform \"shell\" (\n    kind = \"component\"\n)");
         write_surface(stage, samples);

@@ -221,8 +221,8 @@ BoundOptions bind(CLI::App& app, OptionSections sections)
 {
     BoundOptions bound;
     for (const OptionSection& section : sections) {
-        if (section.asked)
-            bound.options.push_back({*section.asked, section.asked->get()});
+        if (section.enable)
+            bound.options.push_back({*section.enable, section.enable->get()});
         for (const Option& option : section.options)
             bound.options.push_back({option, option.get()});
     }

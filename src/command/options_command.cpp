@@ -73,8 +73,8 @@ void print_table(const OptionSections& sections)
 {
     std::cout << "| flag | key in a file | values | unit | default |\n|---|---|---|---|---|\n";
     for (const OptionSection& section : sections) {
-        if (section.asked)
-            print_row(section, *section.asked);
+        if (section.enable)
+            print_row(section, *section.enable);
         for (const Option& option : section.options)
             // The table is of what can stand in a file; options without a key are files and
             // switches of the command line alone.

@@ -25,7 +25,7 @@ struct Outputs {
 OptionSections describe(Outputs& outputs);
 
 /// Throws InvalidOption for an unknown extension or a path given twice, WriteError for a folder
-/// that cannot be written: asked before any work is done. `inputs` must not be overwritten.
+/// that cannot be written: tested before any work is done. `inputs` must not be overwritten.
 void require_possible(const Outputs& outputs, const std::vector<std::filesystem::path>& inputs);
 
 /// True when some output needs the grids of the file.

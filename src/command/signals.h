@@ -14,7 +14,7 @@ void catch_signals();
 int caught_signal();
 
 /// Tells stages to stop once a signal has come, and shows which stage runs on standard error when
-/// asked.
+/// wanted.
 class SignalInterrupter final : public Interrupter
 {
 public:

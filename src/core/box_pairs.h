@@ -20,7 +20,7 @@ std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
 /// All pairs i < j of boxes that have a point in common, sorted.
 std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<FloatBox>& boxes);
 
-/// Those of them for which keep(i, j) holds, which is asked from several threads at a time.
+/// Those of them for which keep(i, j) holds, which is called from several threads at a time.
 using KeepPair = std::function<bool(std::uint32_t, std::uint32_t)>;
 std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<FloatBox>& boxes,
                                                             const KeepPair& keep);

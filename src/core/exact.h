@@ -36,7 +36,7 @@ bool apart_in_projection(const std::vector<openvdb::Vec3s>& points, const openvd
 using Triangle = std::array<openvdb::Vec3s, 3>;
 
 /// Whether two triangles without a shared corner have a common point. A degenerate triangle, which
-/// has no place in a surface, counts as touching whatever it is asked about.
+/// has no place in a surface, counts as touching whatever it is compared with.
 bool triangles_touch(const Triangle& first, const Triangle& second);
 
 /// Whether the closed segment and the closed triangle have a common point; degenerate ones as

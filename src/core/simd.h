@@ -5,14 +5,14 @@
 
 /// How this project uses Highway (https://github.com/google/highway) for several numbers at a time.
 ///
-/// A source whose loops are worth it is compiled once for each target below; the processor at hand
+/// A source whose loops gain by it is compiled once for each target below; the processor at hand
 /// decides which of them runs (HWY_DYNAMIC_DISPATCH). Such a source holds kernels over plain arrays
 /// and little else: what it instantiates of the standard library could otherwise be linked into
 /// code for processors that do not have the instructions. It is laid out as Highway's guide has it,
 /// with this header first and core/simd-inl.h, the operations, after foreach_target.h.
 ///
-/// The bits of a result are the same on every target, as tests/core/simd_test.cpp holds: work is
-/// dealt out in groups of fixed size whatever the width of the processor's vectors, lanes do not
+/// The bits of a result are the same on every target, as tests/pipeline/simd_test.cpp holds: work
+/// is divided into groups of fixed size whatever the width of the processor's vectors, lanes do not
 /// depend on each other, sums over lanes have one order, and products and sums are not contracted
 /// (no hn::MulAdd here, -ffp-contract=off in CMakeLists.txt).
 

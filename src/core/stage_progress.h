@@ -25,7 +25,7 @@ public:
     StageProgress(const StageProgress&) = delete;
     StageProgress& operator=(const StageProgress&) = delete;
 
-    /// Throws Cancelled when the caller asked to stop. Call it from the stage's own thread only.
+    /// Throws Cancelled when the caller wants to stop. Call it from the stage's own thread only.
     void stop_if_interrupted(int percent) const
     {
         if (interrupter_ && interrupter_->wasInterrupted(percent))

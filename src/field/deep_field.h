@@ -7,7 +7,7 @@
 namespace vdb_shell
 {
 
-/// The inside of a level set beyond its narrow band, computed where it is asked for: a voxel's
+/// The inside of a level set beyond its narrow band, computed only where it is read: a voxel's
 /// value is minus its distance to the surface, as the dense grid would have it.
 class DeepField
 {
@@ -45,7 +45,7 @@ public:
           known_(openvdb::FloatGrid::create()), accessor_(known_->getAccessor())
     {
     }
-    /// The voxels asked for next are those around this one.
+    /// The voxels read next are those around this one.
     void about(const openvdb::Coord& base) { base_ = base; }
     bool probe(const openvdb::Coord& at, float& value)
     {

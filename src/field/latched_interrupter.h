@@ -16,7 +16,7 @@ class LatchedInterrupter final : public Interrupter
 public:
     explicit LatchedInterrupter(Interrupter* caller) : caller_(caller) {}
 
-    // Tools poll from their worker threads, where a caller's interface may not be asked; and the
+    // Tools poll from their worker threads, where a caller's interface must not be called; and the
     // stage, not the tool, frames itself with start and end.
     bool wasInterrupted(int percent = -1) override
     {

@@ -204,11 +204,11 @@ private:
     /// Blocks of 8, 4 and 2 voxels a side, from their least corner in the leaf.
     void descend(std::size_t level, const Coord& corner, const List& list)
     {
-        const int eighth = 4 >> level; // voxels a side
+        const int side = 4 >> level; // voxels a side
         EightPoints points;
         for (std::size_t i = 0; i < kLanes; ++i) {
-            const Coord least = corner_of_eighth(corner, eighth, i);
-            const float to_middle = 0.5F * static_cast<float>(eighth - 1) - float(kHalfLeaf);
+            const Coord least = corner_of_block(corner, side, i);
+            const float to_middle = 0.5F * static_cast<float>(side - 1) - float(kHalfLeaf);
             points.x[i] = static_cast<float>(least[0]) + to_middle;
             points.y[i] = static_cast<float>(least[1]) + to_middle;
             points.z[i] = static_cast<float>(least[2]) + to_middle;
@@ -223,7 +223,7 @@ private:
         squared_.resize(list.size() * kLanes);
         nearest_of(prepared_.data(), list.data(), list.size(), points, squared_.data(), nearest);
         // From the middle of a block to its farthest voxel centre.
-        const float radius = std::sqrt(3.0F) * 0.5F * static_cast<float>(eighth - 1);
+        const float radius = std::sqrt(3.0F) * 0.5F * static_cast<float>(side - 1);
         std::array<float, kLanes> limit;
         for (std::size_t i = 0; i < kLanes; ++i) {
             const float closest = std::sqrt(nearest.squared[i]);
@@ -235,17 +235,17 @@ private:
             // No squared distance is below -1, so a block that is out of reach gets an empty list.
             limit[i] = closest > reach_ + radius ? -1.0F : most * most;
         }
-        std::array<List, kLanes>& of_eighth = lists_[level];
-        deal_out(list, limit, of_eighth);
+        std::array<List, kLanes>& of_block = lists_[level];
+        list_within_limits(list, limit, of_block);
         for (std::size_t i = 0; i < kLanes; ++i)
-            if (!of_eighth[i].empty())
-                descend(level + 1, corner_of_eighth(corner, eighth, i), of_eighth[i]);
+            if (!of_block[i].empty())
+                descend(level + 1, corner_of_block(corner, side, i), of_block[i]);
     }
 
     /// Gives each of eight points those of the list that are no farther from it than its limit, by
     /// the distances in squared_.
-    void deal_out(const List& list, const std::array<float, kLanes>& limit,
-                  std::array<List, kLanes>& of_point)
+    void list_within_limits(const List& list, const std::array<float, kLanes>& limit,
+                            std::array<List, kLanes>& of_point)
     {
         for (List& near : of_point)
             near.clear();
@@ -256,9 +256,9 @@ private:
                 of_point[std::size_t(__builtin_ctz(bits))].push_back(list[n]);
     }
 
-    static Coord corner_of_eighth(const Coord& corner, int eighth, std::size_t i)
+    static Coord corner_of_block(const Coord& corner, int side, std::size_t i)
     {
-        return corner.offsetBy(i & 4 ? eighth : 0, i & 2 ? eighth : 0, i & 1 ? eighth : 0);
+        return corner.offsetBy(i & 4 ? side : 0, i & 2 ? side : 0, i & 1 ? side : 0);
     }
 
     void store(const Coord& corner, const EightNearest& nearest)
@@ -266,7 +266,7 @@ private:
         for (std::size_t i = 0; i < kLanes; ++i) {
             if (nearest.squared[i] > reach_ * reach_)
                 continue;
-            const Coord in_leaf = corner_of_eighth(corner, 1, i);
+            const Coord in_leaf = corner_of_block(corner, 1, i);
             double d = nearest.height[i] * voxel_;
             // The height is 0 at sides and corners, where the sign needs a pseudo-normal. Near the
             // plane floats cannot tell its two sides apart. In both cases distance and sign are

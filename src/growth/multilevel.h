@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Growth on coarser surfaces before the one that is asked for.
+// Growth on coarser surfaces before the given one.
 
 #include "core/stage_progress.h"
 #include "growth/grow_state.h"

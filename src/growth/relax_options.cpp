@@ -2,7 +2,7 @@
 
 // Takes: the schedule, the user's options and what growth goes on from. Gives: the options of one
 // run of relax(). Nothing here touches the shell. After a prolongation most is done, and growth
-// goes on only as long as that pays, unless the user asked for more (docs/growth.md).
+// goes on only as long as that pays, unless the options want more (docs/growth.md).
 
 #include "growth/relax_options.h"
 

@@ -38,7 +38,7 @@ struct RelaxOptions {
     std::vector<double> predicted_gain = {};
 };
 
-/// Whether the user asked for more than the default: thickest, or a number of rounds.
+/// Whether the options want more than the default: thickest, or a number of rounds.
 bool asks_for_more(const GrowOptions& options);
 
 /// Rounds that a surface of so many triangles is given after a prolongation, by default.

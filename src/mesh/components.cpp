@@ -144,13 +144,13 @@ bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, cons
 
 /// Two pieces that neither cross nor touch have one answer for every corner, so the first corner
 /// decides; corners on the other surface, which both can have by index, decide nothing. Where the
-/// pieces cross or touch, the corners of at most kMostAsked triangles, spread over the piece, are
+/// pieces cross or touch, the corners of at most kMostTested triangles, spread over the piece, are
 /// tested, and all of them have to be inside.
 bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, const Piece& outer,
               const Piece& inner, bool crossing)
 {
-    constexpr std::size_t kMostAsked = 256;
-    const std::size_t stride = crossing ? inner.triangles.size() / kMostAsked + 1 : 1;
+    constexpr std::size_t kMostTested = 256;
+    const std::size_t stride = crossing ? inner.triangles.size() / kMostTested + 1 : 1;
     bool any_inside = false;
     for (std::size_t i = 0; i < inner.triangles.size(); i += stride) {
         for (int corner = 0; corner < 3; ++corner) {

@@ -29,7 +29,7 @@ namespace
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // With fewer triangles than this a second thread would cost more than it saves.
-constexpr std::size_t kWorthAThread = 4096;
+constexpr std::size_t kLeastParallel = 4096;
 // By how much boxes are widened, as a share of the mesh's diagonal: more than rounding makes a
 // triangle seem nearer than its box. One rounding of a float is 6e-8 of what is rounded, and a
 // distance takes a handful of them; what is rounded is as large as the mesh for points that are not
@@ -99,7 +99,7 @@ private:
         });
         const auto left = [&] { halve(first, mid); };
         const auto right = [&] { halve(mid, last); };
-        if (begin(last) - begin(first) > kWorthAThread) {
+        if (begin(last) - begin(first) > kLeastParallel) {
             tbb::parallel_invoke(left, right);
         } else {
             left();

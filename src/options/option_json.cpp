@@ -53,12 +53,12 @@ Option* find_by_key(OptionList& options, const std::string& key)
 /// set before the entries, so that they go into options that exist.
 void set_section(const ordered_json& json, OptionSection& section, const std::string& name)
 {
-    if (section.asked && !json.is_object() && !json.is_null())
+    if (section.enable && !json.is_object() && !json.is_null())
         throw InvalidOption(name + ": " + section.key + " is " + json.dump() +
                             ", must be an object or null");
-    if (section.asked)
-        section.asked->set(!json.is_null());
-    if (section.asked && json.is_null())
+    if (section.enable)
+        section.enable->set(!json.is_null());
+    if (section.enable && json.is_null())
         return;
     if (!json.is_object())
         throw InvalidOption(name + ": " + section.key + " is " + json.dump() +
@@ -173,7 +173,7 @@ ordered_json to_json(const OptionSections& sections)
 {
     ordered_json json = ordered_json::object();
     for (const OptionSection& section : sections) {
-        if (section.asked && !std::get<bool>(section.asked->get())) {
+        if (section.enable && !std::get<bool>(section.enable->get())) {
             json[section.key] = nullptr;
             continue;
         }
@@ -201,9 +201,9 @@ void set_known_from_json(const ordered_json& json, OptionSections& sections,
         if (!section.key.empty() && !json.contains(section.key))
             continue;
         const ordered_json& object = section.key.empty() ? json : json.at(section.key);
-        if (section.asked)
+        if (section.enable)
             // Null is "off", as set_section() has it.
-            section.asked->set(object.is_object());
+            section.enable->set(object.is_object());
         for (Option& option : section.options) {
             if (option.key.empty() || !object.is_object() || !object.contains(option.key))
                 continue;
@@ -231,8 +231,8 @@ ordered_json schema_json(const OptionSections& sections)
 {
     ordered_json json = ordered_json::array();
     for (const OptionSection& section : sections) {
-        if (section.asked)
-            json.push_back(option_schema(section, *section.asked));
+        if (section.enable)
+            json.push_back(option_schema(section, *section.enable));
         for (const Option& option : section.options)
             json.push_back(option_schema(section, option));
     }

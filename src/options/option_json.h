@@ -12,7 +12,7 @@ namespace vdb_shell
 
 nlohmann::ordered_json value_json(const OptionValue& value);
 
-/// All options that are stored, one object a section; null for a section that was not asked for.
+/// All options that are stored, one object a section; null for a section that is off.
 nlohmann::ordered_json to_json(const OptionSections& sections);
 
 /// Sets what the object names and leaves the rest. Throws InvalidOption "`name`: line_step.rho is

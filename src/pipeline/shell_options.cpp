@@ -23,7 +23,7 @@ OptionSection repair_section(ShellOptions& options)
     OptionSection section = optional_section(
         "repair", options.repair, "--repair",
         "Weld, orient, part and close the surface first; what is sound stays bit for bit");
-    section.asked->group = "Surface";
+    section.enable->group = "Surface";
     for (Option& o : section.options)
         if (o.key == "keep_crossing_fills")
             o.flag.clear(); // follows --allow-self-intersections

@@ -83,16 +83,14 @@ void copy_points(WorkingSurface& surface, const Fans& fans,
             mesh.triangles[t][corner] = new_point[fans.of_corner[3 * t + std::size_t(corner)]];
 }
 
-/// Parts edges that several pairs of sides have in use although all fans have their own points,
-/// because both ends of the edge are one fan each: each pair gets a point of its own in the middle.
-/// Returns how many such edges there were. A middle is computed once for each edge, so its copies
-/// have equal bits.
-std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
-                       RepairReport& report)
+/// Gives each pair of sides at an edge of several pairs a point of its own in the middle. A middle
+/// is computed once for each edge, so its copies have equal bits. Returns how many such edges there
+/// were; `middle_of` has the points by side.
+std::size_t add_middles(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
+                        std::vector<std::uint32_t>& middle_of, RepairReport& report)
 {
     TriangleMesh& mesh = surface.mesh;
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
-    std::vector<std::uint32_t> middle_of(partner.size(), kUnpaired);
     std::size_t edges = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)
@@ -119,24 +117,42 @@ std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>
         report.copies += group.size();
         surface.copies.push_back(std::move(group));
     }
-    // Each triangle with such sides is a polygon of four to six corners now, and is cut into a fan.
+    return edges;
+}
+
+/// The triangle with the middles of its sides: a polygon of up to six corners. It starts at a
+/// middle, if there is one, and so a fan from there has no flat triangle; from a corner the first
+/// would be, if the next point is the middle of a side that begins there.
+std::vector<std::uint32_t> polygon_of(const Vec3I& triangle, const std::uint32_t* middles)
+{
+    std::vector<std::uint32_t> ring;
+    std::ptrdiff_t a_middle = 0;
+    for (int side = 0; side < 3; ++side) {
+        ring.push_back(triangle[side]);
+        if (middles[side] == kUnpaired)
+            continue;
+        if (a_middle == 0)
+            a_middle = std::ptrdiff_t(ring.size());
+        ring.push_back(middles[side]);
+    }
+    std::rotate(ring.begin(), ring.begin() + a_middle, ring.end());
+    return ring;
+}
+
+/// Parts edges that several pairs of sides have in use although all fans have their own points,
+/// because both ends of the edge are one fan each. Returns how many such edges there were.
+std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
+                       RepairReport& report)
+{
+    TriangleMesh& mesh = surface.mesh;
+    std::vector<std::uint32_t> middle_of(partner.size(), kUnpaired);
+    const std::size_t edges = add_middles(surface, partner, middle_of, report);
     const std::size_t triangles = mesh.triangles.size();
     for (std::size_t t = 0; t < triangles && edges > 0; ++t) {
-        std::vector<std::uint32_t> ring;
-        for (std::size_t side = 0; side < 3; ++side) {
-            ring.push_back(mesh.triangles[t][int(side)]);
-            if (middle_of[3 * t + side] != kUnpaired)
-                ring.push_back(middle_of[3 * t + side]);
-        }
+        const std::vector<std::uint32_t> ring =
+            polygon_of(mesh.triangles[t], middle_of.data() + 3 * t);
         if (ring.size() == 3)
             continue;
-        // The fan starts at a middle, and so none of its triangles is flat; from a corner the first
-        // would be, if the next point is the middle of a side that begins there.
-        while (ring.front() < mesh.points.size() &&
-               std::none_of(middle_of.begin() + std::ptrdiff_t(3 * t),
-                            middle_of.begin() + std::ptrdiff_t(3 * t + 3),
-                            [&](std::uint32_t m) { return m == ring.front(); }))
-            std::rotate(ring.begin(), ring.begin() + 1, ring.end());
         mesh.triangles[t] = Vec3I(ring[0], ring[1], ring[2]);
         if (surface.source[t] != kNoSource)
             add_to(report.recut, surface.source[t]);

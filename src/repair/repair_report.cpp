@@ -7,6 +7,8 @@
 
 #include "vdb_shell/repair/repair_mesh.h"
 
+#include "mesh/mesh_check_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include <sstream>
@@ -25,18 +27,9 @@ ordered_json defect_json(const Defect<std::uint32_t>& defect)
 
 ordered_json after_json(const MeshCheck& check)
 {
-    return {{"points", check.points},
-            {"triangles", check.triangles},
-            {"volume", check.volume},
-            {"boundary_edges", check.boundary_edges.count},
-            {"non_manifold_edges", check.non_manifold_edges.count},
-            {"non_manifold_vertices", check.non_manifold_vertices.count},
-            {"inconsistent_edges", check.inconsistent_edges.count},
-            {"degenerate_triangles", check.degenerate_triangles.count},
-            {"duplicate_triangles", check.duplicate_triangles.count},
-            {"self_intersections", check.self_intersections.count},
-            {"first_self_intersections", check.self_intersections.first},
-            {"inside_out_components", check.inside_out_components()}};
+    ordered_json json = mesh_check_json(check);
+    json["inside_out_components"] = check.inside_out_components();
+    return json;
 }
 
 std::string shown(const Defect<std::uint32_t>& defect)

@@ -13,6 +13,7 @@
 
 #include "certify/certificate_findings.h"
 #include "mesh/components_json.h"
+#include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"
 
 #include <nlohmann/json.hpp>
@@ -99,24 +100,13 @@ ordered_json wrap_json(const WrapReport& wrap)
             {"wrap_to_input", distance_json(wrap.wrap_to_input)}};
 }
 
-ordered_json mesh_json(const MeshCheck& mesh)
+ordered_json mesh_json(const ShellReport& report)
 {
-    return {{"points", mesh.points},
-            {"triangles", mesh.triangles},
-            {"volume", mesh.volume},
-            // The answers as well as the counts that they follow from, so that a script need not
-            // know which defects make a surface open or not manifold.
-            {"closed", mesh.closed()},
-            {"manifold", mesh.manifold()},
-            {"boundary_edges", mesh.boundary_edges.count},
-            {"non_manifold_edges", mesh.non_manifold_edges.count},
-            {"non_manifold_vertices", mesh.non_manifold_vertices.count},
-            {"inconsistent_edges", mesh.inconsistent_edges.count},
-            {"degenerate_triangles", mesh.degenerate_triangles.count},
-            {"duplicate_triangles", mesh.duplicate_triangles.count},
-            {"self_intersections", mesh.self_intersections.count},
-            {"first_self_intersections", mesh.self_intersections.first},
-            {"components", components_json(mesh.components)}};
+    ordered_json json = mesh_check_json(report.mesh);
+    json["components"] = components_json(report.mesh.components);
+    json["split_vertices"] = defect_json(report.split_vertices);
+    json["vertex_copies"] = report.vertex_copies;
+    return json;
 }
 
 ordered_json decimate_json(const DecimateReport& decimate)
@@ -322,11 +312,9 @@ ordered_json costs_json(const std::vector<StageCost>& stages)
     return costs;
 }
 
-} // namespace
-
-std::string report_json(const ShellReport& report, bool with_costs)
+/// What was read and what became of it before lines were stepped.
+void add_surface(ordered_json& json, const ShellReport& report)
 {
-    ordered_json json;
     json["source"] = report.source;
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
     // The repair report has a JSON form of its own, for a repair without a shell. Its text is
@@ -335,12 +323,15 @@ std::string report_json(const ShellReport& report, bool with_costs)
         report.repair ? ordered_json::parse(repair_json(*report.repair)) : ordered_json();
     json["wrap"] = report.wrap ? wrap_json(*report.wrap) : ordered_json();
     json["contour"] = report.contour ? contour_json(*report.contour) : ordered_json();
-    json["mesh"] = mesh_json(report.mesh);
-    json["mesh"]["split_vertices"] = defect_json(report.split_vertices);
-    json["mesh"]["vertex_copies"] = report.vertex_copies;
+    json["mesh"] = mesh_json(report);
     json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
     json["subdivided_from"] =
         report.subdivided_from > 0 ? ordered_json(report.subdivided_from) : ordered_json();
+}
+
+/// How the shell came about, and what it consists of.
+void add_shell(ordered_json& json, const ShellReport& report)
+{
     json["field"] = field_json(report.field);
     json["side"] = name_in_table(report.side);
     json["lines"] = lines_json(report.lines);
@@ -354,6 +345,11 @@ std::string report_json(const ShellReport& report, bool with_costs)
                       {"pinned_vertices", report.pinned_vertices},
                       {"ripples", report.ripples}};
     json["tets"] = tets_json(report);
+}
+
+/// What was measured of the tets and proven of them.
+void add_checks(ordered_json& json, const ShellReport& report)
+{
     json["conformity"] = conformity_json(report.conformity);
     json["quality"] = quality_json(report.quality);
     json["volume"] = {{"solid", report.solid_volume},
@@ -364,6 +360,16 @@ std::string report_json(const ShellReport& report, bool with_costs)
     json["certificate"] =
         report.certificate ? certificate_json(*report.certificate) : ordered_json();
     json["overlaps"] = report.overlaps ? overlaps_json(*report.overlaps) : ordered_json();
+}
+
+} // namespace
+
+std::string report_json(const ShellReport& report, bool with_costs)
+{
+    ordered_json json;
+    add_surface(json, report);
+    add_shell(json, report);
+    add_checks(json, report);
     // The only part that differs from run to run; a file that holds the report has to have the same
     // bytes each time.
     if (with_costs)

@@ -3,16 +3,15 @@
 // Takes: the figures of one run. Gives: the same for a person, one line a stage, about in the order
 // in which the stages ran; the last line says whether the shell can be trusted. Lines of stages
 // that did not run are left out, where the JSON has null. Figures are rounded to what can be read
-// at a glance; whoever needs all digits takes the JSON (report.cpp). Numbers are written in the
-// classic locale: a program that uses the library may have set another, which would put separators
-// into them. Capitals mark what is wrong with a mesh or a shell.
+// at a glance; whoever needs all digits takes the JSON (report.cpp). Capitals mark what is wrong
+// with a mesh or a shell.
 
 #include "vdb_shell/report/report.h"
 
-#include "mesh/placement_json.h"
+#include "report/surface_text.h"
+#include "report/text_lines.h"
 
 #include <algorithm>
-#include <iomanip>
 #include <locale>
 #include <sstream>
 
@@ -20,113 +19,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-// The longest label and a space after it.
-constexpr int kLabelWidth = 12;
-
-/// "label       text", one line.
-void line(std::ostringstream& out, const char* label, const std::string& text)
-{
-    out << std::left << std::setw(kLabelWidth) << label << text << '\n';
-}
-
-/// Significant digits, so that lengths of any unit can be read. Whole numbers come out whole,
-/// whatever the digits.
-template <typename T> std::string number(T value, int digits = 4)
-{
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    out << std::setprecision(digits) << value;
-    return out.str();
-}
-
-/// Fixed decimals, since most fills are close to 1 and differ in the last ones.
-std::string percent(double share)
-{
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    out << std::fixed << std::setprecision(2) << 100.0 * share << " %";
-    return out.str();
-}
-
-/// Three of the seven figures: the ends, where trouble shows, and what is usual. The mean and the
-/// percentiles are in the JSON.
-std::string spread(const Spread& values)
-{
-    return "min " + number(values.min) + ", median " + number(values.median) + ", max " +
-           number(values.max);
-}
-
-/// Of the surface that was worked with, which need not be the one in the file.
-std::string mesh_lines(const MeshCheck& mesh)
-{
-    std::string text = number(mesh.points, 12) + " vertices, " + number(mesh.triangles, 12) +
-                       " triangles, " + number(mesh.components.size(), 12) +
-                       (mesh.components.size() == 1 ? " component" : " components");
-    // Said in both cases: all that follows rests on it, and silence could mean that it was not
-    // looked at.
-    text += mesh.closed() ? ", closed" : ", OPEN";
-    text += mesh.manifold() ? ", manifold" : ", NOT MANIFOLD";
-    if (!mesh.embedded())
-        text += ", " + number(mesh.self_intersections.count, 12) + " SELF-INTERSECTIONS";
-    return text;
-}
-
-/// The first of the vertices by index, those of the input, so that they can be found in the file
-/// that was read.
-std::string split_text(const ShellReport& report)
-{
-    std::string text = number(report.split_vertices.count, 12) +
-                       (report.split_vertices.count == 1 ? " vertex" : " vertices") +
-                       " of several fans, copied " + number(report.vertex_copies, 12) +
-                       (report.vertex_copies == 1 ? " time" : " times") + " (first";
-    for (const std::uint32_t vertex : report.split_vertices.first)
-        text += " " + number(vertex, 12);
-    return text + ")";
-}
-
-std::string contour_text(const ContourReport& contour)
-{
-    std::string text = number(contour.triangles, 12) + " triangles, simplified to " +
-                       number(contour.simplified_triangles, 12);
-    if (contour.method == ContourMethod::marching_tets)
-        text += "; by marching tets, for volume to mesh left " +
-                number(contour.volume_to_mesh_defects, 12) + " defects";
-    // Said only where it happened: it changes what the solid is.
-    if (contour.dropped_components > 0)
-        text += "; " + number(contour.dropped_components, 12) + " inner components left out";
-    return text;
-}
-
-/// Lengths also in voxels, which are what bounds the detail of a wrap.
-void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
-{
-    line(out, "wrap", "voxel " + number(wrap.voxel_size) + ", " + contour_text(wrap.contour));
-    line(out, "  input",
-         percent(wrap.boundary_share) + " of its area bounds the solid, " +
-             percent(wrap.sheet_share) + " thickened as sheets, " + percent(wrap.interior_share) +
-             " inside");
-    const auto distance = [&](const DistanceFigures& figures) {
-        return "mean " + number(figures.mean) + ", max " + number(figures.max) + " (" +
-               number(figures.max / wrap.voxel_size, 3) + " voxels)";
-    };
-    line(out, "  distance",
-         "input to wrap " + distance(wrap.input_to_wrap) + "; wrap to input " +
-             distance(wrap.wrap_to_input));
-}
-
-void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
-{
-    std::string text =
-        number(decimate.before, 12) + " triangles to " + number(decimate.triangles, 12);
-    // The tolerance comes before the number, so fewer collapses than were wanted are no error, but
-    // the user has to know.
-    if (!decimate.reached())
-        text += " (wanted " + number(decimate.wanted, 12) + ": no more can be had)";
-    line(out, "decimate",
-         text + "; farthest input to result " + number(decimate.input_to_result.max) +
-             ", result to input " + number(decimate.result_to_input.max));
-}
 
 void refine_lines(std::ostringstream& out, const RefineReport& refine)
 {
@@ -142,18 +34,6 @@ void refine_lines(std::ostringstream& out, const RefineReport& refine)
             text += ", gained per added tet " + number(refine.gain_per_tet(k), 3);
         line(out, ("  round " + number(k, 12)).c_str(), text);
     }
-}
-
-void read_lines(std::ostringstream& out, const ReadReport& read)
-{
-    line(out, "read",
-         read.format + ": " + number(read.file_vertices, 12) + " vertices, " +
-             number(read.file_faces, 12) + " faces; " + number(read.polygons_triangulated, 12) +
-             " polygons triangulated, " + number(read.welded_vertices, 12) + " vertices welded, " +
-             number(read.unused_vertices, 12) + " unused, " +
-             number(read.skipped_faces.size(), 12) + " faces skipped");
-    if (read.placement.moves())
-        line(out, "  placed", placement_text(read.placement));
 }
 
 std::string stop_text(const LineReport& lines)
@@ -325,38 +205,20 @@ void cost_lines(std::ostringstream& out, const std::vector<StageCost>& stages)
     line(out, "memory", number(double(peak) / (1 << 20), 4) + " MiB at most");
 }
 
-} // namespace
-
-std::string report_text(const ShellReport& report)
+void field_lines(std::ostringstream& out, const FieldReport& field)
 {
-    constexpr double kDegrees = 57.29577951308232;
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    line(out, "source", report.source);
-    if (report.read)
-        read_lines(out, *report.read);
-    if (report.repair)
-        out << "repair\n" << repair_text(*report.repair);
-    if (report.wrap)
-        wrap_lines(out, *report.wrap);
-    if (report.contour)
-        line(out, "contour", contour_text(*report.contour));
-    if (report.decimate)
-        decimate_line(out, *report.decimate);
-    if (report.subdivided_from > 0)
-        line(out, "subdivide", "from " + number(report.subdivided_from, 12) + " triangles");
-    line(out, "mesh", mesh_lines(report.mesh));
-    if (report.vertex_copies > 0)
-        line(out, "split", split_text(report));
     line(out, "field",
-         "voxel " + number(report.field.voxel_size) + ", " +
-             number(report.field.active_voxels, 12) + " active voxels, " +
-             number(double(report.field.memory_bytes) / (1 << 20)) + " MiB, depth " +
-             number(report.field.interior_depth) +
-             (report.field.origin.empty() ? "" : "; " + report.field.origin));
+         "voxel " + number(field.voxel_size) + ", " + number(field.active_voxels, 12) +
+             " active voxels, " + number(double(field.memory_bytes) / (1 << 20)) + " MiB, depth " +
+             number(field.interior_depth) + (field.origin.empty() ? "" : "; " + field.origin));
     line(out, "drift",
-         "zero crossing at the vertices: mean " + number(report.field.smooth.mean_drift) +
-             ", max " + number(report.field.smooth.max_drift));
+         "zero crossing at the vertices: mean " + number(field.smooth.mean_drift) + ", max " +
+             number(field.smooth.max_drift));
+}
+
+/// What lines and growth did.
+void stage_lines(std::ostringstream& out, const ShellReport& report)
+{
     if (report.side != Side::inward)
         line(out, "side", name_in_table(report.side));
     line_figures(out, report.lines);
@@ -370,6 +232,11 @@ std::string report_text(const ShellReport& report)
         refine_lines(out, *report.refine);
     concession_lines(out, report);
     layer_lines(out, report);
+}
+
+void tet_lines(std::ostringstream& out, const ShellReport& report)
+{
+    constexpr double kDegrees = 57.29577951308232;
     line(out, "prisms",
          number(report.prisms, 12) + ", " + number(report.pinned_vertices, 12) +
              " pinned vertices, " + number(report.ripples, 12) + " ripples");
@@ -387,11 +254,28 @@ std::string report_text(const ShellReport& report)
     line(out, "volume",
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
              volume_shares(report));
+}
+
+void proof_lines(std::ostringstream& out, const ShellReport& report)
+{
     line(out, "coverage", coverage_text(report.coverage, report.side));
     if (report.certificate)
         line(out, "certified", certificate_text(*report.certificate));
     if (report.overlaps)
         line(out, "overlaps", report.overlaps->summary());
+}
+
+} // namespace
+
+std::string report_text(const ShellReport& report)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    surface_lines(out, report);
+    field_lines(out, report.field);
+    stage_lines(out, report);
+    tet_lines(out, report);
+    proof_lines(out, report);
     if (!report.stages.empty())
         cost_lines(out, report.stages);
     line(out, "verdict", verdict(report));

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/topology.h"
+#include "resample/quadric.h"
 
 #include <algorithm>
 #include <array>
@@ -38,32 +39,6 @@ constexpr double kWorstAspect = 8.0;
 // Share of the vertices that may go in one round. In sequence each collapse would be the cheapest
 // at its time; rounds of a bounded share stand for that order, and can be looked at in parallel.
 constexpr double kShareOfRound = 0.2;
-
-/// Squared distances from planes, weighted by area: x'Ax + 2 b'x + c, relative to an origin.
-struct Quadric {
-    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, x = 0, y = 0, z = 0, one = 0;
-    double area = 0;
-
-    void add_plane(const Vec3d& n, double offset, double weight)
-    {
-        xx += weight * n[0] * n[0], xy += weight * n[0] * n[1], xz += weight * n[0] * n[2];
-        yy += weight * n[1] * n[1], yz += weight * n[1] * n[2], zz += weight * n[2] * n[2];
-        x += weight * n[0] * offset, y += weight * n[1] * offset, z += weight * n[2] * offset;
-        one += weight * offset * offset;
-        area += weight;
-    }
-    Quadric& operator+=(const Quadric& q)
-    {
-        xx += q.xx, xy += q.xy, xz += q.xz, yy += q.yy, yz += q.yz, zz += q.zz;
-        x += q.x, y += q.y, z += q.z, one += q.one, area += q.area;
-        return *this;
-    }
-    double at(const Vec3d& p) const
-    {
-        return p[0] * (xx * p[0] + 2 * (xy * p[1] + xz * p[2] + x)) +
-               p[1] * (yy * p[1] + 2 * (yz * p[2] + y)) + p[2] * (zz * p[2] + 2 * z) + one;
-    }
-};
 
 struct Collapse {
     double cost = std::numeric_limits<double>::infinity();
@@ -225,7 +200,7 @@ private:
                     corners[k] = corners[k] == v ? u : corners[k];
         }
         if (bounds_distance())
-            hand_over_samples(v);
+            reassign_samples(v);
         // The sum of both quadrics goes on counting every plane that the vertex has stood for;
         // planes of triangles with both ends count more than once, as in the source of the method.
         quadric_[u] += quadric_[v];
@@ -235,7 +210,7 @@ private:
     /// After v has gone: it and the samples of its triangles go to the nearest of the triangles
     /// that are left around it, because later collapses test the samples of the triangles around
     /// their vertex only.
-    void hand_over_samples(std::uint32_t v)
+    void reassign_samples(std::uint32_t v)
     {
         std::vector<std::uint32_t> samples{v};
         Fan fan;

@@ -142,7 +142,7 @@ private:
                 legal[count++] = code;
         }
         if (count == 0) {
-            carry_away(triangle);
+            flip_until_acyclic(triangle);
             return;
         }
         const unsigned code = legal[choose(count)];
@@ -175,7 +175,7 @@ private:
     /// Flips sides until no triangle with all its sides set is cyclic, starting at one that is. A
     /// flip mends the triangle at hand, since two equal bits and a different one are no cycle, and
     /// can spoil only those beside the edge, so the list holds every triangle that may be cyclic.
-    void carry_away(std::uint32_t start)
+    void flip_until_acyclic(std::uint32_t start)
     {
         struct Conflict {
             std::uint32_t triangle, entered_by;

@@ -75,17 +75,36 @@ struct Job {
     const std::vector<std::uint32_t>* only;
 };
 
+/// Throws unless options and level set are fit for stepping.
+void require_steppable(const Job& job)
+{
+    require_in_range(job.options, "line step");
+    assert(job.directions.inward.size() == job.mesh.points.size());
+    if (!job.level_set.hasUniformVoxels())
+        throw GeometryError("line step: the level set '" + job.level_set.getName() +
+                            "' has voxels of different sizes along the axes");
+}
+
+/// run(begin, end) for ranges of `lines`. The interrupter may be used from the stage's own thread
+/// only, so the work is cut into blocks and it is polled between them.
+template <typename Run>
+void for_each_block(std::size_t lines, const StageProgress& progress, const Run& run)
+{
+    for (std::size_t block = 0; block < lines; block += kBlock) {
+        progress.stop_if_interrupted(static_cast<int>(100 * block / lines));
+        for_each_range(
+            std::min(kBlock, lines - block),
+            [&](std::size_t begin, std::size_t end) { run(block + begin, block + end); }, 16);
+    }
+}
+
 /// `make_stepper(rules)` gives what steps the lines of a range: step(range, line_of, store).
 template <typename MakeStepper>
 LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
 {
     const StageProgress progress(job.interrupter, "line step");
-    require_in_range(job.options, "line step");
+    require_steppable(job);
     const std::size_t count = job.mesh.points.size();
-    assert(job.directions.inward.size() == count);
-    if (!job.level_set.hasUniformVoxels())
-        throw GeometryError("line step: the level set '" + job.level_set.getName() +
-                            "' has voxels of different sizes along the axes");
     LineLengths lengths{std::vector<double>(count), std::vector<std::uint32_t>(count),
                         std::vector<StopReason>(count, StopReason::none)};
     if (count == 0)
@@ -95,32 +114,22 @@ LineLengths step_all(const Job& job, const MakeStepper& make_stepper)
     std::vector<double> own_slopes(count, 1.0);
     if (job.options.test == StopTest::own_sheet)
         own_slopes = own_sheet_slopes(job.mesh, job.directions);
-    const auto line_of = [&](std::size_t v) {
+    const auto vertex = [&](std::size_t i) { return job.only ? (*job.only)[i] : i; };
+    const auto line_of = [&](std::size_t i) {
+        const std::size_t v = vertex(i);
         return Line{openvdb::Vec3d(job.mesh.points[v]), job.directions.inward[v], thickest[v],
                     own_slopes[v]};
     };
-    const auto store = [&](std::size_t v, const LineEnd& end) {
+    const auto store = [&](std::size_t i, const LineEnd& end) {
+        const std::size_t v = vertex(i);
         lengths.length[v] = end.length;
         lengths.steps[v] = end.steps;
         lengths.reason[v] = end.reason;
     };
     const auto step = make_stepper(rules);
-    const std::size_t lines = job.only ? job.only->size() : count;
-    const auto vertex = [&](std::size_t i) { return job.only ? (*job.only)[i] : i; };
-    for (std::size_t block = 0; block < lines; block += kBlock) {
-        // The interrupter may be used from the stage's own thread only, so the work is cut into
-        // blocks and it is polled between them.
-        progress.stop_if_interrupted(static_cast<int>(100 * block / lines));
-        for_each_range(
-            std::min(kBlock, lines - block),
-            [&](std::size_t begin, std::size_t end) {
-                step(
-                    std::pair(block + begin, block + end),
-                    [&](std::size_t i) { return line_of(vertex(i)); },
-                    [&](std::size_t i, const LineEnd& line) { store(vertex(i), line); });
-            },
-            16);
-    }
+    for_each_block(
+        job.only ? job.only->size() : count, progress,
+        [&](std::size_t begin, std::size_t end) { step(std::pair(begin, end), line_of, store); });
     return lengths;
 }
 

@@ -81,7 +81,7 @@ LineEnd bisect_line(Field& field, const Line& line, const MarchRules& rules)
 }
 
 /// The stop test along one line. relative_normal remembers the least slope it has seen, so lengths
-/// are asked in ascending order.
+/// are tested in ascending order.
 class RunningTest
 {
 public:
@@ -205,6 +205,15 @@ StopReason stop_at(double e, const Sample& sample, bool inside, double entry, Ru
     return test.holds(e, sample) ? StopReason::none : StopReason::stop_test;
 }
 
+/// From `steps` on as far as the test is known to hold. The last step before the largest length is
+/// looked at, like all that stop a line.
+inline Jump jump_of(const Line& line, const MarchRules& rules, std::uint32_t steps, double known)
+{
+    const double last =
+        std::min(std::floor(known / rules.step), std::ceil(line.max_length / rules.step) - 1);
+    return {steps, std::max(steps, static_cast<std::uint32_t>(last)), true};
+}
+
 /// Steps along the line while the test holds. The length is the last one at which it held.
 /// `skip` may know without looking that the test holds up to some length.
 template <typename Field, typename Skip = NoSkip>
@@ -223,11 +232,7 @@ LineEnd march_line(Field& field, const Line& line, const MarchRules& rules, cons
     bool inside = false;
     while (true) {
         if (Skip::kWanted && !jump.done && inside && end.length > test.settled()) {
-            const double known = skip.holds_up_to(line, rules, test, end.length);
-            // The last step before the largest length is looked at, like all that stop a line.
-            const double steps = std::min(std::floor(known / rules.step),
-                                          std::ceil(line.max_length / rules.step) - 1);
-            jump = {end.steps, std::max(end.steps, static_cast<std::uint32_t>(steps)), true};
+            jump = jump_of(line, rules, end.steps, skip.holds_up_to(line, rules, test, end.length));
             end.steps = jump.to;
             end.length = end.steps * rules.step;
         }

@@ -332,6 +332,23 @@ openvdb::FloatGrid::Ptr empty_depth_grid(double voxel_size)
     return grid;
 }
 
+/// Prism layers count from 0, so the number of layers is one more than the largest; a mesh without
+/// tets gets 1, which keeps the division defined.
+double layers_of(const TetMesh& tets)
+{
+    const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
+    return deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
+}
+
+/// By one thread: changing the upper nodes of a tree is not safe for several, and the order of the
+/// columns makes the tree the same each time.
+void add_leaves(LeafColumn column, openvdb::FloatGrid& grid)
+{
+    for (std::unique_ptr<Leaf>& leaf : column.leaf)
+        if (leaf)
+            grid.tree().addLeaf(leaf.release());
+}
+
 } // namespace
 
 openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
@@ -340,11 +357,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     require_voxels_in_range(tets, voxel_size);
     const StageProgress progress(interrupter, "Shell depth");
     auto grid = empty_depth_grid(voxel_size);
-    const auto deepest = std::max_element(tets.prism_layer.begin(), tets.prism_layer.end());
-    // Prism layers count from 0, so the number of layers is one more than the largest; a mesh
-    // without tets gets 1, which keeps the division defined.
-    const double layers = deepest == tets.prism_layer.end() ? 1.0 : 1.0 + *deepest;
-    const Parts parts = make_parts(tets, voxel_size, layers);
+    const Parts parts = make_parts(tets, voxel_size, layers_of(tets));
     const auto jobs = bucket_sort_by_column<Job>(
         parts.jobs,
         [](const Job& job) {
@@ -370,14 +383,8 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
                                              jobs.data() + starts[column + 1]);
             },
             1);
-        // One thread adds the leaves: changing the upper nodes of a tree is not safe for several,
-        // and the order of the columns makes the tree the same each time.
-        for (std::size_t column = begin; column < end; ++column) {
-            for (std::unique_ptr<Leaf>& leaf : filled[column].leaf)
-                if (leaf)
-                    grid->tree().addLeaf(leaf.release());
-            filled[column] = {};
-        }
+        for (std::size_t column = begin; column < end; ++column)
+            add_leaves(std::move(filled[column]), *grid);
     }
     return grid;
 }

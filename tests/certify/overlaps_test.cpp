@@ -4,7 +4,6 @@
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/pipeline.h"
 
 #include "core/exact.h"
 #include "support/broken_shells.h"
@@ -293,75 +292,6 @@ TEST(Overlaps, ATorusThroughItselfFailsNearTheCrossingOnly)
     // The arms cross at a right angle or nearly so: the common part ends within two radii.
     EXPECT_LT(farthest, 0.4);
     EXPECT_GT(double(found.certified_prisms()), 0.8 * double(found.prisms));
-}
-
-/// Vertices of the triangles that touch another one otherwise than in shared corners and edges.
-std::vector<char> at_crossings(const TriangleMesh& mesh)
-{
-    std::vector<char> marked(mesh.points.size());
-    for (const openvdb::Vec3I& s : mesh.triangles)
-        for (const openvdb::Vec3I& t : mesh.triangles)
-            if (s != t && exact::triangles_touch(mesh.points, s, t))
-                for (int k = 0; k < 3; ++k)
-                    marked[s[k]] = 1;
-    return marked;
-}
-
-TEST(Overlaps, GrowthOnCrossingBoxesGivesUpTheCrossingTrianglesOnly)
-{
-    const TriangleMesh mesh =
-        test::joined(test::gridded_box(Vec3d(0.0), Vec3d(1.0), 5),
-                     test::gridded_box(Vec3d(0.53, 0.57, 0.61), Vec3d(1.53, 1.57, 1.61), 5));
-    ShellOptions options;
-    options.level_set.resolution = 40;
-    options.coverage.samples = 10000;
-    EXPECT_THROW(build_shell(mesh, options), GeometryError);
-    options.check.allow_self_intersections = true;
-    const ShellResult result = build_shell(mesh, options);
-    ASSERT_TRUE(result.report.overlaps);
-    EXPECT_FALSE(result.report.certificate->certified());
-    EXPECT_TRUE(result.report.certificate->locally_valid());
-    // The common part of the boxes is filled once, not twice.
-    EXPECT_TRUE(result.report.overlaps->none()) << result.report.overlaps->summary();
-    EXPECT_EQ(result.report.coverage.in_several, 0U);
-    EXPECT_GT(result.report.coverage.covered_share, 0.85);
-    const std::vector<char> near = at_crossings(result.surface);
-    const PrismShell& shell = result.stack.layers.front();
-    std::size_t pinned = 0;
-    for (std::size_t v = 0; v < near.size(); ++v) {
-        pinned += shell.length(v) == 0;
-        EXPECT_TRUE(shell.length(v) > 0 || near[v]) << v;
-    }
-    EXPECT_GT(pinned, 0U);
-}
-
-TEST(Overlaps, AVertexOfTwoFansIsCopiedWhereCrossingsAreAllowed)
-{
-    // Two balls that share one vertex.
-    TriangleMesh mesh = test::icosphere(1, 2);
-    const Vec3s end = mesh.points[0];
-    const auto count = static_cast<std::uint32_t>(mesh.points.size());
-    const TriangleMesh other = mesh;
-    for (const Vec3s& p : other.points)
-        mesh.points.push_back(end * 2.0f - p);
-    for (const openvdb::Vec3I& t : other.triangles) {
-        openvdb::Vec3I turned(t[0], t[2], t[1]);
-        for (int k = 0; k < 3; ++k)
-            turned[k] = turned[k] == 0 ? 0U : turned[k] + count;
-        mesh.triangles.push_back(turned);
-    }
-    ASSERT_EQ(check_mesh(mesh).non_manifold_vertices.first, std::vector<std::uint32_t>{0});
-    ShellOptions options;
-    options.level_set.resolution = 32;
-    options.coverage.samples = 1000;
-    EXPECT_THROW(build_shell(mesh, options), GeometryError);
-    options.check.allow_self_intersections = true;
-    const ShellResult result = build_shell(mesh, options);
-    EXPECT_EQ(result.report.split_vertices.first, std::vector<std::uint32_t>{0});
-    EXPECT_EQ(result.report.vertex_copies, 1U);
-    ASSERT_TRUE(result.report.overlaps);
-    EXPECT_TRUE(result.report.overlaps->none());
-    EXPECT_GT(result.report.fill, 0.7);
 }
 
 TEST(Overlaps, LayersNameTheirPrismsApart)

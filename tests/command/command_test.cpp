@@ -244,57 +244,53 @@ TEST_F(Command, RefusesBadInputAndLeavesTheOutputAlone)
     const std::string kept = "what stood here before";
     write_bytes(folder / "kept.vdb", kept);
     const std::string to_kept = " -o " + file("kept.vdb");
-    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
-    const std::string open = mesh_file("open.obj", without_triangle(icosphere(1.0, 1), 3));
-    const std::string inside_out = mesh_file("inside_out.obj", reversed(icosphere(1.0, 1)));
-    write_bytes(folder / "empty.obj", "");
-    write_bytes(folder / "nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
-    write_bytes(folder / "inf.obj", "v 0 0 0\nv 1 0 1e99\nv 0 1 0\nf 1 2 3\n");
-    write_bytes(folder / "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n");
-    write_bytes(folder / "points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-    write_bytes(folder / "mesh.xyz", "0 0 0\n");
-
+    const struct {
+        const char *name, *bytes, *word;
+    } kFiles[] = {{"empty.obj", "", "empty"},
+                  {"nan.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "vertex"},
+                  {"inf.obj", "v 0 0 0\nv 1 0 1e99\nv 0 1 0\nf 1 2 3\n", "vertex"},
+                  {"range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n", "face"},
+                  {"points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "face"},
+                  {"mesh.xyz", "0 0 0\n", ".xyz"}};
+    for (const auto& [name, bytes, word] : kFiles) {
+        write_bytes(folder / name, bytes);
+        expect_refusal("build " + file(name) + to_kept, ExitCode::read_error, {name, word});
+    }
     expect_refusal("build " + file("none.obj") + to_kept, ExitCode::read_error, {"none.obj"});
-    expect_refusal("build " + file("empty.obj") + to_kept, ExitCode::read_error,
-                   {"empty.obj", "empty"});
-    expect_refusal("build " + file("nan.obj") + to_kept, ExitCode::read_error,
-                   {"nan.obj", "vertex"});
-    expect_refusal("build " + file("inf.obj") + to_kept, ExitCode::read_error,
-                   {"inf.obj", "vertex"});
-    expect_refusal("build " + file("range.obj") + to_kept, ExitCode::read_error,
-                   {"range.obj", "face"});
-    expect_refusal("build " + file("points.obj") + to_kept, ExitCode::read_error,
-                   {"points.obj", "face"});
-    expect_refusal("build " + file("mesh.xyz") + to_kept, ExitCode::read_error,
-                   {"mesh.xyz", ".xyz"});
+    const std::string open = mesh_file("open.obj", without_triangle(icosphere(1.0, 1), 3));
     expect_refusal("build " + open + to_kept, ExitCode::geometry_error, {"open.obj", "boundary"});
+    const std::string inside_out = mesh_file("inside_out.obj", reversed(icosphere(1.0, 1)));
     expect_refusal("build " + inside_out + to_kept, ExitCode::geometry_error,
                    {"inside_out.obj", "--turn-outward"});
-    expect_refusal("build " + sphere + " --voxel-size 3" + to_kept, ExitCode::geometry_error,
-                   {"voxel", "3"});
-    expect_refusal("build " + sphere + " --voxel-size 2e-5" + to_kept, ExitCode::geometry_error,
-                   {"voxel", "GiB"});
-    expect_refusal("build " + sphere + " --voxel-size 1e-6" + to_kept, ExitCode::geometry_error,
-                   {"voxel", "1e-06"});
-    expect_refusal("build " + sphere + " --voxel-size 0" + to_kept, ExitCode::usage_error,
-                   {"voxel"});
-    expect_refusal("build " + sphere + " --voxel-size 0.1 --resolution 9" + to_kept,
-                   ExitCode::usage_error, {"--resolution"});
-    expect_refusal("build " + sphere + " --stop-test none" + to_kept, ExitCode::usage_error,
-                   {"stop test"});
-    expect_refusal("build " + sphere + " --stop-test nonsense" + to_kept, ExitCode::usage_error,
-                   {"nonsense"});
-    expect_refusal("build " + sphere + " --thickness-grid " + file("none.vdb") + to_kept,
-                   ExitCode::read_error, {"none.vdb"});
     EXPECT_EQ(read_bytes(folder / "kept.vdb"), kept);
+}
 
-    expect_refusal("build " + sphere + " -o " + file("out.abc"), ExitCode::usage_error,
-                   {"out.abc", ".abc"});
-    expect_refusal("build " + sphere + " -o " + file("no_folder/out.vdb"), ExitCode::write_error,
-                   {"no_folder"});
-    expect_refusal("build " + sphere + " -o " + sphere, ExitCode::usage_error, {"input"});
-    expect_refusal("build " + sphere + " --metres-per-unit 0 -o " + file("out.usda"),
-                   ExitCode::usage_error, {"--metres-per-unit"});
+TEST_F(Command, RefusesBadOptionsAndOutputs)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const struct {
+        std::string options;
+        int code;
+        std::vector<std::string> words;
+    } kCases[] = {
+        {"--voxel-size 3", ExitCode::geometry_error, {"voxel", "3"}},
+        {"--voxel-size 2e-5", ExitCode::geometry_error, {"voxel", "GiB"}},
+        {"--voxel-size 1e-6", ExitCode::geometry_error, {"voxel", "1e-06"}},
+        {"--voxel-size 0", ExitCode::usage_error, {"voxel"}},
+        {"--voxel-size 0.1 --resolution 9", ExitCode::usage_error, {"--resolution"}},
+        {"--stop-test none", ExitCode::usage_error, {"stop test"}},
+        {"--stop-test nonsense", ExitCode::usage_error, {"nonsense"}},
+        {"--thickness-grid " + file("none.vdb"), ExitCode::read_error, {"none.vdb"}},
+        {"-o " + file("out.abc"), ExitCode::usage_error, {"out.abc", ".abc"}},
+        {"-o " + file("no_folder/out.vdb"), ExitCode::write_error, {"no_folder"}},
+        {"-o " + sphere, ExitCode::usage_error, {"input"}},
+        {"--metres-per-unit 0 -o " + file("a.usda"), ExitCode::usage_error, {"--metres-per-unit"}}};
+    for (const auto& [options, code, words] : kCases) {
+        const bool output = options.find("-o ") != std::string::npos;
+        expect_refusal("build " + sphere + " " + options + (output ? "" : " -o " + file("a.vdb")),
+                       code, words);
+        EXPECT_FALSE(std::filesystem::exists(folder / "a.vdb")) << options;
+    }
     expect_refusal("check " + sphere, ExitCode::read_error, {"sphere.obj"});
     expect_refusal("", ExitCode::usage_error, {});
     expect_refusal("build", ExitCode::usage_error, {"mesh"});

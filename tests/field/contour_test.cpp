@@ -207,10 +207,10 @@ TEST(Simplify, KeepsPointsWhereTheyWereAndWallsApart)
 
 TEST(Simplify, TurbulentSurfacesStayEmbedded)
 {
-    const TriangleMesh rough = tets_of(*random_signs(8, 1.0f));
-    const Simplified simple = simplify(rough, {1.0, 10.0}, nullptr);
+    const TriangleMesh turbulent = tets_of(*random_signs(8, 1.0f));
+    const Simplified simple = simplify(turbulent, {1.0, 10.0}, nullptr);
     expect_sound(simple.mesh);
-    EXPECT_LT(simple.mesh.triangles.size(), rough.triangles.size());
+    EXPECT_LT(simple.mesh.triangles.size(), turbulent.triangles.size());
 }
 
 } // namespace

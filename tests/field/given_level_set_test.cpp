@@ -4,10 +4,10 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/io/read_mesh.h"
-#include "vdb_shell/pipeline.h"
 #include "vdb_shell/resample/surface_distance.h"
 
 #include "support/files.h"
+#include "support/grids.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -27,15 +27,6 @@ using openvdb::GridBase;
 using openvdb::Vec3d;
 
 constexpr double kVoxel = 0.05;
-
-/// A unit sphere's level set named "surface".
-FloatGrid::Ptr sphere_field(double depth)
-{
-    LevelSetOptions options;
-    options.voxel_size = kVoxel;
-    options.interior_depth = depth;
-    return mesh_to_level_set(icosphere(1.0, 3), options);
-}
 
 class GivenLevelSet : public ::testing::Test
 {
@@ -169,55 +160,6 @@ TEST(WhyNotSteppable, NamesWhatIsMissing)
     scaled->transform().postScale(Vec3d(2));
     const std::string slope = hindrance(*scaled);
     EXPECT_NE(slope.find("band outside is 1.5"), std::string::npos) << slope;
-}
-
-ShellOptions quick_options()
-{
-    ShellOptions options;
-    options.level_set.resolution = 40;
-    options.coverage.samples = 1000;
-    options.contour.adaptivity = 0.5;
-    options.grow.free_rounds = 2;
-    return options;
-}
-
-TEST(ShellOfLevelSet, StepsThroughAGivenFieldThatIsDeepEnough)
-{
-    const auto field = sphere_field(1.0);
-    const ShellResult shell = build_shell_from_level_set(*field, quick_options());
-    EXPECT_EQ(shell.report.field.origin, "as given");
-    EXPECT_TRUE(shell.report.certificate->certified());
-    EXPECT_NEAR(shell.report.solid_volume, 4.0 / 3.0 * M_PI, 0.1);
-    EXPECT_EQ(shell.report.field.voxel_size, field->voxelSize()[0]);
-}
-
-TEST(ShellOfLevelSet, ATurnedFieldGivesTheSameSolid)
-{
-    const auto turned = sphere_field(1.0);
-    turned->transform().postRotate(0.5, openvdb::math::X_AXIS);
-    turned->transform().postTranslate(Vec3d(4, 5, 6));
-    const ShellResult shell = build_shell_from_level_set(*turned, quick_options());
-    EXPECT_EQ(shell.report.field.origin, "as given");
-    EXPECT_TRUE(shell.report.certificate->certified());
-    EXPECT_NEAR(shell.report.solid_volume, 4.0 / 3.0 * M_PI, 0.1);
-    EXPECT_GT(shell.report.fill, 0.5);
-}
-
-TEST(ShellOfLevelSet, SaysWhyTheFieldWasMadeAnew)
-{
-    const auto squeezed = sphere_field(0.2);
-    squeezed->transform().postScale(Vec3d(1, 1, 2));
-    const ShellResult shell = build_shell_from_level_set(*squeezed, quick_options());
-    EXPECT_NE(shell.report.field.origin.find("no cubes"), std::string::npos);
-    EXPECT_TRUE(shell.report.certificate->certified());
-    EXPECT_NEAR(shell.report.solid_volume, 8.0 / 3.0 * M_PI, 0.2);
-}
-
-TEST(ShellOfLevelSet, RefusesAWrap)
-{
-    ShellOptions options = quick_options();
-    options.wrap.wanted = true;
-    EXPECT_THROW(build_shell_from_level_set(*sphere_field(0.3), options), InvalidOption);
 }
 
 TEST_F(GivenLevelSet, TheCowsLevelSetGivesTheCowBackToWithinAVoxelButForItsTips)

@@ -240,5 +240,30 @@ TEST(LevelSet, SeesASolidInsideACavity)
     EXPECT_LT(on_axis(*grid, 0.8), -0.1);
 }
 
+TEST(NegateLevelSet, GivesExactlyTheNegative)
+{
+    LevelSetOptions options;
+    options.resolution = 24;
+    options.exterior_depth = 0.5;
+    const TriangleMesh ball = test::icosphere(1, 2);
+    const auto level_set = mesh_to_level_set(ball, options);
+    const double voxel = level_set->voxelSize()[0];
+    EXPECT_GE(level_set->background(), 0.5 + 2.9 * voxel);
+    const openvdb::FloatGrid::Ptr copy = level_set->deepCopy();
+    negate_level_set(*copy);
+    EXPECT_EQ(copy->background(), -level_set->background());
+    auto original = level_set->getConstAccessor(), negated = copy->getConstAccessor();
+    for (int i = -30; i <= 30; ++i) {
+        const openvdb::Coord at(i, i / 2, -i / 3);
+        EXPECT_EQ(negated.getValue(at), -original.getValue(at));
+        EXPECT_EQ(negated.isValueOn(at), original.isValueOn(at));
+    }
+    negate_level_set(*copy);
+    EXPECT_EQ(copy->background(), level_set->background());
+    EXPECT_TRUE(copy->tree().hasSameTopology(level_set->tree()));
+    for (auto value = level_set->cbeginValueAll(); value; ++value)
+        EXPECT_EQ(copy->getConstAccessor().getValue(value.getCoord()), *value);
+}
+
 } // namespace
 } // namespace vdb_shell

@@ -3,7 +3,6 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/pipeline.h"
 
 #include "field/winding_number.h"
 #include "support/shapes.h"
@@ -278,22 +277,6 @@ TEST(Wrap, BadOptionsAndEmptyMeshesAreRefused)
     EXPECT_THROW(wrap_mesh(mesh, options), InvalidOption);
     EXPECT_THROW(wrap_mesh({}, {}), GeometryError);
     EXPECT_THROW(wrap_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}}, {}), GeometryError);
-}
-
-TEST(Wrap, TheShellOfASheetIsCertified)
-{
-    ShellOptions options;
-    options.wrap.wanted = true;
-    options.wrap.resolution = 24;
-    options.level_set.resolution = 64;
-    options.coverage.samples = 1000;
-    const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-    const ShellResult result = build_shell(sheet, options, "sheet");
-    ASSERT_TRUE(result.report.certificate.has_value());
-    EXPECT_TRUE(result.report.certificate->certified());
-    EXPECT_GT(result.report.fill, 0.1);
-    ASSERT_TRUE(result.report.wrap.has_value());
-    EXPECT_EQ(result.report.wrap->sheet_share, 1.0);
 }
 
 } // namespace

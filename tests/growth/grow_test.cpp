@@ -2,12 +2,8 @@
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/mesh/normals.h"
 
-#include "core/stage_progress.h"
-#include "growth/initialise.h"
 #include "growth/move_tests.h"
-#include "growth/pins.h"
 #include "growth/predicates.h"
-#include "support/files.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
 #include "vdb_shell/certify/certificate.h"
@@ -15,9 +11,7 @@
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
-#include "vdb_shell/pipeline.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -61,13 +55,6 @@ GrowResult grown(const Case& c, const GrowOptions& options = {}, Interrupter* in
     return grow_shell(c.mesh, c.directions, c.start, c.cap, options, {}, interrupter);
 }
 
-GrowOptions thickest()
-{
-    GrowOptions options;
-    options.method = Method::thickest;
-    return options;
-}
-
 double fill_of(const PrismShell& shell)
 {
     return 1 - signed_volume(shell.inner, shell.triangles) /
@@ -107,9 +94,8 @@ void expect_sound(const GrowResult& result, Method method)
     if (method == Method::certified)
         expect_twelve_positive(result.shell);
     expect_all_positive(result.shell, result.split);
-    const PrismTest test =
-        method == Method::certified ? PrismTest::twelve_tets : PrismTest::chosen_tets;
-    for (const std::string& failure : certify_shell(result.shell, result.split, test).failures())
+    for (const std::string& failure :
+         certify_shell(result.shell, result.split, test::test_of(method)).failures())
         ADD_FAILURE() << failure;
     EXPECT_TRUE(check_conformity(result.shell, make_tets(result.shell, result.split)).conforming());
     EXPECT_GE(fill_of(result.shell), result.report.fill_after_lines - 1e-12);
@@ -118,25 +104,6 @@ void expect_sound(const GrowResult& result, Method method)
 std::size_t count_of(const PrismShell& shell, StopReason reason)
 {
     return static_cast<std::size_t>(std::count(shell.stop.begin(), shell.stop.end(), reason));
-}
-
-/// A pyramid over a U. No point of the U sees all its sides, so no direction at the apex (the last
-/// vertex) sees all the faces there.
-TriangleMesh pyramid_over_u()
-{
-    TriangleMesh mesh;
-    mesh.points = {Vec3s(0, 0, 0), Vec3s(3, 0, 0), Vec3s(3, 3, 0),
-                   Vec3s(2, 3, 0), Vec3s(2, 1, 0), Vec3s(1, 1, 0),
-                   Vec3s(1, 3, 0), Vec3s(0, 3, 0), Vec3s(1.5F, 0.5F, 2)};
-    for (std::uint32_t i = 0; i < 8; ++i)
-        mesh.triangles.emplace_back(i, (i + 1) % 8, 8);
-    for (const auto& [a, b, c, d] :
-         {std::array<std::uint32_t, 4>{0, 1, 4, 5}, std::array<std::uint32_t, 4>{0, 5, 6, 7},
-          std::array<std::uint32_t, 4>{1, 2, 3, 4}}) {
-        mesh.triangles.emplace_back(a, c, b);
-        mesh.triangles.emplace_back(a, d, c);
-    }
-    return mesh;
 }
 
 // The inner surface of a convex or a round solid can collapse onto its centre, so nothing but
@@ -180,7 +147,7 @@ TEST(Grow, KeepsEveryStateValidWithoutSymmetry)
     expect_sound(certified, Method::certified);
     expect_embedded(certified.shell);
     EXPECT_GT(fill_of(certified.shell), 0.95);
-    const GrowResult more = grown(c, thickest());
+    const GrowResult more = grown(c, test::by_method(Method::thickest));
     expect_sound(more, Method::thickest);
     expect_embedded(more.shell);
     EXPECT_GT(fill_of(more.shell), 0.95);
@@ -270,7 +237,7 @@ TEST(Grow, NeverExceedsTheThickness)
 
 TEST(Grow, PinsAVertexThatNoDirectionServes)
 {
-    const Case c = case_of(pyramid_over_u());
+    const Case c = case_of(test::pyramid_over_u());
     ASSERT_TRUE(check_mesh(c.mesh).embedded());
     for (const Method method : {Method::certified, Method::thickest}) {
         GrowOptions options;
@@ -342,7 +309,7 @@ TEST(Grow, GivesTheSameBitsForAnyNumberOfThreads)
 {
     const Case c = case_of(test::joined(
         bumpy_sphere(), test::translated(test::torus(1, 0.3, 24, 12), Vec3d(4, 0, 0))));
-    GrowOptions options = thickest();
+    GrowOptions options = test::by_method(Method::thickest);
     options.free_rounds = 10;
     const auto with_threads = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -422,49 +389,6 @@ TEST(Grow, RoundsToFloat32ForGood)
             EXPECT_EQ(bits & ((std::uint64_t(1) << 29) - 1), 0U) << "more than float32's 24 bits";
         }
     }
-}
-
-TEST(Grow, FillsRealMeshes)
-{
-    VDB_SHELL_NEEDS_REAL_MESHES();
-    for (const char* name : {"cow.obj", "diku.obj", "lamp.obj", "teapot.obj"}) {
-        SCOPED_TRACE(name);
-        const ReadResult read = read_mesh(test::real_meshes() / "paper" / name, {});
-        ShellOptions options;
-        options.level_set.resolution = 64;
-        const ShellResult result = build_shell(read.mesh, options, name);
-        EXPECT_EQ(result.report.signs.inverted.count, 0U);
-        EXPECT_EQ(result.report.signs.flat.count, 0U);
-        expect_twelve_positive(result.stack.layers[0]);
-        EXPECT_EQ(result.report.coverage.samples, ShellOptions{}.coverage.samples);
-        EXPECT_EQ(result.report.coverage.in_several, 0U);
-        EXPECT_EQ(result.report.coverage.outside_covered, 0U);
-        EXPECT_GT(result.report.fill, 0.95);
-    }
-}
-
-TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
-{
-    const Case c = case_of(test::icosphere(1, 1));
-    const growth::Connectivity mesh = growth::connect(c.mesh.points.size(), c.mesh.triangles);
-    growth::GrowState s = growth::make_state(mesh, c.mesh.points, c.cap);
-    growth::shrink_until_valid(s, c.directions, std::vector<double>(s.b.size(), 0.5),
-                               StageProgress(nullptr, "test"));
-    // Neighbours too: each is released beside pins that are not yet.
-    for (const int v : {0, 1, 11}) {
-        s.pinned[v] = 1;
-        s.b[v] = s.a[v];
-    }
-    EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0)), 0);
-    EXPECT_EQ(growth::release_pins(s, c.directions.visibility), 3);
-    for (int f = 0; f < mesh.face_count(); ++f) {
-        EXPECT_TRUE(growth::prism_valid(s, f));
-        const growth::InnerTriangle triangle(s, f);
-        for (int g = 0; g < mesh.face_count(); ++g)
-            EXPECT_FALSE(triangle.meets_outer(g) || (g != f && triangle.meets_inner(g)));
-    }
-    for (const int v : {0, 1, 11})
-        EXPECT_NE(s.b[v], s.a[v]);
 }
 
 } // namespace

@@ -204,12 +204,15 @@ std::vector<std::int32_t>& integers(std::vector<Attribute>& list, const char* na
         list[static_cast<std::size_t>(found - list.data())].values);
 }
 
-TEST(LayeredGeometry, SaysWhatContradicts)
+/// A refusal that names the file and has those words.
+void has(const std::string& message, const std::string& words)
 {
-    const auto has = [](const std::string& message, const std::string& words) {
-        EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
-        EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
-    };
+    EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
+    EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
+}
+
+TEST(LayeredGeometry, SaysWhichNumberOfLayersContradicts)
+{
     const auto detail = [&](const char* name, std::int32_t value) {
         return refusal_after([&](auto& g) { integers(g.detail_attributes, name)[0] = value; });
     };
@@ -220,6 +223,10 @@ TEST(LayeredGeometry, SaysWhatContradicts)
     has(detail("vdb_shell_skin", 4), "\"vdb_shell_skin\" is 4, which is not in [0, 3]");
     has(detail("vdb_shell_skin", 3), "checksum");
     has(detail("vdb_shell_skin", 1), "80 tets and 36 prisms make at least 116");
+}
+
+TEST(LayeredGeometry, SaysWhichElementContradicts)
+{
     has(refusal_after([](auto& g) { integers(g.point_attributes, "surface")[3] = 1; }),
         "\"surface\" of point 3 is 1, expected 0 to 0");
     has(refusal_after([](auto& g) { integers(g.point_attributes, "surface").back() = 4; }),

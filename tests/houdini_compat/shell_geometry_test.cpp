@@ -168,12 +168,15 @@ template <typename T> std::vector<T>& values_of(std::vector<Attribute>& list, co
     return std::get<std::vector<T>>(list[static_cast<std::size_t>(found - list.data())].values);
 }
 
-TEST(ShellGeometry, SaysWhatContradicts)
+/// A refusal that names the file and has those words.
+void has(const std::string& message, const std::string& words)
 {
-    const auto has = [](const std::string& message, const std::string& words) {
-        EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
-        EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
-    };
+    EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
+    EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
+}
+
+TEST(ShellGeometry, SaysWhichCountContradicts)
+{
     has(refusal_after([](auto& g) { g.detail_attributes.clear(); }), "holds no shell");
     has(refusal_after([](auto& g) {
             values_of<std::int32_t>(g.detail_attributes, "vdb_shell_schema")[0] = 99;
@@ -187,6 +190,10 @@ TEST(ShellGeometry, SaysWhatContradicts)
             values_of<std::int32_t>(g.detail_attributes, "vdb_shell_vertices")[0] = 14;
         }),
         "\"vdb_shell_vertices\" is 14, which is not in [0, 13]");
+}
+
+TEST(ShellGeometry, SaysWhichElementContradicts)
+{
     has(refusal_after(
             [](auto& g) { values_of<std::int32_t>(g.point_attributes, "source_vertex")[9] = 8; }),
         "\"source_vertex\" of point 9 is 8 of 8");

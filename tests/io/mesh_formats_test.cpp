@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The less common forms of the mesh formats: docs/mesh_files.md lists what is read and refused.
-#include "support/files.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
-#include "vdb_shell/core/error.h"
-#include "vdb_shell/io/polygon_soup.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 
 namespace vdb_shell
 {
@@ -23,43 +17,13 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
+using test::raw;
 
 const char* const kByteOrderMark = "\xEF\xBB\xBF";
-const char* const kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
-                         "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-template <typename Value> std::string raw(Value value, bool big_endian)
+class MeshFormats : public test::MeshFiles
 {
-    std::string bytes(sizeof value, '\0');
-    std::memcpy(bytes.data(), &value, sizeof value);
-    if (big_endian)
-        std::reverse(bytes.begin(), bytes.end());
-    return bytes;
-}
-
-class MeshFormats : public testing::Test
-{
-protected:
-    ReadResult read(const std::string& file, const std::string& bytes)
-    {
-        test::write_bytes(folder_ / file, bytes);
-        return read_mesh(folder_ / file);
-    }
-    std::string complaint(const std::string& file, const std::string& bytes)
-    {
-        try {
-            read(file, bytes);
-        } catch (const ReadError& error) {
-            EXPECT_EQ(std::string(error.what()).find((folder_ / file).string()), 0U);
-            return error.what();
-        }
-        return "nothing was thrown";
-    }
-    test::TemporaryFolder folder_;
 };
-
-#define EXPECT_SAYS(message, part)                                                                 \
-    EXPECT_NE((message).find(part), std::string::npos) << "it says: " << (message)
 
 void expect_tetrahedron(const ReadResult& result)
 {
@@ -196,6 +160,70 @@ TEST_F(MeshFormats, never_takes_cut_triangle_strips_amiss)
             EXPECT_NE(complaint("cut.ply", bytes.substr(0, length)), "nothing was thrown");
 }
 
+TEST_F(MeshFormats, understands_the_forms_of_off)
+{
+    expect_tetrahedron(read("a.off",
+                            "# first\nOFF 4 4 6 # counts\n\n0 0 0\n1 0 0 # x\n0 1 0\n0 0 1\n"
+                            "3 0 2 1 255 0 0\n3 0 1 3\n# between\n3 0 3 2\n3 1 2 3"));
+    expect_tetrahedron(read("c.off", "CNOFF\n4 4 0\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 255 0 0\n"
+                                     "0 1 0 0 0 1 .5 .5 .5 1\n0 0 1 0 0 1 255 0 0 255\n"
+                                     "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
+}
+
+TEST_F(MeshFormats, names_what_is_wrong_in_off)
+{
+    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "after 2 of the 3 vertices");
+    EXPECT_SAYS(complaint("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                "after 1 of the 2 faces");
+    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+                "face 0 (line 6): the vertex index 3 is out of range, the file has 3 vertices");
+    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
+                "declares 3 corners and has 2");
+    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
+                "line 7 goes on");
+    EXPECT_SAYS(complaint("a.off", "OFF\n4000000000 1 0\n"), "4000000000");
+    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                "vertex 0 (line 3)");
+    EXPECT_SAYS(complaint("a.off", "OFF BINARY\n"), "binary OFF");
+    EXPECT_SAYS(complaint("a.off", "4OFF\n"), "\"4OFF\"");
+}
+
+TEST_F(MeshFormats, understands_the_forms_of_obj_lines)
+{
+    const std::string text =
+        "# a comment\r\nmtllib none.mtl\r\no thing\r\ng part\r\nvt 1e60 2\r\n"
+        "vn 0 0 1\r\nv 0 0 0 1.0\r\n  v 1 0 0 0.5 0.5 0.5\r\nv 0 \\\r\n 1 0\r\n"
+        "v 0 0 1\r\ns off\r\nusemtl m\r\nl 1 2\r\np 1\r\nf 1/1/1 3/1 2//1\r\n"
+        "f 1 2 4 # a comment\r\nf -4/-1 -1 \\\r\n-2\r\nf 2 3 4";
+    const ReadResult result = read("a.obj", text);
+    expect_tetrahedron(result);
+    EXPECT_EQ(result.report.file_vertices, 4U);
+    EXPECT_EQ(result.report.file_faces, 4U);
+}
+
+TEST_F(MeshFormats, names_what_is_wrong_in_obj)
+{
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 4\n"),
+                "face 0 (line 4): the vertex index 4 is out of range, the file has 3 vertices");
+    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 0\n"), "index 0 is out of range");
+    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 -4\n"), "index -4 is out of range");
+    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 99999999999\n"), "99999999999");
+    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2\n"), "face 0 (line 4) has 2 corners");
+    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 x\n"), "\"x\" is not a whole number");
+    EXPECT_SAYS(complaint("a.obj", vertices + "v 1 2"), "vertex 3 (line 4) has 2 coordinates");
+    EXPECT_SAYS(complaint("a.obj", vertices), "no faces (and 3 vertices)");
+    for (const char* const word : {"nan", "-inf", "1e39", "3.4028236e38", "1e999"}) {
+        const std::string message = complaint("a.obj", vertices + "v 0 " + word + " 0\nf 1 2 3\n");
+        EXPECT_SAYS(message, "vertex 3 (line 4)");
+        EXPECT_SAYS(message, word);
+        EXPECT_SAYS(message, "not finite in float32");
+    }
+    for (const char* const word : {"1,5", "0x10", "1e", "--1", "+-1", "1.2.3", "abc"})
+        EXPECT_SAYS(complaint("a.obj", vertices + "v 0 " + word + " 0\nf 1 2 3\n"),
+                    "is not a number");
+}
+
 TEST_F(MeshFormats, reads_off_whose_values_run_over_line_ends)
 {
     expect_tetrahedron(read("faces.off", "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
@@ -237,7 +265,7 @@ TEST_F(MeshFormats, skips_what_else_the_vertices_of_off_have)
 
 TEST_F(MeshFormats, skips_a_byte_order_mark)
 {
-    expect_tetrahedron(read("a.obj", std::string(kByteOrderMark) + kObj));
+    expect_tetrahedron(read("a.obj", std::string(kByteOrderMark) + test::kTetrahedronObj));
     expect_tetrahedron(read("a.off", std::string(kByteOrderMark) +
                                          "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
                                          "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"));
@@ -262,12 +290,14 @@ TEST_F(MeshFormats, skips_a_byte_order_mark)
 
 TEST_F(MeshFormats, loses_no_statement_of_obj_that_makes_a_surface)
 {
-    std::string old = kObj;
+    std::string old = test::kTetrahedronObj;
     old.replace(old.find("f 1 2 4"), 7, "fo 1 2 4 # an outline");
     expect_tetrahedron(read("old.obj", old));
-    expect_tetrahedron(read("c.obj", std::string(kObj) + "# f 1 2 3\nvp 0.5\nl 1 2\np 3\ncsh x\n"));
+    expect_tetrahedron(read("c.obj", std::string(test::kTetrahedronObj) +
+                                         "# f 1 2 3\nvp 0.5\nl 1 2\np 3\ncsh x\n"));
     const auto expect_refused = [&](const std::string& line, const std::string& words) {
-        EXPECT_SAYS(complaint("a.obj", kObj + line + "\n"), "line 9: the keyword " + words);
+        EXPECT_SAYS(complaint("a.obj", test::kTetrahedronObj + line + "\n"),
+                    "line 9: the keyword " + words);
     };
     expect_refused("F 1 2 3", "\"F\" is in capitals; in OBJ it is \"f\"");
     expect_refused("V 1 2 3", "\"V\" is in capitals");
@@ -278,9 +308,9 @@ TEST_F(MeshFormats, loses_no_statement_of_obj_that_makes_a_surface)
     expect_refused("surf 0 1 0 1 1 2 3 4", "\"surf\" stands for a free-form surface");
     expect_refused("bzp 1 2 3 4", "\"bzp\" stands for a Bezier patch");
     expect_refused("call other.obj", "\"call\" stands for another file");
-    EXPECT_SAYS(complaint("a.obj", std::string(kObj) + "f 1 2 0\n"),
+    EXPECT_SAYS(complaint("a.obj", std::string(test::kTetrahedronObj) + "f 1 2 0\n"),
                 "face 4 (line 9): the vertex index 0 is out of range");
-    EXPECT_SAYS(complaint("a.obj", std::string(kObj) + "f 1 2 3#\n"),
+    EXPECT_SAYS(complaint("a.obj", std::string(test::kTetrahedronObj) + "f 1 2 3#\n"),
                 "face 4 (line 9): \"3#\" is not a whole number");
     EXPECT_SAYS(complaint("a.obj", "f 1 2 3\nf 1 2 5\nf 1 2 6\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"),
                 "face 1 (line 2): the vertex index 5 is out of range, the file has 3 vertices");
@@ -294,59 +324,6 @@ TEST_F(MeshFormats, refuses_bytes_behind_the_facets_of_binary_stl)
         EXPECT_SAYS(complaint("b.stl", binary + std::string(more, '\0')),
                     "4 facets, which take 284 bytes, but the file has " +
                         std::to_string(284 + more));
-}
-
-PolygonSoup cube_soup(const Vec3d& corner, double size)
-{
-    PolygonSoup soup;
-    soup.format = "a format of one's own";
-    for (int i = 0; i < 8; ++i)
-        soup.points.push_back(corner + size * Vec3d(i & 1, i >> 1 & 1, i >> 2));
-    soup.corners = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
-    soup.polygon_sizes.assign(6, 4);
-    return soup;
-}
-
-TEST(PolygonSoup, becomes_a_mesh_as_files_do)
-{
-    const ReadResult result = mesh_of_polygons(cube_soup({0, 0, 0}, 2), "cube");
-    EXPECT_EQ(result.report.format, "a format of one's own");
-    EXPECT_EQ(result.report.file_vertices, 8U);
-    EXPECT_EQ(result.report.file_faces, 6U);
-    EXPECT_EQ(result.report.polygons_triangulated, 6U);
-    EXPECT_EQ(result.mesh.triangles.size(), 12U);
-    EXPECT_DOUBLE_EQ(check_mesh(result.mesh).volume, 8.0);
-
-    // Far away the cube would be flat in float32; about an origin of its own it is not.
-    ReadOptions options;
-    options.recentre = true;
-    const ReadResult far = mesh_of_polygons(cube_soup({1e9, 0, 0}, 0.5), "cube", options);
-    EXPECT_DOUBLE_EQ(check_mesh(far.mesh).volume, 0.125);
-    EXPECT_NE(far.report.placement.origin[0], 0.0);
-}
-
-TEST(PolygonSoup, that_is_no_surface_is_refused)
-{
-    const auto complaint = [](const PolygonSoup& soup) -> std::string {
-        try {
-            mesh_of_polygons(soup, "cube");
-        } catch (const ReadError& error) {
-            return error.what();
-        }
-        return "nothing was thrown";
-    };
-    PolygonSoup soup = cube_soup({0, 0, 0}, 1);
-    soup.corners[9] = 8;
-    EXPECT_SAYS(complaint(soup),
-                "cube: face 2: the vertex index 8 is out of range, the file has 8");
-    soup = cube_soup({0, 0, 0}, 1);
-    soup.points[3][1] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_SAYS(complaint(soup), "cube: point 3: the coordinate");
-    EXPECT_SAYS(complaint(cube_soup({0, 0, 0}, 0)), "none of its 6 faces");
-    EXPECT_SAYS(complaint({}), "no faces");
-    soup = cube_soup({0, 0, 0}, 1);
-    soup.corners.pop_back();
-    EXPECT_THROW(mesh_of_polygons(soup, "cube"), InvalidOption);
 }
 
 } // namespace

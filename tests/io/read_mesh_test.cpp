@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/io/read_mesh.h"
 
-#include "support/files.h"
+#include "support/mesh_files.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -21,11 +21,10 @@ namespace
 
 using openvdb::Vec3I;
 using openvdb::Vec3s;
+using test::raw;
 
 const char* const kExtensions[] = {".obj", ".ply", ".off", ".stl"};
 
-const char* const kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
-                         "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 const char* const kOff = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
                          "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 const char* const kPly = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty "
@@ -48,49 +47,9 @@ std::string text_stl(const TriangleMesh& mesh)
     return text + "endsolid a name of words\n";
 }
 
-template <typename Value> std::string raw(Value value, bool big_endian = false)
+class ReadMesh : public test::MeshFiles
 {
-    std::string bytes(sizeof value, '\0');
-    std::memcpy(bytes.data(), &value, sizeof value);
-    if (big_endian)
-        std::reverse(bytes.begin(), bytes.end());
-    return bytes;
-}
-
-class ReadMesh : public testing::Test
-{
-protected:
-    std::filesystem::path put(const std::string& file, const std::string& bytes)
-    {
-        test::write_bytes(folder_ / file, bytes);
-        return folder_ / file;
-    }
-    ReadResult read(const std::string& file, const std::string& bytes,
-                    const ReadOptions& options = {})
-    {
-        return read_mesh(put(file, bytes), options);
-    }
-    /// The message of the ReadError, which has to name the file.
-    std::string complaint(const std::string& file, const std::string& bytes)
-    {
-        put(file, bytes);
-        return complaint(file);
-    }
-    std::string complaint(const std::string& file)
-    {
-        try {
-            read_mesh(folder_ / file);
-        } catch (const ReadError& error) {
-            EXPECT_EQ(std::string(error.what()).find((folder_ / file).string()), 0U);
-            return error.what();
-        }
-        return "nothing was thrown";
-    }
-    test::TemporaryFolder folder_;
 };
-
-#define EXPECT_SAYS(message, part)                                                                 \
-    EXPECT_NE((message).find(part), std::string::npos) << "it says: " << (message)
 
 void expect_same(const TriangleMesh& a, const TriangleMesh& b)
 {
@@ -102,7 +61,7 @@ void expect_same(const TriangleMesh& a, const TriangleMesh& b)
 TEST_F(ReadMesh, gives_the_tetrahedron_of_every_format)
 {
     const TriangleMesh wanted = test::unit_tetrahedron();
-    expect_same(read("a.obj", kObj).mesh, wanted);
+    expect_same(read("a.obj", test::kTetrahedronObj).mesh, wanted);
     expect_same(read("a.OFF", kOff).mesh, wanted);
     const ReadResult ply = read("a.ply", kPly);
     expect_same(ply.mesh, wanted);
@@ -164,48 +123,12 @@ TEST_F(ReadMesh, rounds_text_to_the_nearest_float_once)
     }
 }
 
-TEST_F(ReadMesh, understands_the_forms_of_obj_lines)
-{
-    const std::string text =
-        "# a comment\r\nmtllib none.mtl\r\no thing\r\ng part\r\nvt 1e60 2\r\n"
-        "vn 0 0 1\r\nv 0 0 0 1.0\r\n  v 1 0 0 0.5 0.5 0.5\r\nv 0 \\\r\n 1 0\r\n"
-        "v 0 0 1\r\ns off\r\nusemtl m\r\nl 1 2\r\np 1\r\nf 1/1/1 3/1 2//1\r\n"
-        "f 1 2 4 # a comment\r\nf -4/-1 -1 \\\r\n-2\r\nf 2 3 4";
-    const ReadResult result = read("a.obj", text);
-    expect_same(result.mesh, test::unit_tetrahedron());
-    EXPECT_EQ(result.report.file_vertices, 4U);
-    EXPECT_EQ(result.report.file_faces, 4U);
-}
-
-TEST_F(ReadMesh, names_what_is_wrong_in_obj)
-{
-    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 4\n"),
-                "face 0 (line 4): the vertex index 4 is out of range, the file has 3 vertices");
-    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 0\n"), "index 0 is out of range");
-    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 -4\n"), "index -4 is out of range");
-    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 99999999999\n"), "99999999999");
-    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2\n"), "face 0 (line 4) has 2 corners");
-    EXPECT_SAYS(complaint("a.obj", vertices + "f 1 2 x\n"), "\"x\" is not a whole number");
-    EXPECT_SAYS(complaint("a.obj", vertices + "v 1 2"), "vertex 3 (line 4) has 2 coordinates");
-    EXPECT_SAYS(complaint("a.obj", vertices), "no faces (and 3 vertices)");
-    for (const char* const word : {"nan", "-inf", "1e39", "3.4028236e38", "1e999"}) {
-        const std::string message = complaint("a.obj", vertices + "v 0 " + word + " 0\nf 1 2 3\n");
-        EXPECT_SAYS(message, "vertex 3 (line 4)");
-        EXPECT_SAYS(message, word);
-        EXPECT_SAYS(message, "not finite in float32");
-    }
-    for (const char* const word : {"1,5", "0x10", "1e", "--1", "+-1", "1.2.3", "abc"})
-        EXPECT_SAYS(complaint("a.obj", vertices + "v 0 " + word + " 0\nf 1 2 3\n"),
-                    "is not a number");
-}
-
 TEST_F(ReadMesh, refuses_what_is_no_mesh_file)
 {
     EXPECT_SAYS(complaint("missing.obj"), "no such file");
     for (const char* const extension : kExtensions)
         EXPECT_SAYS(complaint(std::string("a") + extension, ""), "empty");
-    EXPECT_SAYS(complaint("a.xyz", kObj), "\".xyz\"");
+    EXPECT_SAYS(complaint("a.xyz", test::kTetrahedronObj), "\".xyz\"");
     std::filesystem::create_directory(folder_ / "folder.obj");
     EXPECT_SAYS(complaint("folder.obj"), "folder");
     EXPECT_SAYS(complaint("a.stl", "nonsense"), "8 bytes");
@@ -232,7 +155,8 @@ TEST_F(ReadMesh, welds_equal_positions_and_says_so)
 
 TEST_F(ReadMesh, keeps_duplicate_and_non_manifold_faces)
 {
-    const std::string text = std::string(kObj) + "f 1 3 2\nf 2 3 1\nf 1 1 2\nf 1 2 1 3\n";
+    const std::string text =
+        std::string(test::kTetrahedronObj) + "f 1 3 2\nf 2 3 1\nf 1 1 2\nf 1 2 1 3\n";
     const ReadResult result = read("a.obj", text);
     EXPECT_EQ(result.report.file_faces, 8U);
     EXPECT_EQ(result.report.skipped_faces, (std::vector<std::size_t>{6}));
@@ -283,38 +207,6 @@ TEST_F(ReadMesh, survives_a_polygon_of_very_many_corners)
         face += " " + std::to_string(i + 1);
     }
     EXPECT_EQ(read("star.obj", text + face + "\n", {false}).mesh.triangles.size(), n - 2U);
-}
-
-TEST_F(ReadMesh, understands_the_forms_of_off)
-{
-    const TriangleMesh wanted = test::unit_tetrahedron();
-    expect_same(read("a.off", "# first\nOFF 4 4 6 # counts\n\n0 0 0\n1 0 0 # x\n0 1 0\n0 0 1\n"
-                              "3 0 2 1 255 0 0\n3 0 1 3\n# between\n3 0 3 2\n3 1 2 3")
-                    .mesh,
-                wanted);
-    expect_same(read("c.off", "CNOFF\n4 4 0\n0 0 0 0 0 1 255 0 0\n1 0 0 0 0 1 255 0 0\n"
-                              "0 1 0 0 0 1 .5 .5 .5 1\n0 0 1 0 0 1 255 0 0 255\n"
-                              "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
-                    .mesh,
-                wanted);
-}
-
-TEST_F(ReadMesh, names_what_is_wrong_in_off)
-{
-    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "after 2 of the 3 vertices");
-    EXPECT_SAYS(complaint("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
-                "after 1 of the 2 faces");
-    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
-                "face 0 (line 6): the vertex index 3 is out of range, the file has 3 vertices");
-    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"),
-                "declares 3 corners and has 2");
-    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
-                "line 7 goes on");
-    EXPECT_SAYS(complaint("a.off", "OFF\n4000000000 1 0\n"), "4000000000");
-    EXPECT_SAYS(complaint("a.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n"),
-                "vertex 0 (line 3)");
-    EXPECT_SAYS(complaint("a.off", "OFF BINARY\n"), "binary OFF");
-    EXPECT_SAYS(complaint("a.off", "4OFF\n"), "\"4OFF\"");
 }
 
 /// The tetrahedron with a list, a colour and another element that readers have to step over.
@@ -437,7 +329,7 @@ TEST_F(ReadMesh, never_takes_a_cut_or_spoilt_file_amiss)
     write_mesh(folder_ / "b.stl", mesh);
     write_mesh(folder_ / "b.ply", mesh);
     const std::pair<const char*, std::string> files[] = {
-        {"a.obj", kObj},
+        {"a.obj", test::kTetrahedronObj},
         {"a.off", kOff},
         {"a.ply", kPly},
         {"b.ply", test::read_bytes(folder_ / "b.ply")},
@@ -476,7 +368,7 @@ TEST_F(ReadMesh, prints_nothing)
     read("a.ply", rich_ply(true));
     complaint("a.ply", rich_ply(true).substr(0, 200));
     complaint("a.off", "OFF\n");
-    read("a.obj", std::string("mtllib gone.mtl\nusemtl gone\nvt 1e60 0\n") + kObj);
+    read("a.obj", std::string("mtllib gone.mtl\nusemtl gone\nvt 1e60 0\n") + test::kTetrahedronObj);
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }

@@ -152,8 +152,7 @@ TEST(CutLayers, OneLayerChangesNoBit)
 
 TEST(CutLayers, PinsStayPinsInEveryLayer)
 {
-    const SplitShell made = test::with_split(
-        test::radial_shell(icosphere(1, 2), [](std::size_t v) { return v % 5 == 0 ? 0.0 : 0.4; }));
+    const SplitShell made = test::pinned_shell();
     const LayerResult cut = cut_layers(stack_of(made), layers(3, 2), PrismTest::twelve_tets);
     expect_cut_of(stack_of(made), cut, 3);
     test::expect_certified(cut.stack, PrismTest::twelve_tets);
@@ -219,14 +218,7 @@ TEST(CutLayers, StaysCertifiedWhereRoundingIsAsLargeAsALayer)
 // Nothing fits between two neighbouring floats.
 TEST(CutLayers, APillarOfOneFloatStaysOne)
 {
-    const float low = 8388608; // 2^23, from where floats are whole numbers
-    SplitShell made =
-        test::moved_shell(test::box(Vec3d(low), Vec3d(low + 16.0)), [&](const Vec3s& p) {
-            Vec3s inner = p;
-            for (int k = 0; k < 3; ++k)
-                inner[k] += p[k] == low ? 1.0f : -1.0f;
-            return inner;
-        });
+    const SplitShell made = test::one_float_shell();
     const LayerResult cut = cut_layers(stack_of(made), layers(3), PrismTest::twelve_tets);
     expect_cut_of(stack_of(made), cut, 3);
     test::expect_certified(cut.stack, PrismTest::twelve_tets);
@@ -307,11 +299,9 @@ TEST(CutLayers, RefusesBadOptionsByName)
     for (const int count : {0, -3, 251})
         EXPECT_EQ(refusal(whole, layers(count)),
                   "layers: layers is " + std::to_string(count) + ", must be 1 to 250");
-    for (const auto& [grading, said] :
-         {std::pair(0.0, "0, must be above 0"), std::pair(-1.0, "-1, must be above 0"),
-          std::pair(double(INFINITY), "inf, must be finite and above 0"),
-          std::pair(double(NAN), "nan, must be finite and above 0")})
-        EXPECT_EQ(refusal(whole, layers(2, grading)), std::string("layers: grading is ") + said);
+    test::expect_positive_finite("layers: grading", [&](double grading) {
+        cut_layers(whole, layers(2, grading), PrismTest::twelve_tets);
+    });
     const ShellStack two = cut_layers(whole, layers(2), PrismTest::twelve_tets).stack;
     EXPECT_EQ(refusal(two, layers(126)), "layers: 252 in all, must be at most 250");
     EXPECT_EQ(refusal(two, layers(125)), "accepted");
@@ -320,8 +310,9 @@ TEST(CutLayers, RefusesBadOptionsByName)
 TEST(CutLayers, CanBeCancelled)
 {
     const ShellStack whole = stack_of(test::scaled_shell(icosphere(1, 1), 0.5f));
-    test::StopAtOnce interrupter;
-    EXPECT_THROW(cut_layers(whole, layers(2), PrismTest::twelve_tets, &interrupter), Cancelled);
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        cut_layers(whole, layers(2), PrismTest::twelve_tets, interrupter);
+    });
 }
 
 } // namespace

@@ -116,8 +116,7 @@ TEST(ScaleThickness, FactorOneChangesNoBit)
 
 TEST(ScaleThickness, PinsStayPins)
 {
-    SplitShell made = test::with_split(
-        test::radial_shell(icosphere(1, 2), [](std::size_t v) { return v % 5 == 0 ? 0.0 : 0.4; }));
+    SplitShell made = test::pinned_shell();
     EXPECT_EQ(scaled(made.shell, made.split, 0.5, PrismTest::twelve_tets).pinned, 0U);
     EXPECT_EQ(std::count(made.shell.stop.begin(), made.shell.stop.end(), StopReason::pinned), 0);
     test::expect_certified(one_layer(made.shell, made.split), PrismTest::twelve_tets);
@@ -126,14 +125,7 @@ TEST(ScaleThickness, PinsStayPins)
 // A half of a float is none.
 TEST(ScaleThickness, PinsWhatRoundingLeavesWithoutLength)
 {
-    const float low = 8388608; // 2^23, from where floats are whole numbers
-    SplitShell made =
-        test::moved_shell(test::box(Vec3d(low), Vec3d(low + 16.0)), [&](const Vec3s& p) {
-            Vec3s inner = p;
-            for (int k = 0; k < 3; ++k)
-                inner[k] += p[k] == low ? 1.0f : -1.0f;
-            return inner;
-        });
+    SplitShell made = test::one_float_shell();
     const ScaleReport report = scaled(made.shell, made.split, 0.25, PrismTest::twelve_tets);
     EXPECT_EQ(report.pinned, 8U);
     EXPECT_EQ(made.shell.inner, made.shell.outer);
@@ -195,23 +187,20 @@ TEST(ScaleThickness, SameBitsForAnyNumberOfThreads)
 TEST(ScaleThickness, RefusesBadFactorsByName)
 {
     SplitShell made = test::scaled_shell(icosphere(1, 1), 0.5f);
-    for (const auto& [factor, value] :
-         {std::pair(0.0, "0"), std::pair(-0.5, "-0.5"), std::pair(1.0001, "1.0001"),
-          std::pair(double(NAN), "nan"), std::pair(double(INFINITY), "inf")})
-        EXPECT_EQ(test::refusal_of([&, by_factor = by(factor)] {
-                      scale_thickness(made.shell, made.split, by_factor, PrismTest::twelve_tets);
-                  }),
-                  std::string("thickness scale: factor is ") + value +
-                      ", must be above 0 and at most 1");
+    const auto scale = [&](double factor) {
+        scale_thickness(made.shell, made.split, by(factor), PrismTest::twelve_tets);
+    };
+    test::expect_positive_finite("thickness scale: factor", scale);
+    EXPECT_EQ(test::refusal_of([&] { scale(1.0001); }),
+              "thickness scale: factor is 1.0001, must be above 0 and at most 1");
 }
 
 TEST(ScaleThickness, CanBeCancelled)
 {
     SplitShell made = test::scaled_shell(icosphere(1, 1), 0.5f);
-    test::StopAtOnce interrupter;
-    EXPECT_THROW(
-        scale_thickness(made.shell, made.split, by(0.5), PrismTest::twelve_tets, &interrupter),
-        Cancelled);
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        scale_thickness(made.shell, made.split, by(0.5), PrismTest::twelve_tets, interrupter);
+    });
 }
 
 } // namespace

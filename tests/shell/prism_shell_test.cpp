@@ -40,19 +40,19 @@ TEST(Extrude, NeverLengthensAndLosesNoMoreThanTheRounding)
     for (Vec3s& p : mesh.points)
         p += Vec3s(3.3f, -7.7f, 20.1f);
     std::size_t rounded_up = 0;
-    std::vector<double> asked;
+    std::vector<double> wanted;
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
-        asked.push_back(std::pow(10.0, -4 + 5 * random.unit(v)));
+        wanted.push_back(std::pow(10.0, -4 + 5 * random.unit(v)));
     auto direction = [](const Vec3d& p) { return (Vec3d(3.3, -7.7, 20.1) - p).unit(); };
     const PrismShell shell =
-        test::shell_along(mesh, direction, [&](std::size_t v) { return asked[v]; });
+        test::shell_along(mesh, direction, [&](std::size_t v) { return wanted[v]; });
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-        EXPECT_LE(shell.length(v), asked[v]) << "vertex " << v;
+        EXPECT_LE(shell.length(v), wanted[v]) << "vertex " << v;
         // Rounded towards the outer point by less than one float32 at 32 along each axis.
-        EXPECT_GE(shell.length(v), asked[v] - std::sqrt(3.0) * 32 * 0x1p-23) << "vertex " << v;
+        EXPECT_GE(shell.length(v), wanted[v] - std::sqrt(3.0) * 32 * 0x1p-23) << "vertex " << v;
         const Vec3d outer(mesh.points[v]);
-        const Vec3s nearest(outer + asked[v] * direction(outer));
-        rounded_up += (Vec3d(nearest) - outer).length() > asked[v];
+        const Vec3s nearest(outer + wanted[v] * direction(outer));
+        rounded_up += (Vec3d(nearest) - outer).length() > wanted[v];
     }
     EXPECT_GT(rounded_up, mesh.points.size() / 4); // the plain rounding would have failed
 }

@@ -9,7 +9,6 @@
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
-#include "vdb_shell/field/level_set.h"
 #include "vdb_shell/growth/grow.h"
 
 #include <gtest/gtest.h>
@@ -181,79 +180,6 @@ TEST(Sides, TurningBackTurnsTheOrderOfLayersAbout)
     EXPECT_EQ(turned.surface(2), near.outer);
     EXPECT_EQ(turned.triangles(), icosphere(1, 1).triangles);
     expect_certified(turned);
-}
-
-TEST(Sides, ReversedFieldIsExactlyTheNegative)
-{
-    LevelSetOptions options;
-    options.resolution = 24;
-    options.exterior_depth = 0.5;
-    const TriangleMesh ball = icosphere(1, 2);
-    const auto level_set = mesh_to_level_set(ball, options);
-    const double voxel = level_set->voxelSize()[0];
-    EXPECT_GE(level_set->background(), 0.5 + 2.9 * voxel);
-    const openvdb::FloatGrid::Ptr copy = level_set->deepCopy();
-    negate_level_set(*copy);
-    EXPECT_EQ(copy->background(), -level_set->background());
-    auto original = level_set->getConstAccessor(), negated = copy->getConstAccessor();
-    for (int i = -30; i <= 30; ++i) {
-        const openvdb::Coord at(i, i / 2, -i / 3);
-        EXPECT_EQ(negated.getValue(at), -original.getValue(at));
-        EXPECT_EQ(negated.isValueOn(at), original.isValueOn(at));
-    }
-    negate_level_set(*copy);
-    EXPECT_EQ(copy->background(), level_set->background());
-    EXPECT_TRUE(copy->tree().hasSameTopology(level_set->tree()));
-    for (auto value = level_set->cbeginValueAll(); value; ++value)
-        EXPECT_EQ(copy->getConstAccessor().getValue(value.getCoord()), *value);
-}
-
-LineLengths lines_outward(const TriangleMesh& mesh, double thickness, StopTest test)
-{
-    LevelSetOptions band;
-    band.resolution = 64;
-    band.exterior_depth = thickness;
-    const auto level_set = mesh_to_level_set(mesh, band);
-    negate_level_set(*level_set);
-    const TriangleMesh reversed = reversed_surface(mesh);
-    LineStepOptions options;
-    options.test = test;
-    options.thickness = thickness;
-    return line_step(reversed, *level_set, normals_of(reversed), options);
-}
-
-TEST(Sides, LinesGoOutwardUnderEveryStopTest)
-{
-    const TriangleMesh ball = icosphere(1, 2);
-    for (const StopTest test :
-         {StopTest::none, StopTest::normal, StopTest::start_gradient, StopTest::distance,
-          StopTest::bisection, StopTest::relative_normal}) {
-        // Nothing around a ball ends a line but the thickness.
-        const LineLengths lengths = lines_outward(ball, 0.5, test);
-        for (std::size_t v = 0; v < ball.points.size(); ++v) {
-            EXPECT_EQ(lengths.length[v], 0.5) << v;
-            EXPECT_EQ(lengths.reason[v], StopReason::thickness) << v;
-        }
-    }
-}
-
-// Between two facing squares of side 2 the sheet lies half-way.
-TEST(Sides, LinesStopAtTheOutsidesMedialAxis)
-{
-    const TriangleMesh slab = test::gridded_box(Vec3d(0, -1, -1), Vec3d(0.5, 1, 1), 4);
-    const TriangleMesh two = test::joined(slab, test::translated(slab, Vec3d(0.5 + 0.4, 0, 0)));
-    const LineLengths lengths = lines_outward(two, 0.4, StopTest::normal);
-    const double voxel = 2.0 / 64;
-    std::size_t facing = 0;
-    for (std::size_t v = 0; v < two.points.size(); ++v) {
-        const Vec3s& p = two.points[v];
-        if ((p[0] != 0.5f && p[0] != 0.9f) || std::abs(p[1]) == 1 || std::abs(p[2]) == 1)
-            continue;
-        ++facing;
-        EXPECT_EQ(lengths.reason[v], StopReason::stop_test) << v;
-        EXPECT_NEAR(lengths.length[v], 0.2, 2 * voxel) << v;
-    }
-    EXPECT_EQ(facing, 18U);
 }
 
 TEST(Sides, SphereOutwardIsTheSphereAroundIt)

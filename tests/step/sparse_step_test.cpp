@@ -10,7 +10,6 @@
 #include "vdb_shell/pipeline.h"
 #include "vdb_shell/step/line_step.h"
 
-#include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
@@ -25,7 +24,6 @@ namespace
 {
 
 using openvdb::Vec3d;
-using ::testing::HasSubstr;
 
 const std::vector<StopTest> kTests{StopTest::normal, StopTest::start_gradient, StopTest::distance,
                                    StopTest::relative_normal, StopTest::own_sheet};
@@ -74,10 +72,10 @@ TEST(SparseStep, StepsFromTheVerticesAskedForAlone)
         const LineLengths some =
             step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr, &only);
         for (std::uint32_t v = 0; v < stage.mesh.points.size(); ++v) {
-            const bool asked = std::find(only.begin(), only.end(), v) != only.end();
-            EXPECT_EQ(some.length[v], asked ? whole.length[v] : 0.0);
-            EXPECT_EQ(some.steps[v], asked ? whole.steps[v] : 0U);
-            EXPECT_EQ(some.reason[v], asked ? whole.reason[v] : StopReason::none);
+            const bool listed = std::find(only.begin(), only.end(), v) != only.end();
+            EXPECT_EQ(some.length[v], listed ? whole.length[v] : 0.0);
+            EXPECT_EQ(some.steps[v], listed ? whole.steps[v] : 0U);
+            EXPECT_EQ(some.reason[v], listed ? whole.reason[v] : StopReason::none);
         }
     }
 }
@@ -313,34 +311,6 @@ TEST(SparseStep, RealMeshesWithinTwoVoxelsWhereCertified)
         EXPECT_LE(differences(sparse.lengths.length, dense.lengths.length, voxel, both).most, 2.0)
             << name;
     }
-}
-
-TEST(SparseStep, TheReportSaysWhichField)
-{
-    const TriangleMesh mesh = test::icosphere(0.4, 2);
-    const auto report_of = [&](const auto& change) {
-        ShellOptions options;
-        options.level_set.resolution = 64;
-        options.grow.method = Method::raw;
-        options.coverage.samples = 0;
-        options.line_step.thickness = 0.05;
-        change(options);
-        return build_shell(mesh, options).report.field;
-    };
-    const FieldReport sparse = report_of([](ShellOptions&) {});
-    EXPECT_TRUE(sparse.sparse);
-    EXPECT_THAT(sparse.origin, HasSubstr("a narrow band"));
-    const auto expect_dense = [&](const char* reason, const auto& change) {
-        const FieldReport dense = report_of(change);
-        EXPECT_FALSE(dense.sparse) << reason;
-        EXPECT_THAT(dense.origin, HasSubstr(reason));
-    };
-    expect_dense("asked for", [](auto& o) { o.field = FieldRoute::dense; });
-    expect_dense("outward", [](auto& o) { o.side = Side::both; });
-    expect_dense("smoothing", [](auto& o) { o.smooth.iterations = 1; });
-    expect_dense("depth asked for", [](auto& o) { o.level_set.interior_depth = 0.05; });
-    expect_dense("wide band", [](auto& o) { o.level_set.exterior_voxels = 9; });
-    expect_dense("many lines", [](auto& o) { o.level_set.resolution = 12; });
 }
 
 } // namespace

@@ -109,10 +109,10 @@ TEST(OwnSheetSlopes, AreTheDistanceToTheVertexsOwnTriangles)
         d = -d;
     const std::vector<double> slopes = own_sheet_slopes(box, directions);
     for (std::size_t v = 0; v < slopes.size(); ++v) {
-        int walls = 0;
+        int planes = 0;
         for (int k = 0; k < 3; ++k)
-            walls += box.points[v][k] == 0 || box.points[v][k] == 1;
-        EXPECT_NEAR(slopes[v], 1 / std::sqrt(walls), 1e-6); // face, edge, corner
+            planes += box.points[v][k] == 0 || box.points[v][k] == 1;
+        EXPECT_NEAR(slopes[v], 1 / std::sqrt(planes), 1e-6); // face, edge, corner
     }
 }
 

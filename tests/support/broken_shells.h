@@ -167,4 +167,22 @@ inline SplitShell inside_out_shell()
     return scaled_shell(icosphere(1, 1), -0.5f);
 }
 
+/// A box whose pillars are one float long along each axis: no point lies between their ends.
+inline SplitShell one_float_shell()
+{
+    const float low = 8388608; // 2^23, from where floats are whole numbers
+    return moved_shell(box(openvdb::Vec3d(low), openvdb::Vec3d(low + 16.0)), [=](openvdb::Vec3s p) {
+        for (int k = 0; k < 3; ++k)
+            p[k] += p[k] == low ? 1.0f : -1.0f;
+        return p;
+    });
+}
+
+/// Of a ball, sound, with every fifth vertex pinned.
+inline SplitShell pinned_shell()
+{
+    return with_split(
+        radial_shell(icosphere(1, 2), [](std::size_t v) { return v % 5 == 0 ? 0.0 : 0.4; }));
+}
+
 } // namespace vdb_shell::test

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/grids.h"
 
+#include "support/shapes.h"
+#include "vdb_shell/field/level_set.h"
+
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointGroup.h>
@@ -15,6 +18,14 @@ openvdb::FloatGrid::Ptr sphere_level_set(float radius, float voxel_size)
 {
     return openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, openvdb::Vec3f(0.0f),
                                                                     voxel_size, 3.0f);
+}
+
+openvdb::FloatGrid::Ptr sphere_field(double depth)
+{
+    LevelSetOptions options;
+    options.voxel_size = 0.05;
+    options.interior_depth = depth;
+    return mesh_to_level_set(icosphere(1.0, 3), options);
 }
 
 openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,

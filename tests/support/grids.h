@@ -16,6 +16,9 @@ namespace vdb_shell::test
 /// A level set of a sphere about the origin, with a band of three voxels.
 openvdb::FloatGrid::Ptr sphere_level_set(float radius, float voxel_size);
 
+/// A unit sphere's level set of voxels of 0.05 named "surface", with values down to that depth.
+openvdb::FloatGrid::Ptr sphere_field(double depth);
+
 /// A grid of points with exact positions, in voxels of that size.
 openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,
                                                double voxel_size);

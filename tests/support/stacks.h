@@ -13,8 +13,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
 
 // Grown shells, and what has to hold for stacks made of them.
 
@@ -78,6 +81,25 @@ inline TriangleMesh trefoil(int around, int across)
     return signed_volume(mesh.points, mesh.triangles) > 0 ? mesh : reversed(mesh);
 }
 
+/// A pyramid over a U. No point of the U sees all its sides, so no direction at the apex (the last
+/// vertex) sees all the faces there.
+inline TriangleMesh pyramid_over_u()
+{
+    TriangleMesh mesh;
+    mesh.points = {openvdb::Vec3s(0, 0, 0), openvdb::Vec3s(3, 0, 0), openvdb::Vec3s(3, 3, 0),
+                   openvdb::Vec3s(2, 3, 0), openvdb::Vec3s(2, 1, 0), openvdb::Vec3s(1, 1, 0),
+                   openvdb::Vec3s(1, 3, 0), openvdb::Vec3s(0, 3, 0), openvdb::Vec3s(1.5F, 0.5F, 2)};
+    for (std::uint32_t i = 0; i < 8; ++i)
+        mesh.triangles.emplace_back(i, (i + 1) % 8, 8);
+    for (const auto& [a, b, c, d] :
+         {std::array<std::uint32_t, 4>{0, 1, 4, 5}, std::array<std::uint32_t, 4>{0, 5, 6, 7},
+          std::array<std::uint32_t, 4>{1, 2, 3, 4}}) {
+        mesh.triangles.emplace_back(a, c, b);
+        mesh.triangles.emplace_back(a, d, c);
+    }
+    return mesh;
+}
+
 inline void expect_certified(const ShellStack& stack, PrismTest test)
 {
     EXPECT_EQ(certify_stack(stack, test).failures(), std::vector<std::string>{});
@@ -112,6 +134,25 @@ template <typename Call> std::string refusal_of(const Call& call)
         return error.what();
     }
     return "accepted";
+}
+
+/// call(x) refuses, by name and value, every x that is no positive finite number.
+template <typename Call> void expect_positive_finite(const std::string& name, const Call& call)
+{
+    const std::pair<double, const char*> numbers[] = {
+        {0.0, "0"}, {-0.5, "-0.5"}, {INFINITY, "inf"}, {NAN, "nan"}};
+    for (const auto& [number, shown] : numbers) {
+        const std::string said = refusal_of([&, x = number] { call(x); });
+        EXPECT_EQ(said.find(name + " is " + shown + ", must be "), 0U) << said;
+        EXPECT_NE(said.find("above 0"), std::string::npos) << said;
+    }
+}
+
+/// call(interrupter) ends when the interrupter wants it.
+template <typename Call> void expect_cancelled(const Call& call)
+{
+    StopAtOnce interrupter;
+    EXPECT_THROW(call(&interrupter), Cancelled);
 }
 
 } // namespace vdb_shell::test

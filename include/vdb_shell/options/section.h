@@ -15,8 +15,8 @@ namespace vdb_shell
 struct OptionSection {
     std::string key; ///< empty: the options stand by themselves
     OptionList options;
-    /// For a stage that is off unless asked for: the flag that asks. JSON has null for it then.
-    std::optional<Option> asked{};
+    /// For a stage that is off by default: the flag that switches it on. JSON has null while off.
+    std::optional<Option> enable{};
 };
 
 /// "line_step.thickness".
@@ -24,8 +24,8 @@ std::string path_of(const OptionSection& section, const Option& option);
 
 void divide_lengths(OptionSections& sections, double unit);
 
-/// A section of options that exist only when asked for, by a flag of the given name and group. What
-/// is set before that is kept until then. `described` has to outlive the section.
+/// A section of options that exist only once a flag of the given name has switched the stage on.
+/// What is set before that is kept until then. `described` has to outlive the section.
 template <typename Options>
 OptionSection optional_section(const std::string& key, std::optional<Options>& described,
                                const std::string& flag, const std::string& help)
@@ -42,16 +42,16 @@ OptionSection optional_section(const std::string& key, std::optional<Options>& d
                 described = *held;
         };
     }
-    Option asked;
-    asked.flag = flag;
-    asked.help = help;
-    asked.get = [&described] { return OptionValue(described.has_value()); };
-    asked.set = [&described, held](const OptionValue& value) {
+    Option enable;
+    enable.flag = flag;
+    enable.help = help;
+    enable.get = [&described] { return OptionValue(described.has_value()); };
+    enable.set = [&described, held](const OptionValue& value) {
         described.reset();
         if (std::get<bool>(value))
             described = *held;
     };
-    section.asked = asked;
+    section.enable = enable;
     return section;
 }
 

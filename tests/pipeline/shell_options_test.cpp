@@ -203,12 +203,12 @@ TEST(ShellOptions, UnknownKeysAndWrongKindsAreNamed)
 
 TEST(ShellOptions, ASectionThatIsAskedForComesAndGoes)
 {
-    const ShellOptions asked = options_from_json(R"({"repair": {"sliver_height": 0.5}})");
-    ASSERT_TRUE(asked.repair);
-    EXPECT_EQ(asked.repair->sliver_height, 0.5);
+    const ShellOptions enabled = options_from_json(R"({"repair": {"sliver_height": 0.5}})");
+    ASSERT_TRUE(enabled.repair);
+    EXPECT_EQ(enabled.repair->sliver_height, 0.5);
     EXPECT_TRUE(options_from_json(R"({"repair": {}})").repair);
-    EXPECT_FALSE(options_from_json(R"({"repair": null})", asked).repair);
-    EXPECT_EQ(options_from_json("{}", asked).repair->sliver_height, 0.5);
+    EXPECT_FALSE(options_from_json(R"({"repair": null})", enabled).repair);
+    EXPECT_EQ(options_from_json("{}", enabled).repair->sliver_height, 0.5);
 }
 
 /// Stands for a value of any type that a field can have; an optional takes it for its value.

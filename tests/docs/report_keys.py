@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The tables of report keys in docs/file_format.md are the keys that `vdb_shell build --report` writes.
+
+    report_keys.py COMMAND FOLDER
+
+COMMAND is the program, FOLDER that of the project. Builds shells of small surfaces, so that together
+the reports have all parts, and collects the keys of every object by its path: "refine.rounds[]" are
+the entries of that list. Each row "| `path` | keys | ... |" of the section "Report (JSON)" has to name
+all keys that were found under that path, and no others, in the order of the reports. An object
+without a row of its path is as the row of the end of its path tells, or one of the shapes of the
+second table.
+Prints what differs and ends with status 1, or says how many keys were compared.
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+BOTH_SIDES = ["--side", "both", "--layers", "2", "--thickness-scale", "0.5"]
+
+
+def surfaces(samples, folder):
+    """Of the sample box: with a hole, and with a copy that crosses it."""
+    box = (samples / "box.obj").read_text().splitlines()
+    points = [line for line in box if line.startswith("v ")]
+    faces = [line for line in box if line.startswith("f ")]
+    moved = ["v " + " ".join(str(float(x) + 0.3) for x in line.split()[1:4]) for line in points]
+    shifted = [re.sub(r"(?<=\s)(\d+)(/\S*)?", lambda m: str(int(m[1]) + len(points)), line) for line in faces]
+    (folder / "open.obj").write_text("\n".join(points + faces[1:]) + "\n")
+    (folder / "crossing.obj").write_text("\n".join(points + moved + faces + shifted) + "\n")
+
+
+def reports(command, samples, folder):
+    surfaces(samples, folder)
+    box = samples / "box.obj"
+    for number, (surface, *options) in enumerate([
+            [box, *BOTH_SIDES],
+            [folder / "open.obj", "--repair"],
+            [samples / "torus.obj", "--wrap", "--wrap-resolution", "32"],
+            [samples / "sphere.obj", "--decimate-to", "200", "--refine-rounds", "1"],
+            [box, "--subdivide", "1"],
+            [folder / "crossing.obj", "--allow-self-intersections"],
+            [folder / "0.vdb"]]):
+        out = folder / f"{number}.json"
+        subprocess.run([command, "build", surface, "--resolution", "24", "-q", *options,
+                        "--report", out, "-o", folder / f"{number}.vdb"], check=True)
+        yield json.loads(out.read_text())
+
+
+def collect(value, path, found):
+    """Adds the keys of all objects below, each list of keys as it was met."""
+    if isinstance(value, list):
+        for entry in value:
+            collect(entry, path + "[]", found)
+    elif isinstance(value, dict):
+        found.setdefault(path, []).append(list(value))
+        for key, entry in value.items():
+            collect(entry, f"{path}.{key}".lstrip("."), found)
+
+
+def rows_of(page):
+    """First and second column of the section's tables: rows of paths, and shapes by their names."""
+    section = page.read_text().split("## Report (JSON)")[1].split("\n## ")[0]
+    rows, shapes = {}, []
+    for line in section.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split(" | ")]
+        if not line.startswith("| ") or len(cells) < 2:
+            continue
+        keys = re.findall(r"`([^`]+)`", cells[1])
+        if cells[0] == "the report":
+            rows[""] = keys
+        elif re.fullmatch(r"`[\w.\[\]]+`", cells[0]):
+            rows[cells[0].strip("`")] = keys
+        elif keys:
+            shapes.append(keys)
+    return rows, shapes
+
+
+def row_for(path, rows):
+    parts = path.split(".")
+    tails = (".".join(parts[i:]) for i in range(len(parts)))
+    return next((rows[tail] for tail in tails if tail in rows), None)
+
+
+def faults(found, rows, shapes):
+    for path, lists in found.items():
+        if all(keys in shapes for keys in lists):
+            continue
+        told, name = row_for(path, rows), path or "the report"
+        if told is None:
+            yield f"{name}: no row, and it has {', '.join(lists[0])}"
+            continue
+        for keys in lists:
+            if [key for key in told if key in keys] != keys:
+                yield f"{name}: the report has {', '.join(keys)}; the page has {', '.join(told)}"
+        for key in sorted(set(told) - {key for keys in lists for key in keys}):
+            if path in rows:
+                yield f"{name}: no report has {key}"
+    for path in sorted(set(rows) - set(found)):
+        yield f"{path}: no report has it"
+
+
+def main():
+    command, project = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
+    rows, shapes = rows_of(project / "docs" / "file_format.md")
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for report in reports(command, project.resolve() / "samples" / "meshes", pathlib.Path(folder)):
+            collect(report, "", found)
+    wrong = list(dict.fromkeys(faults(found, rows, shapes)))
+    print("\n".join(wrong) or f"{sum(map(len, rows.values()))} keys of {len(rows)} objects are as the page has them")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
