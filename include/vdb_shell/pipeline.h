@@ -23,6 +23,7 @@
 #include "vdb_shell/step/directions.h"
 #include "vdb_shell/step/limits.h"
 #include "vdb_shell/step/line_step.h"
+#include "vdb_shell/taper/taper.h"
 
 #include <optional>
 #include <string>
@@ -58,6 +59,7 @@ struct ShellOptions {
     RefineOptions refine;
     ScaleOptions scale;
     LayerOptions layers;
+    TaperOptions taper;
     SplitOptions split;
     CoverageOptions coverage;
 };
@@ -93,7 +95,7 @@ struct ShellResult {
 
 /// The whole job on a mesh in memory: wrap or repair when asked, check, level set, smooth,
 /// directions, line stepping, limits, growth (Method::raw: prisms straight from the lengths),
-/// scale, layers, tets, certificate, overlaps (where it does not certify the whole), figures. For
+/// scale, layers, taper when asked, tets, certificate, overlaps (where it does not certify the whole), figures. For
 /// an outward shell the stages from directions to scale run on the reversed surface
 /// (shell/sides.h), for both sides once for each. `name` is what messages and the report call the
 /// mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for any number

@@ -16,6 +16,7 @@
 #include "pipeline/resample.h"
 #include "pipeline/sides.h"
 #include "report/stage_clock.h"
+#include "step/thickness.h"
 
 #include <openvdb/openvdb.h>
 
@@ -55,6 +56,13 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
     r.stack = std::move(cut.stack);
     if (options.layers.layers > 1)
         r.report.cut = cut.report;
+}
+
+void taper_layers(ShellResult& r, const ShellOptions& options,
+                  const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+{
+    const std::vector<double> cap = largest_lengths(r.surface, options.line_step, thickness_grid);
+    r.report.taper = taper_shell(r.stack, cap, options.taper, interrupter);
 }
 
 /// Puts the surface to work with into r.surface: repaired if the options say so, checked and found
@@ -134,6 +142,8 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     });
     build_and_refine(r, options, start, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
+    if (options.taper.wanted)
+        clock.run("taper", [&] { taper_layers(r, options, thickness_grid, interrupter); });
     clock.run("tets", [&] { r.tets = make_tets(r.stack); });
     clock.run("certificate", [&] {
         r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);

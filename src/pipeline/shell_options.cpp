@@ -30,6 +30,25 @@ OptionSection repair_section(ShellOptions& options)
     return section;
 }
 
+/// Tapering goes on from a valid shell inside a surface that touches itself nowhere, and moves its
+/// inner points to wherever there is room.
+void require_taper_possible(const ShellOptions& options)
+{
+    if (!options.taper.wanted)
+        return;
+    const char* hindrance = nullptr;
+    if (options.side != Side::inward)
+        hindrance = "a shell outside the surface (--side)";
+    else if (options.grow.method == Method::raw)
+        hindrance = "the raw method, whose shells may overlap (--method)";
+    else if (options.check.allow_self_intersections)
+        hindrance = "a surface that may cross itself (--allow-self-intersections)";
+    else if (options.scale.factor < 1)
+        hindrance = "shells scaled down (--thickness-scale); a bound is --thickness";
+    if (hindrance)
+        throw InvalidOption(std::string("taper: --taper is not for ") + hindrance);
+}
+
 } // namespace
 
 OptionSections describe(ShellOptions& o)
@@ -54,6 +73,7 @@ OptionSections describe(ShellOptions& o)
             {"refine", describe(o.refine)},
             {"scale", describe(o.scale)},
             {"layers", describe(o.layers)},
+            {"taper", describe(o.taper)},
             {"split", describe(o.split)},
             {"coverage", describe(o.coverage)}};
 }
@@ -70,6 +90,7 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
                             " (--refine-rounds), but an outward shell has no solid to fill");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
+    require_taper_possible(options);
     // A line outward always has a thickness: a tenth of the diagonal where the user gives none
     // (shell/sides.h).
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&

@@ -223,6 +223,17 @@ ordered_json cut_json(const LayerReport& cut)
     return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}};
 }
 
+ordered_json taper_json(const TaperReport& taper)
+{
+    return {{"rounds", taper.rounds},
+            {"merges", taper.merges},
+            {"moves", taper.moves},
+            {"handed_over", taper.handed_over},
+            {"turned_diagonals", taper.turned},
+            {"inner_points", taper.inner_points},
+            {"prisms_by_tets", taper.prisms_by_tets}};
+}
+
 ordered_json scale_json(const ScaleReport& scale)
 {
     return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
@@ -340,6 +351,7 @@ void add_shell(ordered_json& json, const ShellReport& report)
     json["refine"] = report.refine ? refine_json(*report.refine) : ordered_json();
     json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
+    json["taper"] = report.taper ? taper_json(*report.taper) : ordered_json();
     json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},

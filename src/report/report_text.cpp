@@ -92,9 +92,22 @@ std::string certificate_text(const StackCertificate& certificate)
     return text;
 }
 
+void taper_line(std::ostringstream& out, const ShellReport& report)
+{
+    if (!report.taper)
+        return;
+    std::string text = number(report.taper->inner_points, 12) + " inner points; prisms of ";
+    for (std::size_t tets = 1; tets <= 3; ++tets)
+        text += std::to_string(tets) + (tets < 3 ? ", " : " tets: ");
+    for (std::size_t tets = 1; tets <= 3; ++tets)
+        text += number(report.taper->prisms_by_tets[tets], 12) + (tets < 3 ? ", " : "");
+    line(out, "taper", text);
+}
+
 /// One line a layer, numbered as in the failures of the certificate.
 void layer_lines(std::ostringstream& out, const ShellReport& report)
 {
+    taper_line(out, report);
     if (report.cut)
         line(out, "layers",
              number(report.layers.size(), 12) + "; " + number(report.cut->moved, 12) +

@@ -12,6 +12,36 @@ namespace vdb_shell::taper
 {
 
 using openvdb::Vec3d;
+using TetCorners = std::array<Vec3d, 4>;
+
+inline double six_volumes(const TetCorners& p)
+{
+    return (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
+}
+
+inline double squared_edges(const TetCorners& p)
+{
+    return (p[1] - p[0]).lengthSqr() + (p[2] - p[0]).lengthSqr() + (p[3] - p[0]).lengthSqr() +
+           (p[2] - p[1]).lengthSqr() + (p[3] - p[1]).lengthSqr() + (p[3] - p[2]).lengthSqr();
+}
+
+/// The distortion of a tet: 1 for a regular one, without bound as it becomes flat. It is
+/// (AMIPS / 3)^1.5, and the mean ratio of Liu and Joe 1994 to the power of -1.5: squared edges and
+/// volume then enter by a root and a quotient alone. Precondition: six_volumes > 0.
+inline double distortion(double squared_edges, double six_volumes)
+{
+    const double per_edge = squared_edges / 12;
+    return 2 * per_edge * std::sqrt(per_edge) / six_volumes;
+}
+inline double distortion_of_amips(double amips)
+{
+    const double ratio = amips / 3;
+    return ratio * std::sqrt(ratio);
+}
+inline double amips_of_distortion(double distortion)
+{
+    return 3 * std::cbrt(distortion * distortion);
+}
 
 /// A symmetric 3 x 3 matrix.
 struct Symmetric {
@@ -30,7 +60,6 @@ struct Symmetric {
         xy += w * (u[0] * v[1] + u[1] * v[0]), xz += w * (u[0] * v[2] + u[2] * v[0]);
         yz += w * (u[1] * v[2] + u[2] * v[1]);
     }
-    /// Adds w to the diagonal.
     void add_identity(double w) { xx += w, yy += w, zz += w; }
 };
 
@@ -47,56 +76,40 @@ inline bool solve_positive(const Symmetric& h, const Vec3d& g, Vec3d& x)
     const double d2 = h.zz - l20 * l20 - l21 * l21;
     if (!(d2 > 0))
         return false;
-    const double l22 = std::sqrt(d2);
     const double y0 = g[0] / l00, y1 = (g[1] - l10 * y0) / l11;
-    x[2] = (g[2] - l20 * y0 - l21 * y1) / l22 / l22;
+    x[2] = (g[2] - l20 * y0 - l21 * y1) / d2;
     x[1] = (y1 - l21 * x[2]) / l11;
     x[0] = (y0 - l10 * x[1] - l20 * x[2]) / l00;
     return true;
 }
 
-inline double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
+/// Gradient of six_volumes in corner `free`. A rotation of four corners by one is an odd
+/// permutation, hence the sign.
+inline Vec3d volume6_gradient(const TetCorners& p, std::size_t free)
 {
-    return (b - a).cross(c - a).dot(d - a);
+    const Vec3d &q = p[(free + 1) % 4], &r = p[(free + 2) % 4], &t = p[(free + 3) % 4];
+    return (free % 2 == 0 ? -1.0 : 1.0) * (r - q).cross(t - q);
 }
 
-/// AMIPS over its value for a regular tet: the squared edges of the tet over those of the regular
-/// tet of the same volume; 1 for a regular tet, without bound as it becomes flat, and the inverse of
-/// the mean ratio of Liu and Joe 1994. Precondition: six_volumes > 0.
-inline double amips(const std::array<Vec3d, 4>& p, double six_volumes)
-{
-    const double edges = (p[1] - p[0]).lengthSqr() + (p[2] - p[0]).lengthSqr() +
-                         (p[3] - p[0]).lengthSqr() + (p[2] - p[1]).lengthSqr() +
-                         (p[3] - p[1]).lengthSqr() + (p[3] - p[2]).lengthSqr();
-    const double root = std::cbrt(0.5 * six_volumes);
-    return edges / (12 * root * root);
-}
-
-/// Adds gradient and Hessian of amips^exponent in corner `free`, whatever its position among the
-/// four. The function is convex: with s = grad(edges) / edges and n = grad(volume) / volume its
-/// Hessian is amips (6 / edges I - 2/3 (s n^T + n s^T) + 10/9 n n^T), and |s|^2 <= 12 / edges.
-inline void add_shape(const std::array<Vec3d, 4>& p, std::size_t free, double six_volumes,
-                      double exponent, Vec3d& gradient, Symmetric& hessian)
+/// Adds gradient and Hessian of the distortion in corner `free`. It is convex: with s the gradient
+/// of the logarithm of the squared edges and n that of the volume, the Hessian is the distortion
+/// times 9 / edges I + 3/4 s s^T - 3/2 (s n^T + n s^T) + 2 n n^T; |s|^2 is at most 12 / edges, so
+/// the first term is at least 3/4 s s^T more, and 3/2 s s^T - 3/2 (s n^T + n s^T) + 2 n n^T is
+/// positive definite. (docs/theory.md, "Tapered shells")
+inline void add_distortion(const TetCorners& p, std::size_t free, double six_volumes,
+                           Vec3d& gradient, Symmetric& hessian)
 {
     const Vec3d& x = p[free];
-    const Vec3d &q = p[(free + 1) % 4], &r = p[(free + 2) % 4], &t = p[(free + 3) % 4];
-    const double edges = (q - x).lengthSqr() + (r - x).lengthSqr() + (t - x).lengthSqr() +
-                         (q - r).lengthSqr() + (q - t).lengthSqr() + (r - t).lengthSqr();
-    const Vec3d s = (2 / edges) * (3.0 * x - q - r - t);
-    // Cyclic rotations of four corners are odd permutations, hence the sign for an odd `free`.
-    Vec3d n = (r - q).cross(t - q);
-    n *= (free % 2 == 0 ? -1.0 : 1.0) / six_volumes;
-    const double root = std::cbrt(0.5 * six_volumes);
-    const double value = edges / (12 * root * root);
-    const double power = exponent == 1 ? value : std::pow(value, exponent);
-    const Vec3d slope = s - (2.0 / 3.0) * n; // of log(amips)
-    gradient += (exponent * power) * slope;
-    // Of value^e: e value^(e-1) Hess(value) + e (e-1) value^e slope slope^T.
-    const double w = exponent * power;
-    hessian.add_identity(w * 6 / edges);
-    hessian.add(-w * 2.0 / 3.0, s, n);
-    hessian.add(w * 10.0 / 9.0, n);
-    hessian.add(w * (exponent - 1), slope);
+    const double edges = squared_edges(p);
+    const Vec3d s =
+        (2 / edges) * (3.0 * x - p[(free + 1) % 4] - p[(free + 2) % 4] - p[(free + 3) % 4]);
+    const Vec3d n = volume6_gradient(p, free) / six_volumes;
+    const double value = distortion(edges, six_volumes);
+    gradient += value * (1.5 * s - n);
+    hessian.add_identity(value * 9 / edges);
+    hessian.add(value * 0.75, s);
+    hessian.add(value * -1.5, s, n);
+    hessian.add(value * 2, n);
 }
 
 } // namespace vdb_shell::taper

@@ -20,6 +20,7 @@
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/step/line_step.h"
+#include "vdb_shell/taper/taper.h"
 
 #include <array>
 #include <cstdint>
@@ -95,6 +96,7 @@ struct ShellReport {
     std::optional<RefineReport> refine; ///< absent unless rounds of refinement were asked for
     std::optional<OutsideReport> outside;
     std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
+    std::optional<TaperReport> taper; ///< absent unless it was asked for
     std::vector<LayerFigures> layers; ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     TetSigns signs;

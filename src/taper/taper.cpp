@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: a certified stack of layers inside a surface. Leaves: a stack with fewer, better shaped
+// tets that fill as much, in which vertices share inner points. Each round tries every change of
+// four kinds once: merge two points, move a point, hand a vertex over from one point to another,
+// turn a diagonal. All of them lower one cost, so rounds end by themselves: when one of them has
+// next to nothing left to do, or after as many as the options say (docs/stages/taper.md).
+
+#include "vdb_shell/taper/taper.h"
+
+#include "core/stage_progress.h"
+#include "growth/grow_state.h"
+#include "taper/passes.h"
+#include "vdb_shell/options/option.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using namespace taper;
+
+CostWeights weights_of(const TaperState& s, const TaperOptions& options)
+{
+    const std::vector<Vec3d> surface(s.point.begin(), s.point.begin() + s.vertices());
+    CostWeights weights;
+    weights.tet = options.tet_cost;
+    // The void is what of the solid has no tets, so a cost of the void is a gain of the tets.
+    weights.volume6 =
+        options.void_cost * s.faces() / std::abs(growth::volume6(surface, s.mesh->faces));
+    weights.worst_distortion = distortion_of_amips(options.worst_amips);
+    return weights;
+}
+
+/// One round; how many changes it made.
+std::size_t make_round(TaperState& s, const MergeOptions& merge, const StageProgress& progress,
+                       int percent, TaperReport& report)
+{
+    // Merges leave points where one of the two was, or halfway, and moves take them on from there.
+    // Each sweep halves about what is left to win, and a round ends with other points anyhow.
+    constexpr int kMoveSweeps = 3;
+    const std::size_t before = report.merges + report.moves + report.handed_over + report.turned;
+    report.merges += merge_pass(s, merge, progress, percent);
+    for (int i = 0; i < kMoveSweeps; ++i)
+        report.moves += move_pass(s, progress, percent);
+    report.handed_over += hand_over_pass(s, progress, percent);
+    report.turned += turn_pass(s, progress, percent);
+    ++report.rounds;
+    return report.merges + report.moves + report.handed_over + report.turned - before;
+}
+
+void count_result(const TaperState& s, TaperReport& report)
+{
+    for (int n = s.vertices(); n < static_cast<int>(s.point.size()); ++n)
+        report.inner_points += s.used(n);
+    for (const PieceCost& cost : s.cost)
+        ++report.prisms_by_tets[std::size_t(cost.tets)];
+}
+
+} // namespace
+
+const NameTable<CoreSurface>& names(CoreSurface)
+{
+    static const NameTable<CoreSurface> table{{"free", CoreSurface::free},
+                                              {"stitched", CoreSurface::stitched}};
+    return table;
+}
+
+OptionList describe(TaperOptions& o)
+{
+    return in_group(
+        "Taper",
+        {option("wanted", o.wanted, "--taper",
+                "Let vertices share inner points: fewer and better tets"),
+         option("tet_cost", o.tet_cost, "--taper-tet-cost",
+                "What a tet costs besides its distortion, which is 1 for a regular tet: the "
+                "larger, the fewer tets")
+             .within(at_least(0)),
+         option("void_cost", o.void_cost, "--taper-void-cost",
+                "What the empty solid would cost for each triangle: the larger, the fuller")
+             .within(at_least(0)),
+         option("worst_amips", o.worst_amips, "--taper-worst-amips",
+                "No change makes a tet of a larger AMIPS, 3 for a regular tet")
+             .within(at_least(3)),
+         option("rounds", o.rounds, "--taper-rounds", "Rounds at most")
+             .in(Unit::count)
+             .within(at_least(1).at_most(1000)),
+         option("core", o.core, "--core",
+                "Parts of the inner surface that come close: stay free, or are stitched")});
+}
+
+TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
+                        const TaperOptions& options, Interrupter* interrupter)
+{
+    require_in_range(options, "taper");
+    assert(stack.skin == 0 && cap.size() == stack.surface(0).size());
+    const StageProgress progress(interrupter, "taper");
+    const growth::Connectivity mesh = growth::connect(stack.surface(0).size(), stack.triangles());
+    TaperState s = make_taper_state(mesh, stack, cap);
+    s.weights = weights_of(s, options);
+    MergeOptions merge;
+    merge.across = options.core == CoreSurface::stitched ? merge.across : 0;
+    // With one layer a point that joined the surface would be a pin, and thickness lost.
+    merge.into_level_above = s.levels > 1;
+    // A round that changes fewer than one edge in a hundred is not worth its time.
+    const std::size_t few = s.edges.size() / 100;
+    TaperReport report;
+    for (int i = 0; i < options.rounds; ++i)
+        if (make_round(s, merge, progress, 100 * i / options.rounds, report) <= few)
+            break;
+    put_back(s, stack);
+    stack.tapered = true;
+    count_result(s, report);
+    return report;
+}
+
+} // namespace vdb_shell
