@@ -326,14 +326,17 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
     std::size_t ripples = 0;
     for (const PrismSplit& split : file.stack.splits)
         ripples += split.ripples;
-    add_count(geometry, kSchema, has_layers(file.stack) ? kLayeredSchema : 1);
+    const bool tapered = file.stack.tapered, layers = tapered || has_layers(file.stack);
+    add_count(geometry, kSchema, tapered ? kTaperedSchema : layers ? kLayeredSchema : 1);
     add_count(geometry, kVertices, static_cast<std::size_t>(counts.vertices));
     add_count(geometry, kPrisms, static_cast<std::size_t>(counts.prisms));
     add_count(geometry, kTets, file.tets.tets.size());
-    if (has_layers(file.stack)) {
+    if (layers) {
         add_count(geometry, kLayers, file.stack.layers.size());
         add_count(geometry, kSkin, file.stack.skin);
     }
+    if (tapered)
+        add_count(geometry, kTapered, 1);
     add_count(geometry, kRipples, ripples);
     if (file.placement.moves()) {
         const Vec3d& o = file.placement.origin;

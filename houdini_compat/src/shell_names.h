@@ -15,6 +15,7 @@ inline constexpr const char* kPrisms = "vdb_shell_prisms";
 inline constexpr const char* kTets = "vdb_shell_tets";
 inline constexpr const char* kLayers = "vdb_shell_layers";
 inline constexpr const char* kSkin = "vdb_shell_skin";
+inline constexpr const char* kTapered = "vdb_shell_tapered";
 inline constexpr const char* kRipples = "vdb_shell_ripples";
 inline constexpr const char* kOrigin = "vdb_shell_origin";
 inline constexpr const char* kUnit = "vdb_shell_unit";

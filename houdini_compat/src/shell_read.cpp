@@ -80,6 +80,8 @@ Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const
     counts.tets = detail.count(kTets, geometry.primitives.size());
     if (schema >= kLayeredSchema)
         read_layers(detail, name, counts);
+    if (schema >= kTaperedSchema)
+        counts.tapered = detail.count(kTapered, 1) == 1;
     require_primitives(geometry, counts, name);
     return counts;
 }
@@ -256,6 +258,7 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     const Columns primitives(geometry.primitive_attributes, "primitive attribute", name);
     const Counts counts = read_counts(geometry, detail, name);
     ShellFile file;
+    file.stack.tapered = counts.tapered;
     const std::vector<std::size_t> prisms = read_prisms(primitives, counts);
     const Ids ids = read_pillars(geometry, points, counts, file.stack);
     read_triangles(geometry, counts, ids, prisms, name, file.stack);

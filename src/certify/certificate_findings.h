@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/certify/certificate.h"
+#include "vdb_shell/certify/complex_certificate.h"
 
 #include <array>
 #include <string>
@@ -59,6 +60,24 @@ template <typename Visit> void for_each_kind(const Certificate& c, const Visit& 
     visit("nested_wrongly", c.nested_wrongly);
     visit("open_edges", c.open_edges);
     visit("split_vertices", c.split_vertices);
+}
+template <typename Visit> void for_each_kind(const ComplexCertificate& c, const Visit& visit)
+{
+    visit("cyclic_prisms", c.cyclic_prisms);
+    visit("bad_tets", c.bad_tets);
+    visit("crowded_faces", c.conformity.crowded_faces);
+    visit("misoriented_faces", c.conformity.misoriented_faces);
+    visit("stray_faces", c.conformity.stray_faces);
+    visit("missing_triangles", c.conformity.missing_triangles);
+    visit("outer_contacts", c.outer_contacts);
+    visit("inner_contacts", c.inner_contacts);
+    visit("inner_through_outer", c.inner_through_outer);
+    visit("tets_through_outer", c.tets_through_outer);
+    visit("overlapping_tets", c.overlapping_tets);
+    visit("detached_tets", c.detached_tets);
+    visit("open_edges", c.open_edges);
+    visit("split_vertices", c.split_vertices);
+    visit("doubled_vertices", c.doubled_vertices);
 }
 
 } // namespace vdb_shell

@@ -10,12 +10,16 @@
 
 #include "vdb_shell/certify/conformity.h"
 
+#include "vdb_shell/shell/shared_points.h"
+
 #include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <functional>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -65,46 +69,35 @@ FaceSide side_of(const Vec3I& face, std::uint32_t owner, bool of_surface)
     return side;
 }
 
-constexpr std::uint32_t kNoPoint = ~std::uint32_t(0);
-
 /// The two free surfaces of a shell or of a stack.
 struct FreeSurfaces {
     const std::vector<Vec3I>* triangles;
-    std::vector<std::uint8_t> pinned; ///< by vertex: no length in any layer
+    std::size_t vertices, layers;
+    std::vector<std::uint32_t> first; ///< by place: the first that shares its point
+    bool tapered;
+
+    std::uint32_t outer(std::uint32_t vertex) const { return first[vertex]; }
+    std::uint32_t inner(std::uint32_t vertex) const { return first[layers * vertices + vertex]; }
+    /// A vertex that is pinned in some layers and not in others has two different ends.
+    bool pinned(std::uint32_t vertex) const { return outer(vertex) == inner(vertex); }
 };
 
-FreeSurfaces free_surfaces(const PrismShell* layers, std::size_t count)
+FreeSurfaces free_surfaces(const PrismShell* layers, std::size_t count, bool tapered)
 {
-    FreeSurfaces free{&layers->triangles, std::vector<std::uint8_t>(layers->outer.size(), 1)};
-    for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t v = 0; v < free.pinned.size(); ++v)
-            // A vertex that is pinned in some layers and not in others has two different ends, so
-            // it counts as free.
-            free.pinned[v] = free.pinned[v] && layers[k].pinned(v);
-    return free;
+    return {&layers->triangles, layers->outer.size(), count, first_places(layers, count, tapered),
+            tapered};
 }
 
-struct PointIndex {
-    std::vector<std::uint32_t> outer, inner;
-};
-
-/// The inner point of a pillar is its last one. Points stand in the order of their surfaces, so the
-/// last that is written wins; a pillar that is pinned in the last layer ends in the point of a
-/// surface above, and that is the last one listed for its vertex.
-PointIndex index_points(const FreeSurfaces& free, const TetMesh& mesh)
+/// By place the point of the tets that stands for it. A place without one gets a number beyond all
+/// points, so that no face of a tet has it.
+std::vector<std::uint32_t> index_points(const FreeSurfaces& free, const TetMesh& mesh)
 {
-    PointIndex index;
-    const std::size_t vertices = free.pinned.size();
-    index.outer.assign(vertices, kNoPoint);
-    index.inner.assign(vertices, kNoPoint);
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-        if (mesh.source_vertex[p] < vertices)
-            (mesh.layer[p] ? index.inner : index.outer)[mesh.source_vertex[p]] =
-                static_cast<std::uint32_t>(p);
-    }
-    for (std::size_t v = 0; v < vertices; ++v)
-        if (free.pinned[v])
-            index.inner[v] = index.outer[v];
+    const auto points = static_cast<std::uint32_t>(mesh.points.size());
+    std::vector<std::uint32_t> index(free.first.size());
+    std::iota(index.begin(), index.end(), points);
+    for (std::uint32_t p = 0; p < points; ++p)
+        if (mesh.source_vertex[p] < free.vertices && mesh.layer[p] <= free.layers)
+            index[mesh.layer[p] * free.vertices + mesh.source_vertex[p]] = p;
     return index;
 }
 
@@ -136,31 +129,42 @@ struct Findings {
 /// The sides that the surfaces should find a tet at. A triangle with three pinned corners has no
 /// prism: its outer and inner triangle are one, and no tet is expected there.
 void append_surface_sides(const FreeSurfaces& free, const TetMesh& mesh,
-                          std::vector<FaceSide>& sides, Findings& findings)
+                          std::vector<FaceSide>& sides)
 {
-    const PointIndex index = index_points(free, mesh);
-    auto append = [&](const Vec3I& face, std::uint32_t triangle) {
-        if (face[0] == kNoPoint || face[1] == kNoPoint || face[2] == kNoPoint)
-            findings.missing.add(triangle);
-        else
-            sides.push_back(side_of(face, triangle, true));
-    };
+    const std::vector<std::uint32_t> index = index_points(free, mesh);
+    const auto outer = [&](std::uint32_t v) { return index[free.outer(v)]; };
+    const auto inner = [&](std::uint32_t v) { return index[free.inner(v)]; };
     for (std::uint32_t t = 0; t < free.triangles->size(); ++t) {
         const Vec3I& v = (*free.triangles)[t];
-        if (free.pinned[v[0]] && free.pinned[v[1]] && free.pinned[v[2]])
+        if (free.pinned(v[0]) && free.pinned(v[1]) && free.pinned(v[2]))
             continue;
         // Each side is given as seen from outside of what owns it. The surfaces own what is not
         // shell, so the outer triangle is turned round and the inner one is not.
-        append({index.outer[v[0]], index.outer[v[2]], index.outer[v[1]]}, t);
-        append({index.inner[v[0]], index.inner[v[1]], index.inner[v[2]]}, t);
+        sides.push_back(side_of({outer(v[0]), outer(v[2]), outer(v[1])}, t, true));
+        const Vec3I below(inner(v[0]), inner(v[1]), inner(v[2]));
+        // Where vertices share their inner point, there is no inner triangle.
+        if (below[0] != below[1] && below[1] != below[2] && below[2] != below[0])
+            sides.push_back(side_of(below, t, true));
     }
 }
 
-/// `first` to `last`: all sides of one face, tets before surfaces.
-void judge_face(const FaceSide* first, const FaceSide* last, Findings& findings)
+/// Triangles of the free surfaces with the same corners that face each other bound nothing: either
+/// two tets meet there, or none are there. Gives the end of those that are left.
+FaceSide* without_opposite(FaceSide* first, FaceSide* last)
 {
-    const FaceSide* surface =
+    const auto evens = std::count_if(first, last, [](const FaceSide& s) { return s.even; });
+    const auto odds = (last - first) - evens;
+    std::stable_partition(first, last, [&](const FaceSide& s) { return s.even == (evens > odds); });
+    return first + std::abs(evens - odds);
+}
+
+/// `first` to `last`: all sides of one face, tets before surfaces.
+void judge_face(FaceSide* first, FaceSide* last, bool tapered, Findings& findings)
+{
+    FaceSide* surface =
         std::find_if(first, last, [](const FaceSide& side) { return side.of_surface; });
+    if (tapered)
+        last = without_opposite(surface, last);
     const auto tets = surface - first, surfaces = last - surface;
     // The owner of the first side is the tet of the smallest index, as sides are sorted by it.
     if (tets >= 3)
@@ -184,14 +188,15 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
     for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
         for (std::size_t corner = 0; corner < 4; ++corner)
             sides.push_back(side_of(tet_face(mesh.tets[i], corner), i, false));
-    append_surface_sides(free, mesh, sides, findings);
+    append_surface_sides(free, mesh, sides);
     const auto smallest_corner = [](const FaceSide& side) { return side.corners[0]; };
-    sides = bucket_sort<FaceSide>(std::array{std::move(sides)}, mesh.points.size(), smallest_corner,
-                                  std::less<>());
+    sides =
+        bucket_sort<FaceSide>(std::array{std::move(sides)}, mesh.points.size() + free.first.size(),
+                              smallest_corner, std::less<>());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
             ++last;
-        judge_face(sides.data() + first, sides.data() + last, findings);
+        judge_face(sides.data() + first, sides.data() + last, free.tapered, findings);
     }
     return {findings.crowded.listed(), findings.misoriented.listed(), findings.stray.listed(),
             findings.missing.listed()};
@@ -201,12 +206,12 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
 
 Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh)
 {
-    return judge(free_surfaces(&shell, 1), mesh);
+    return judge(free_surfaces(&shell, 1, false), mesh);
 }
 
 Conformity check_conformity(const ShellStack& stack, const TetMesh& mesh)
 {
-    return judge(free_surfaces(stack.layers.data(), stack.layers.size()), mesh);
+    return judge(free_surfaces(stack.layers.data(), stack.layers.size(), stack.tapered), mesh);
 }
 
 } // namespace vdb_shell

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: a stack of layers. Gives: the certificate of each layer, and whether different components
-// as wholes keep clear of each other. Nothing more is needed for one component: its layers cannot
+// as wholes keep clear of each other; of a tapered stack, the certificate of its tets as a whole.
+// Nothing more is needed for one component: its layers cannot
 // overlap when each of them is certified (docs/theory.md, "Layers do not overlap one another"). Two
 // components do need more, because a layer of one is held against the same layer of the other only
 // (docs/theory.md, "Several components").
@@ -63,19 +64,23 @@ void append_failures(std::vector<std::string>& lines, const char* name,
 bool StackCertificate::certified() const
 {
     return hull_contacts.count + hull_nested_wrongly.count == 0 &&
+           (!complex || complex->certified()) &&
            std::all_of(layers.begin(), layers.end(),
                        [](const Certificate& layer) { return layer.certified(); });
 }
 
 bool StackCertificate::locally_valid() const
 {
-    return std::all_of(layers.begin(), layers.end(),
+    return (!complex || complex->locally_valid()) &&
+           std::all_of(layers.begin(), layers.end(),
                        [](const Certificate& layer) { return layer.locally_valid(); });
 }
 
 std::vector<std::string> StackCertificate::failures() const
 {
     std::vector<std::string> lines;
+    if (complex)
+        lines = complex->failures();
     for (std::size_t k = 0; k < layers.size(); ++k) {
         const std::string where =
             layers.size() > 1 ? "layer " + std::to_string(k) + ": " : std::string();
@@ -91,6 +96,10 @@ StackCertificate certify_stack(const ShellStack& stack, PrismTest test, Interrup
 {
     assert(!stack.layers.empty() && stack.splits.size() == stack.layers.size());
     StackCertificate certificate;
+    if (stack.tapered) {
+        certificate.complex = certify_complex(stack, interrupter);
+        return certificate;
+    }
     for (std::size_t k = 0; k < stack.layers.size(); ++k)
         certificate.layers.push_back(
             certify_shell(stack.layers[k], stack.splits[k], test, interrupter));

@@ -281,22 +281,31 @@ ordered_json overlaps_json(const Overlaps& overlaps)
 
 /// Names and order are those of the certificate's own messages, so that a failure in the text can
 /// be looked up by the same word here.
-void add_findings(ordered_json& json, const Certificate& certificate)
+template <typename OneCertificate>
+void add_findings(ordered_json& json, const OneCertificate& certificate)
 {
     for_each_kind(certificate,
                   [&](const char* name, const auto& defect) { json[name] = defect_json(defect); });
 }
 
+/// Stands where a PrismTest is named otherwise.
+constexpr const char* kComplexTest = "complex";
+
 /// Findings stand under the certificate itself where there is one layer, else by layer, from the
 /// outermost; the hull is only looked at where there are several. All layers are certified by the
-/// same test, so that of the first stands for it.
+/// same test, so that of the first stands for it. A tapered stack has one certificate for all, and
+/// a test of another name: its tets alone are positive.
 ordered_json certificate_json(const StackCertificate& certificate)
 {
     const std::vector<Certificate>& layers = certificate.layers;
     const PrismTest test = layers.empty() ? PrismTest::twelve_tets : layers.front().test;
-    ordered_json json{{"test", name_in_table(test)},
+    ordered_json json{{"test", certificate.complex ? kComplexTest : name_in_table(test)},
                       {"certified", certificate.certified()},
                       {"locally_valid", certificate.locally_valid()}};
+    if (certificate.complex) {
+        add_findings(json, *certificate.complex);
+        return json;
+    }
     if (layers.size() == 1) {
         add_findings(json, layers.front());
         return json;

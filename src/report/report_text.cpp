@@ -78,6 +78,8 @@ std::string coverage_text(const Coverage& coverage, Side side)
 std::string certificate_text(const StackCertificate& certificate)
 {
     const std::vector<Certificate>& layers = certificate.layers;
+    if (certificate.certified() && certificate.complex)
+        return "yes (all tets positive, their free faces embedded, no place in two tets)";
     if (certificate.certified())
         return std::string("yes (") +
                (!layers.empty() && layers.front().test == PrismTest::chosen_tets

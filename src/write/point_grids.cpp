@@ -6,6 +6,8 @@
 // which need not give the same float again, so the exact position stands in the attribute `rest`.
 // What an attribute means is in docs/file_format.md.
 
+#include "vdb_shell/shell/shared_points.h"
+
 #include "write/point_grids.h"
 
 #include "core/parallel.h"
@@ -281,6 +283,23 @@ std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
     return normals;
 }
 
+namespace
+{
+
+/// Points that are one in the tets name the same point of the tets. The first place that shares a
+/// point has an id of its own, which comes before those of the others.
+void share_tet_points(const ShellStack& stack, ShellPoints& points)
+{
+    const std::vector<std::uint32_t> first = first_places(stack);
+    const std::size_t vertices = stack.surface(0).size();
+    for (std::size_t i = 0; i < points.position.size(); ++i) {
+        const std::uint32_t place = first[points.layer[i] * vertices + points.vertex[i]];
+        points.tet_point[i] = points.tet_point[points.id[place / vertices][place % vertices]];
+    }
+}
+
+} // namespace
+
 ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
 {
     ShellPoints points;
@@ -304,6 +323,8 @@ ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
         points.id_of_tet_point.push_back(points.id[tets.layer[i]][tets.source_vertex[i]]);
         points.tet_point[points.id_of_tet_point.back()] = std::int32_t(i);
     }
+    if (stack.tapered)
+        share_tet_points(stack, points);
     return points;
 }
 
@@ -321,7 +342,8 @@ ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets)
             layers * std::int64_t(stack.triangles().size()),
             std::int64_t(tets.tets.size()),
             layers,
-            std::int64_t(stack.skin)};
+            std::int64_t(stack.skin),
+            stack.tapered};
 }
 
 PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets)

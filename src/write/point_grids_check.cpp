@@ -8,6 +8,7 @@
 // floats in a file.
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/shell/shared_points.h"
 
 #include "write/point_grids.h"
 
@@ -111,22 +112,37 @@ void require_layers_fit(const ShellStack& stack)
     }
 }
 
-/// Every point of the tets is an end of a pillar, and no end is there twice.
-void require_points(const ShellStack& stack, const TetMesh& tets)
+/// Every point of the tets is an end of a pillar, the first of those that share it, and no end is
+/// there twice.
+void require_points(const ShellStack& stack, const TetMesh& tets,
+                    const std::vector<std::uint32_t>& first)
 {
+    const std::size_t vertices = stack.surface(0).size();
     std::vector<std::vector<bool>> seen(stack.surfaces(),
                                         std::vector<bool>(stack.surface(0).size(), false));
     for (std::size_t i = 0; i < tets.points.size(); ++i) {
         const std::uint32_t v = tets.source_vertex[i];
         const std::size_t k = tets.layer[i];
-        require(v < stack.surface(0).size() && k < stack.surfaces() &&
-                    !(k > 0 && stack.layers[k - 1].pinned(v)),
+        require(v < vertices && k < stack.surfaces() &&
+                    first[k * vertices + v] == k * vertices + v,
                 "a point of the tets belongs to no end of a pillar", i);
         require(same_bits(stack.surface(k)[v], tets.points[i]),
                 "a point of the tets is not where its pillar ends", i);
         require(!seen[k][v], "a point of the tets is there twice", i);
         seen[k][v] = true;
     }
+}
+
+/// Of a tapered stack, where equal points are one. Tets and files have the bits of the first.
+void require_shared_bits(const ShellStack& stack, const std::vector<std::uint32_t>& first)
+{
+    const std::size_t vertices = stack.surface(0).size();
+    const auto at = [&](std::size_t place) {
+        return stack.surface(place / vertices)[place % vertices];
+    };
+    for (std::size_t place = 0; place < first.size(); ++place)
+        require(same_bits(at(place), at(first[place])),
+                "points that pillars share differ in the sign of a zero", place % vertices);
 }
 
 void require_layer(const PrismShell& layer, const PrismSplit& split)
@@ -195,7 +211,10 @@ void require_consistent(const ShellStack& stack, const TetMesh& tets)
     for (std::size_t k = 0; k < stack.layers.size(); ++k)
         require_layer(stack.layers[k], stack.splits[k]);
     require_layers_fit(stack);
-    require_points(stack, tets);
+    const std::vector<std::uint32_t> first = first_places(stack);
+    if (stack.tapered)
+        require_shared_bits(stack, first);
+    require_points(stack, tets, first);
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         for (int corner = 0; corner < 4; ++corner)
             require(tets.tets[t][corner] < tets.points.size(), "a tet's point is out of range", t);
@@ -226,6 +245,9 @@ std::string checksum_of(const ShellStack& stack, const TetMesh& tets)
         hash.add(tets.prism_layer);
         hash.add(std::vector<std::uint64_t>{stack.skin});
     }
+    // Only where it is set, for the same reason.
+    if (stack.tapered)
+        hash.add(std::vector<std::uint8_t>{1});
     return hash.hex();
 }
 

@@ -232,6 +232,7 @@ void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& cou
     const auto vertices = std::size_t(counts.vertices);
     const OwnRows own = find_own_rows(reader, rows, counts);
     stack.skin = std::size_t(counts.skin);
+    stack.tapered = counts.tapered;
     // find_own_rows has made sure that the first rows are the vertices of the outermost surface;
     // read_point_grids that there are as many.
     std::vector<Vec3s> above(rows.rest.begin(), rows.rest.begin() + counts.vertices);
@@ -246,7 +247,8 @@ void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& cou
     }
 }
 
-/// The tets' own list of points.
+/// The tets' own list of points. In a tapered shell several rows may name one of them: the first has
+/// it, and the others lie in its place.
 void read_tet_points(const Reader& reader, const Rows& rows, const ShellCounts& counts,
                      TetMesh& tets)
 {
@@ -260,6 +262,8 @@ void read_tet_points(const Reader& reader, const Rows& rows, const ShellCounts& 
         if (rows.tet_point[id] == 0)
             continue;
         const std::size_t point = rows.tet_point[id] - 1;
+        if (seen[point] && counts.tapered && same_bits(tets.points[point], rows.rest[id]))
+            continue;
         if (seen[point])
             reader.fail("attribute \"tet_point\": " + std::to_string(point) + " appears twice");
         seen[point] = true;

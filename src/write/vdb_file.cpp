@@ -246,7 +246,7 @@ ShellFile read_shell_vdb(const fs::path& path)
         put_in_place(*result.surface, -info.placement.shift());
         put_in_place(*result.depth, -info.placement.shift());
         const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
-                                 info.tets,     info.layers, info.skin};
+                                 info.tets,     info.layers, info.skin,       info.tapered};
         read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
                          result.stack, result.tets);
         // The file has the sum over all layers; it is put into the first layer.

@@ -35,6 +35,7 @@ constexpr const char* kPrismsKey = "vdb_shell_prisms";
 constexpr const char* kTetsKey = "vdb_shell_tets";
 constexpr const char* kLayersKey = "vdb_shell_layers";
 constexpr const char* kSkinKey = "vdb_shell_skin";
+constexpr const char* kTaperedKey = "vdb_shell_tapered";
 constexpr const char* kRipplesKey = "vdb_shell_ripples";
 constexpr const char* kOriginKey = "vdb_shell_origin";
 constexpr const char* kUnitKey = "vdb_shell_unit";
@@ -120,10 +121,13 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
     return path.parent_path() / stated;
 }
 
-/// Files of one layer below the surface say nothing of layers: they are as schema 1 has them.
-bool layered(const ShellCounts& counts)
+/// The oldest schema that has words for the shell. Files of one layer below the surface say nothing
+/// of layers.
+int schema_for(const ShellCounts& counts)
 {
-    return counts.layers > 1 || counts.skin > 0;
+    if (counts.tapered)
+        return kTaperedSchema;
+    return counts.layers > 1 || counts.skin > 0 ? kLayeredSchema : 1;
 }
 
 void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellInfo& info)
@@ -139,6 +143,13 @@ void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellIn
     if (info.skin > info.layers)
         fail(path, std::string("metadata \"") + kSkinKey + "\" is " + std::to_string(info.skin) +
                        ", expected at most " + std::to_string(info.layers));
+    if (info.schema < kTaperedSchema)
+        return;
+    const std::int64_t tapered = count_entry(metadata, path, kTaperedKey);
+    if (tapered > 1)
+        fail(path, std::string("metadata \"") + kTaperedKey + "\" is " + std::to_string(tapered) +
+                       ", expected 0 or 1");
+    info.tapered = tapered == 1;
 }
 
 void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Placement& placement)
@@ -189,7 +200,7 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     openvdb::MetaMap map;
     const ShellCounts counts = counts_of(file.stack, file.tets);
     map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
-    map.insertMeta(kSchemaKey, Int32Metadata(layered(counts) ? kLayeredSchema : 1));
+    map.insertMeta(kSchemaKey, Int32Metadata(schema_for(counts)));
     // The casts are safe: require_consistent has bounded these counts by int32, and it runs before
     // this.
     map.insertMeta(kVerticesKey, Int32Metadata(std::int32_t(counts.vertices)));
@@ -198,16 +209,19 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     map.insertMeta(kPrismsKey, Int32Metadata(std::int32_t(counts.prisms)));
     map.insertMeta(kTetsKey, Int32Metadata(std::int32_t(counts.tets)));
     map.insertMeta(kRipplesKey, Int32Metadata(as_int32(ripples_of(file.stack))));
-    if (layered(counts)) {
+    const bool layered = schema_for(counts) >= kLayeredSchema;
+    if (layered) {
         map.insertMeta(kLayersKey, Int32Metadata(std::int32_t(counts.layers)));
         map.insertMeta(kSkinKey, Int32Metadata(std::int32_t(counts.skin)));
     }
+    if (counts.tapered)
+        map.insertMeta(kTaperedKey, Int32Metadata(1));
     if (file.placement.moves()) {
         map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
         map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
     }
     map.insertMeta(kOrientationKey,
-                   StringMetadata(layered(counts) ? kOrientationOfLayers : kOrientation));
+                   StringMetadata(layered ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets)));
     map.insertMeta(kGridsKey, StringMetadata(kGridNames));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
@@ -233,7 +247,7 @@ void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
     grid.setCreator(creator_name());
     const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,  kTetPointsKey,
                                 kPrismsKey, kTetsKey,     kRipplesKey, kOrientationKey,
-                                kLayersKey, kSkinKey,     kOriginKey,  kUnitKey};
+                                kLayersKey, kSkinKey,     kTaperedKey, kOriginKey, kUnitKey};
     for (const char* key : kept)
         if (file[key])
             grid.insertMeta(std::string("global:") + key, *file[key]);

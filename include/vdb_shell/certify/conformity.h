@@ -39,7 +39,9 @@ struct Conformity {
 Conformity check_conformity(const PrismShell& shell, const TetMesh& tets);
 
 /// The same of all layers together: only the outermost and the innermost surface are free; a
-/// triangle is expected on them unless its three pillars are pinned in every layer.
+/// triangle is expected on them unless its three pillars are pinned in every layer. In a tapered
+/// stack an inner triangle with two corners in one point is not expected either, nor are two
+/// triangles with the same corners that face each other.
 Conformity check_conformity(const ShellStack& stack, const TetMesh& tets);
 
 } // namespace vdb_shell

@@ -23,6 +23,11 @@ struct ShellStack {
     /// The surface that is the user's input: 0 where the shell lies inside, n where it lies
     /// outside, in between where it lies on both sides.
     std::size_t skin = 0;
+    /// Whether vertices may share inner points. If so, points that are equal, on whatever surfaces
+    /// and of whatever vertices, are one point: several pillars may end in it, and a pillar may end
+    /// in the outer point of another vertex. If not, only the two ends of a pinned pillar are one
+    /// (shell/shared_points.h; docs/theory.md, "Tapered shells").
+    bool tapered = false;
 
     std::size_t surfaces() const { return layers.size() + 1; }
     /// S_k. Precondition: k < surfaces(), at least one layer.
@@ -45,7 +50,8 @@ PrismShell hull_of(const ShellStack& stack);
 /// order; where a pillar is pinned in a layer, its point is that of the surface above
 /// (TetMesh::layer is the first of the surfaces that share it). Tets of neighbouring layers meet
 /// face to face: both have the triangles of the surface between them. A stack of one layer gives
-/// the tets of its shell.
+/// the tets of its shell. Of a tapered stack: tets whose four corners are four points, and a point
+/// has the surface and the vertex of the first place that shares it.
 TetMesh make_tets(const ShellStack& stack);
 
 } // namespace vdb_shell

@@ -21,12 +21,14 @@ namespace vdb_shell
 struct ShellCounts {
     std::int64_t vertices = 0, points = 0, tet_points = 0, prisms = 0, tets = 0;
     std::int64_t layers = 1, skin = 0;
+    bool tapered = false;
 };
 ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets);
 
 /// The points of the file by id: all vertices of the outermost surface, then surface by surface
 /// those whose pillar in the layer above is not pinned. The tets number their points otherwise:
-/// they leave out what no tet uses.
+/// they leave out what no tet uses. In a tapered stack each pillar keeps its points here, and the
+/// tets have one where several pillars share it: that of smallest id.
 struct ShellPoints {
     static constexpr std::int32_t kUnused = -1;
     std::vector<openvdb::Vec3s> position;
@@ -34,7 +36,9 @@ struct ShellPoints {
     std::vector<std::uint8_t> layer;
     /// By surface and vertex; that of the surface above where the pillar between them is pinned.
     std::vector<std::vector<std::uint32_t>> id;
-    std::vector<std::int32_t> tet_point; ///< per id: index into TetMesh::points, or kUnused
+    /// Per id: index into TetMesh::points, or kUnused. Ids of a tapered stack that share a point
+    /// have the same.
+    std::vector<std::int32_t> tet_point;
     std::vector<std::uint32_t> id_of_tet_point;
 };
 /// Precondition: require_consistent.

@@ -16,9 +16,11 @@ namespace vdb_shell
 {
 
 /// Version of the layout in docs/file_format.md. A reader refuses a larger one. A shell of one
-/// layer below its surface is written as schema 1, which has no words for layers.
-inline constexpr int kShellSchema = 2;
+/// layer below its surface is written as schema 1, which has no words for layers; one that is not
+/// tapered as schema 2 at most.
+inline constexpr int kShellSchema = 3;
 inline constexpr int kLayeredSchema = 2; ///< the first that knows layers
+inline constexpr int kTaperedSchema = 3; ///< the first that knows pillars with a common end
 
 /// All that a shell's .vdb holds.
 struct ShellFile {
@@ -57,6 +59,7 @@ struct ShellInfo {
     std::int64_t tet_points = 0, prisms = 0, tets = 0;
     std::int64_t layers = 1;         ///< as many prisms stand on top of each other
     std::int64_t skin = 0;           ///< ShellStack::skin
+    bool tapered = false;            ///< ShellStack::tapered
     Placement placement;             ///< moves nothing where the file has none
     std::int64_t ripples = 0;        ///< PrismSplit::ripples, of all layers
     std::string creator;             ///< program and version that wrote it
