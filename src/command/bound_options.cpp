@@ -26,6 +26,7 @@ namespace
 {
 
 constexpr const char* kPresetFlag = "--options";
+constexpr const char* kPurposeFlag = "--for";
 
 /// The groups of the help in the order in which the stages run; a group that is not listed here
 /// comes after them, so that a new one is never lost.
@@ -146,14 +147,18 @@ bool was_given(const BoundOption& bound)
            (bound.shorthand_given && bound.shorthand_given->count() > 0);
 }
 
-void read_preset(BoundOptions& bound, const std::filesystem::path& preset)
+std::string text_of(const std::filesystem::path& preset)
 {
-    const std::string name = preset.string();
     std::ifstream in(preset, std::ios::binary);
     std::ostringstream text;
     if (!in || !(text << in.rdbuf()))
-        throw ReadError(name + ": cannot be read as a file of options");
-    nlohmann::ordered_json json = parse_options(text.str(), name);
+        throw ReadError(preset.string() + ": cannot be read as a file of options");
+    return text.str();
+}
+
+void set_from_text(BoundOptions& bound, const std::string& text, const std::string& name)
+{
+    nlohmann::ordered_json json = parse_options(text, name);
     // `info --json` prints the options beside the report, and what it prints can be given as the
     // file.
     if (json.contains("parameters"))
@@ -240,14 +245,33 @@ void apply(BoundOptions& bound)
 {
     // Exclusions and needs are settled last, because both depend on what the file and the flags
     // have set together.
+    BoundOption* purpose = find(bound, kPurposeFlag);
+    if (purpose && was_given(*purpose)) {
+        Purpose wanted = Purpose::any;
+        Option parsed = purpose_option(wanted);
+        assign_text(parsed, purpose->given->results().back(), kPurposeFlag);
+        set_from_text(bound, options_for(wanted), kPurposeFlag);
+    }
     const BoundOption* preset = find(bound, kPresetFlag);
-    if (preset && was_given(*preset))
-        read_preset(bound, preset->given->results().back());
+    if (preset && was_given(*preset)) {
+        const std::string file = preset->given->results().back();
+        set_from_text(bound, text_of(file), file);
+    }
     for (BoundOption& option : bound.options)
         if (was_given(option))
             set_given(option);
     settle_exclusions(bound);
     require_needs(bound);
+}
+
+Option purpose_option(Purpose& purpose)
+{
+    Option o =
+        option("", purpose, kPurposeFlag,
+               "What the shell is made for: a set of options, over which --options and flags "
+               "win");
+    o.group = "Options";
+    return o;
 }
 
 Option preset_option(std::filesystem::path& preset)

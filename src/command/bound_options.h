@@ -3,6 +3,8 @@
 
 #include "vdb_shell/options/section.h"
 
+#include "command/purpose.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -34,11 +36,14 @@ struct BoundOptions {
 /// The fields must still have their defaults; parsing does not change them, apply() does.
 BoundOptions bind(CLI::App& app, OptionSections sections);
 
-/// Sets the fields: first what the file of options says, if one is given, then what flags say,
-/// which win. Throws InvalidOption, with the name that the user gave, for impossible values and
-/// for flags that exclude or need each other; ReadError for a file that is none.
+/// Sets the fields: first what the purpose says and what the file of options says, if there are
+/// any, then what flags say; what comes later wins. Throws InvalidOption, with the name that the
+/// user gave, for impossible values and for flags that exclude or need each other; ReadError for a
+/// file that is none.
 void apply(BoundOptions& bound);
 
+/// The option that has apply() begin with the options for a purpose.
+Option purpose_option(Purpose& purpose);
 /// The option that gives apply() its file.
 Option preset_option(std::filesystem::path& preset);
 

@@ -135,7 +135,7 @@ void require_sensible(const BuildArguments& arguments)
 OptionSections describe(BuildArguments& a)
 {
     // The order of the sections is that of the help and of the file of options.
-    OptionSections sections{{"", {preset_option(a.preset)}}};
+    OptionSections sections{{"", {purpose_option(a.purpose), preset_option(a.preset)}}};
     for (OptionSection& section : describe(a.outputs))
         sections.push_back(std::move(section));
     const OptionList figures{

@@ -6,6 +6,7 @@
 
 #include "command/bound_options.h"
 #include "command/outputs.h"
+#include "command/purpose.h"
 
 #include <filesystem>
 #include <string>
@@ -14,6 +15,7 @@ namespace vdb_shell::command
 {
 
 struct BuildArguments {
+    Purpose purpose = Purpose::any;
     std::filesystem::path preset; ///< file of options
     std::filesystem::path mesh;   ///< or a level set: FILE.vdb or FILE.vdb:GRID
     ReadOptions read;

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/options/name_table.h"
+
+#include <string>
+
+namespace vdb_shell::command
+{
+
+/// What the shell is made for: a set of options by name.
+enum class Purpose {
+    any,         ///< the defaults
+    simulation,  ///< well shaped tets in two tapered layers
+    fewest_tets, ///< one tapered layer
+    thickness,   ///< as much of the solid as prisms can fill
+};
+const NameTable<Purpose>& names(Purpose);
+
+/// The options as JSON: samples/presets/NAME.json, word for word. An empty object for Purpose::any.
+std::string options_for(Purpose purpose);
+
+} // namespace vdb_shell::command
