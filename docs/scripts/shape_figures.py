@@ -52,7 +52,8 @@ def read_list(path):
     lines = [line.split() for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
     for number, words in enumerate(lines, 1):
         if len(words) != 2 or words[0] not in HALVES:
-            raise SystemExit(f"{path}: entry {number}: \"{' '.join(words)}\" is not \"tuning NAME\" or \"judging NAME\"")
+            raise SystemExit(f"{path}: entry {number}: \"{' '.join(words)}\" is not \"tuning NAME\" or "
+                             "\"judging NAME\"")
     return {name: half for half, name in lines}
 
 
@@ -84,12 +85,14 @@ def mean_of(runs, names, way):
 
 
 def means_table(runs, halves, ways):
-    """Means over the meshes that every way made tets of, for otherwise they would be of different surfaces."""
+    """Means over the meshes that every way made tets of, for otherwise they would be of different surfaces; and over
+    those that one way made more of."""
     common = [name for name in runs if all("failed" not in runs[name][way] for way in ways)]
     rows = []
     for way in ways:
-        for part in ("all", *HALVES):
-            names = [name for name in common if part in ("all", halves[name])]
+        own = [name for name in runs if "failed" not in runs[name][way]]
+        for part in ("all", *HALVES, *(["all it made"] if own != common else [])):
+            names = own if part == "all it made" else [name for name in common if part in ("all", halves[name])]
             if names:
                 mean = mean_of(runs, names, way)
                 worst = max(runs[name][way]["tets_per_triangle"] for name in names)

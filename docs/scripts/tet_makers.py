@@ -119,7 +119,8 @@ def point_in_cavity(points, triangles, first):
         across = np.einsum("ij,ij->i", to, cross) * inverse
         turned = np.cross(to, u)
         up, far = turned @ along * inverse, np.einsum("ij,ij->i", v, turned) * inverse
-    hit = (across >= 0) & (up >= 0) & (across + up <= 1) & (far > 0) & (np.arange(len(triangles)) != first)
+        inside = (across >= 0) & (up >= 0) & (across + up <= 1)
+    hit = inside & (far > 0) & (np.arange(len(triangles)) != first)
     return start + along * far[hit].min() / 2
 
 
