@@ -11,6 +11,7 @@ reference of a surface is TetGen's -pYq1.414/14 refined twice, or once where tha
 Beside the page stands the same as JSON. Results are kept in --cache; other binaries are run again.
 """
 import argparse
+import hashlib
 import json
 import math
 import pathlib
@@ -24,7 +25,7 @@ from tet_makers import TETGEN, Failed, Maker, digest
 
 REFERENCE = "TetGen -pYq1.414/14"
 COLUMNS = [("tets", "tets", "{:.0f}"), ("compliance / converged", "ratio", "{:.3f}"),
-           ("of one refinement", "ratio_of_one", "{:.3f}"), ("CG steps", "steps", "{:.0f}"),
+           ("of one refinement", "ratio_of_one", "{:.3f}"), ("skin held", "ratio_skin", "{:.3f}"), ("CG steps", "steps", "{:.0f}"),
            ("explicit step, us", "explicit_us", "{:.1f}"), ("over TetGen -pYq's", "explicit_ratio", "{:.3f}")]
 
 
@@ -49,7 +50,7 @@ def arguments():
 def solve(options, tets, flags=()):
     """What soft_body prints, kept beside the tets."""
     words = ["--up", options.up, *flags]
-    kept = tets.parent / f"soft_body-{digest(options.soft_body)[:12]}{'_'.join(words).replace('/', '_')[-40:]}.json"
+    kept = tets.parent / f"soft_body-{digest(options.soft_body)[:12]}-{hashlib.sha256(' '.join(words).encode()).hexdigest()[:8]}.json"
     if not kept.exists():
         try:
             done = subprocess.run([str(options.soft_body), str(tets), *words], capture_output=True, text=True,
@@ -67,20 +68,22 @@ def reference_of(options, maker, mesh):
     solid = maker.others(mesh, REFERENCE)
     refinements = 2 if 64 * len(read_tets(solid)[1]) <= options.reference_tets else 1
     found = solve(options, solid, ["--refinements", str(refinements), "--reference", str(solid)])
+    skin = solve(options, solid, ["--hold", "skin", "--refinements", str(refinements), "--reference", str(solid)])
     first, second = found["refined_compliances_joule"][:2]
-    return {"limit": found["limit_joule"], "limit_of_one": second + (second - first) / 3,
+    return {"limit": found["limit_joule"], "limit_skin": skin["limit_joule"], "limit_of_one": second + (second - first) / 3,
             "refinements": refinements, "explicit": found["explicit_step_s"]}
 
 
 def measure(options, maker, mesh, way, words, reference):
     try:
         tets = maker.ours(mesh, words, ".vdb")[0] if words is not None else maker.others(mesh, way)
-        found = solve(options, tets)
-        if not found["converged"]:
-            return {"failed": f"not converged in {found['steps']} steps"}
+        found, skin = solve(options, tets), solve(options, tets, ["--hold", "skin"])
+        if not (found["converged"] and skin["converged"]):
+            return {"failed": f"not converged in {max(found['steps'], skin['steps'])} steps"}
         return {"tets": found["tets"], "steps": found["steps"], "refinements": reference["refinements"],
                 "ratio": found["compliance_joule"] / reference["limit"],
                 "ratio_of_one": found["compliance_joule"] / reference["limit_of_one"],
+                "ratio_skin": skin["compliance_joule"] / reference["limit_skin"],
                 "explicit_us": 1e6 * found["explicit_step_s"],
                 "explicit_ratio": found["explicit_step_s"] / reference["explicit"]}
     except Failed as error:

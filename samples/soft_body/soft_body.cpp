@@ -19,7 +19,7 @@ namespace
 struct Options {
     std::string tets, reference, motion_folder;
     int up = 1, refinements = 2;
-    bool hold_inner = false, hold_foot = true;
+    bool hold_inner = false, hold_foot = true, hold_skin = false;
     double height = .2;
     Material material{2e4, .4, 1000};
     MotionOptions motion;
@@ -32,14 +32,17 @@ void declare(CLI::App& app, Options& o)
         ->transform(
             CLI::CheckedTransformer(std::map<std::string, int>{{"x", 0}, {"y", 1}, {"z", 2}}))
         ->default_str("y");
-    const std::vector<std::string> holds{"foot", "inner", "both"};
+    const std::vector<std::string> holds{"foot", "skin", "inner", "both"};
     app.add_option_function<std::string>(
            "--hold",
            [&o](const std::string& what) {
                o.hold_foot = what != "inner";
-               o.hold_inner = what != "foot";
+               o.hold_skin = what == "skin";
+               o.hold_inner = what == "inner" || what == "both";
            },
-           "what is held: the lowest tenth of the height, the inner surface, or both")
+           "what is held: the lowest tenth of the height, its points on the surface alone, the "
+           "inner "
+           "surface, or the first and the last")
         ->check(CLI::IsMember(holds))
         ->default_str("foot");
     app.add_option("--height", o.height, "the body is taken to be so high, m")
@@ -88,7 +91,8 @@ Scaled read_scaled(const std::string& path, const Options& options)
 
 Held held_points(const Solid& solid, const Options& options)
 {
-    Held held = hold_foot(solid.points, options.up);
+    Held held =
+        options.hold_skin ? hold_skin(solid, options.up) : hold_foot(solid.points, options.up);
     if (!options.hold_foot)
         std::fill(held.begin(), held.end(), char(0));
     if (options.hold_inner) {
@@ -142,8 +146,9 @@ int run(const Options& options)
     nlohmann::ordered_json out;
     report_statics(out, solid, elasticity, held, options.up);
     if (!options.reference.empty()) {
-        const Convergence found = converge(read_scaled(options.reference, options).solid,
-                                           options.material, options.up, options.refinements);
+        const Convergence found =
+            converge(read_scaled(options.reference, options).solid, options.material, options.up,
+                     options.refinements, options.hold_skin);
         out["refined_compliances_joule"] = found.compliances;
         out["limit_joule"] = found.limit;
         out["compliance_over_limit"] = out["compliance_joule"].get<double>() / found.limit;

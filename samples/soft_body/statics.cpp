@@ -27,6 +27,31 @@ Held hold_foot(const Points& points, int up, double share)
     return held;
 }
 
+Held hold_skin(const Solid& solid, int up)
+{
+    const Held below = hold_foot(solid.points, up);
+    Held held(below.size());
+    for (const Triangle& triangle : skin(solid))
+        for (int corner : triangle)
+            held[std::size_t(corner)] = below[std::size_t(corner)];
+    return held;
+}
+
+Held hold_midpoints(const Solid& coarse, const Held& held,
+                    const std::vector<std::array<int, 2>>& parents)
+{
+    std::vector<std::array<int, 2>> edges;
+    for (const Triangle& t : skin(coarse))
+        if (held[std::size_t(t[0])] && held[std::size_t(t[1])] && held[std::size_t(t[2])])
+            for (std::size_t k = 0; k < 3; ++k)
+                edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+    std::sort(edges.begin(), edges.end());
+    Held fine = held;
+    for (const auto& edge : parents)
+        fine.push_back(std::binary_search(edges.begin(), edges.end(), edge));
+    return fine;
+}
+
 Held hold_inner(const Solid& solid)
 {
     const int last =
@@ -79,10 +104,11 @@ Deflection deflect(const Solid& solid, const Elasticity& elasticity, const Held&
     return {solved.x, force.cwiseProduct(solved.x).sum(), solved.steps, solved.converged};
 }
 
-Convergence converge(const Solid& solid, const Material& material, int up, int refinements)
+Convergence converge(const Solid& solid, const Material& material, int up, int refinements,
+                     bool skin_alone)
 {
     Convergence found{};
-    Held held = hold_foot(solid.points, up);
+    Held held = skin_alone ? hold_skin(solid, up) : hold_foot(solid.points, up);
     require_held(solid, held);
     const Elasticity coarse(solid, material);
     Points force = weight(coarse.mass(), up);
@@ -92,8 +118,9 @@ Convergence converge(const Solid& solid, const Material& material, int up, int r
     Solid finest = solid;
     for (int k = 0; k < refinements; ++k) {
         Refined refined = refine(finest);
+        held = skin_alone ? hold_midpoints(finest, held, refined.parents)
+                          : hold_foot(refined.solid.points, up);
         finest = std::move(refined.solid);
-        held = hold_foot(finest.points, up);
         const Elasticity elasticity(finest, material);
         force = weight(elasticity.mass(), up);
         multigrid.add_finer(elasticity.stiffness(), held, std::move(refined.parents));

@@ -235,6 +235,20 @@ TEST(SoftBody, MultigridAndDiagonalLeadToTheSameDeflection)
     EXPECT_GT(found.limit, found.compliances.back());
 }
 
+TEST(SoftBody, RefiningWithTheSameSkinHeldOnlySoftens)
+{
+    Solid coarse = irregular_block();
+    const Held held = hold_skin(coarse, 2);
+    EXPECT_EQ(std::count(held.begin(), held.end(), char(1)), 25); // the bottom of 4 x 4 cells
+    const Refined refined = refine(coarse);
+    const Held fine = hold_midpoints(coarse, held, refined.parents);
+    EXPECT_EQ(std::count(fine.begin(), fine.end(), char(1)), 81); // of 8 x 8
+    const Convergence found = converge(coarse, {2e4, .4, 1000}, 2, 2, true);
+    EXPECT_LT(found.compliances[0], found.compliances[1]);
+    EXPECT_LT(found.compliances[1], found.compliances[2]);
+    EXPECT_LT(found.compliances[2], found.limit);
+}
+
 TEST(SoftBody, TheExplicitStepIsThatOfAllEigenvalues)
 {
     const Solid solid = block({2, 2, 3}, {1, 1, 2});
