@@ -173,7 +173,7 @@ Vec3d Changes::newton_step(int n) const
             const double volume = six_volumes(p);
             if (!(volume > 0))
                 return;
-            add_distortion(p, free, volume, gradient, hessian);
+            add_distortion(p, free, volume, s_.weights.power, gradient, hessian);
             gradient -= s_.weights.volume6 * volume6_gradient(p, free);
         });
     return solve_positive(hessian, gradient, step) ? -step : Vec3d(0.0);

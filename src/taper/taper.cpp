@@ -9,7 +9,6 @@
 #include "vdb_shell/taper/taper.h"
 
 #include "core/stage_progress.h"
-#include "growth/grow_state.h"
 #include "taper/passes.h"
 #include "vdb_shell/options/option.h"
 
@@ -24,14 +23,14 @@ namespace
 
 using namespace taper;
 
-CostWeights weights_of(const TaperState& s, const TaperOptions& options)
+CostWeights weights_of(const ShellStack& stack, const TaperOptions& options)
 {
-    const std::vector<Vec3d> surface(s.point.begin(), s.point.begin() + s.vertices());
     CostWeights weights;
     weights.tet = options.tet_cost;
+    weights.power = options.shape_power;
     // The void is what of the solid has no tets, so a cost of the void is a gain of the tets.
-    weights.volume6 =
-        options.void_cost * s.faces() / std::abs(growth::volume6(surface, s.mesh->faces));
+    weights.volume6 = options.void_cost * double(stack.triangles().size()) /
+                      (6 * std::abs(signed_volume(stack.surface(0), stack.triangles())));
     weights.worst_distortion = distortion_of_amips(options.worst_amips);
     return weights;
 }
@@ -80,6 +79,9 @@ OptionList describe(TaperOptions& o)
                 "What a tet costs besides its distortion, which is 1 for a regular tet: the "
                 "larger, the fewer tets")
              .within(at_least(0)),
+         option("shape_power", o.shape_power, "--taper-shape-power",
+                "Power of the distortion that counts: the larger, the more the worst tets count")
+             .within(at_least(1).at_most(8)),
          option("void_cost", o.void_cost, "--taper-void-cost",
                 "What the empty solid would cost for each triangle: the larger, the fuller")
              .within(at_least(0)),
@@ -100,8 +102,7 @@ TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
     assert(stack.skin == 0 && cap.size() == stack.surface(0).size());
     const StageProgress progress(interrupter, "taper");
     const growth::Connectivity mesh = growth::connect(stack.surface(0).size(), stack.triangles());
-    TaperState s = make_taper_state(mesh, stack, cap);
-    s.weights = weights_of(s, options);
+    TaperState s = make_taper_state(mesh, stack, cap, weights_of(stack, options));
     MergeOptions merge;
     merge.across = options.core == CoreSurface::stitched ? merge.across : 0;
     // With one layer a point that joined the surface would be a pin, and thickness lost.

@@ -101,9 +101,10 @@ std::array<int, 8> make_orders()
 } // namespace
 
 TaperState make_taper_state(const growth::Connectivity& mesh, const ShellStack& stack,
-                            const std::vector<double>& cap)
+                            const std::vector<double>& cap, const CostWeights& weights)
 {
     TaperState s;
+    s.weights = weights;
     s.mesh = &mesh;
     s.levels = static_cast<int>(stack.layers.size());
     s.cap = cap;
@@ -180,7 +181,7 @@ bool measure_piece(const TaperState& s, int piece, PieceCost& cost)
         const double volume = six_volumes(p);
         const double shape =
             volume > 0 ? distortion(squared_edges(p), volume) : std::numeric_limits<float>::max();
-        cost.distortion += shape;
+        cost.distortion += weighed(shape, s.weights.power);
         cost.worst = std::max(cost.worst, shape);
         cost.volume6 += volume;
         ++cost.tets;

@@ -18,16 +18,20 @@ namespace vdb_shell::taper
 
 using openvdb::Vec3s;
 
-/// What a set of tets costs: `tet` for each, its distortion, less its volume times `volume6`.
+/// What a set of tets costs: `tet` for each, its distortion to a power, less its volume times
+/// `volume6`.
 struct CostWeights {
     double tet = 1;
+    double power = 1;            ///< of the distortion, at least 1
     double volume6 = 0;          ///< of six times a volume
     double worst_distortion = 6; ///< a change makes no worse tet than this, unless there was one
 };
 
 /// Of the tets of one piece.
 struct PieceCost {
-    double distortion = 0, worst = 0, volume6 = 0;
+    double distortion = 0; ///< sum of the powers
+    double worst = 0;      ///< distortion
+    double volume6 = 0;
     int tets = 0;
 };
 
@@ -85,7 +89,7 @@ struct TaperState {
 
 /// Precondition: the stack is valid and lies inward, its splits conform.
 TaperState make_taper_state(const growth::Connectivity& mesh, const ShellStack& stack,
-                            const std::vector<double>& cap);
+                            const std::vector<double>& cap, const CostWeights& weights);
 
 /// Puts points and diagonals back into the stack that the state was made of.
 void put_back(const TaperState& s, ShellStack& stack);

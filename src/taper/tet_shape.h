@@ -91,12 +91,21 @@ inline Vec3d volume6_gradient(const TetCorners& p, std::size_t free)
     return (free % 2 == 0 ? -1.0 : 1.0) * (r - q).cross(t - q);
 }
 
-/// Adds gradient and Hessian of the distortion in corner `free`. It is convex: with s the gradient
-/// of the logarithm of the squared edges and n that of the volume, the Hessian is the distortion
-/// times 9 / edges I + 3/4 s s^T - 3/2 (s n^T + n s^T) + 2 n n^T; |s|^2 is at most 12 / edges, so
-/// the first term is at least 3/4 s s^T more, and 3/2 s s^T - 3/2 (s n^T + n s^T) + 2 n n^T is
-/// positive definite. (docs/theory.md, "Tapered shells")
-inline void add_distortion(const TetCorners& p, std::size_t free, double six_volumes,
+/// A power of the distortion: the larger, the more the worst tets count.
+inline double weighed(double distortion, double power)
+{
+    return power == 1   ? distortion
+           : power == 2 ? distortion * distortion
+                        : std::pow(distortion, power);
+}
+
+/// Adds gradient and Hessian of the distortion to the power given in corner `free`. A power of at
+/// least 1 of what is convex and positive is convex, and the distortion itself is: with s the
+/// gradient of the logarithm of the squared edges and n that of the volume, the Hessian is the
+/// distortion times 9 / edges I + 3/4 s s^T - 3/2 (s n^T + n s^T) + 2 n n^T; |s|^2 is at most 12 /
+/// edges, so the first term is at least 3/4 s s^T more, and 3/2 s s^T - 3/2 (s n^T + n s^T) + 2 n
+/// n^T is positive definite. (docs/theory.md, "Tapered shells")
+inline void add_distortion(const TetCorners& p, std::size_t free, double six_volumes, double power,
                            Vec3d& gradient, Symmetric& hessian)
 {
     const Vec3d& x = p[free];
@@ -104,12 +113,14 @@ inline void add_distortion(const TetCorners& p, std::size_t free, double six_vol
     const Vec3d s =
         (2 / edges) * (3.0 * x - p[(free + 1) % 4] - p[(free + 2) % 4] - p[(free + 3) % 4]);
     const Vec3d n = volume6_gradient(p, free) / six_volumes;
-    const double value = distortion(edges, six_volumes);
-    gradient += value * (1.5 * s - n);
+    const double value = power * weighed(distortion(edges, six_volumes), power);
+    const Vec3d slope = 1.5 * s - n; // of the logarithm
+    gradient += value * slope;
     hessian.add_identity(value * 9 / edges);
     hessian.add(value * 0.75, s);
     hessian.add(value * -1.5, s, n);
     hessian.add(value * 2, n);
+    hessian.add(value * (power - 1), slope);
 }
 
 } // namespace vdb_shell::taper
