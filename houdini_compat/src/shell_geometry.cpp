@@ -359,7 +359,7 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 void require_readable(const ShellStack& stack)
 {
     const std::size_t vertices = stack.surface(0).size(), triangles = stack.triangles().size();
-    if (has_layers(stack) && vertices > 3 * triangles)
+    if ((has_layers(stack) || stack.tapered) && vertices > 3 * triangles)
         throw InvalidOption(
             "the shell cannot be written as Houdini geometry: " + std::to_string(vertices) +
             " vertices cannot all be corners of " + std::to_string(triangles) + " triangles");

@@ -12,6 +12,7 @@
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/io/read_mesh.h"
+#include "vdb_shell/shell/shared_points.h"
 #include "vdb_shell/write/tet_file.h"
 
 #include "vdb_shell/core/atomic_file.h"
@@ -66,7 +67,7 @@ fs::path first_vdb(const Outputs& outputs)
 TriangleMesh grown_surface(const ShellStack& stack)
 {
     const bool outward = stack.skin == stack.layers.size();
-    return {stack.surface(outward ? 0 : stack.layers.size()), stack.triangles()};
+    return outward ? TriangleMesh{stack.surface(0), stack.triangles()} : inner_surface(stack);
 }
 
 } // namespace

@@ -123,8 +123,7 @@ void require_points(const ShellStack& stack, const TetMesh& tets,
     for (std::size_t i = 0; i < tets.points.size(); ++i) {
         const std::uint32_t v = tets.source_vertex[i];
         const std::size_t k = tets.layer[i];
-        require(v < vertices && k < stack.surfaces() &&
-                    first[k * vertices + v] == k * vertices + v,
+        require(v < vertices && k < stack.surfaces() && first[k * vertices + v] == k * vertices + v,
                 "a point of the tets belongs to no end of a pillar", i);
         require(same_bits(stack.surface(k)[v], tets.points[i]),
                 "a point of the tets is not where its pillar ends", i);

@@ -247,8 +247,8 @@ void read_pillars(const Reader& reader, const Rows& rows, const ShellCounts& cou
     }
 }
 
-/// The tets' own list of points. In a tapered shell several rows may name one of them: the first has
-/// it, and the others lie in its place.
+/// The tets' own list of points. In a tapered shell several rows may name one of them: the first
+/// has it, and the others lie in its place.
 void read_tet_points(const Reader& reader, const Rows& rows, const ShellCounts& counts,
                      TetMesh& tets)
 {

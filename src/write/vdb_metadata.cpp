@@ -220,8 +220,7 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
         map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
         map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
     }
-    map.insertMeta(kOrientationKey,
-                   StringMetadata(layered ? kOrientationOfLayers : kOrientation));
+    map.insertMeta(kOrientationKey, StringMetadata(layered ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets)));
     map.insertMeta(kGridsKey, StringMetadata(kGridNames));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
@@ -245,9 +244,9 @@ void add_volume_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 {
     grid.setCreator(creator_name());
-    const char* const kept[] = {kSchemaKey, kVerticesKey, kPointsKey,  kTetPointsKey,
-                                kPrismsKey, kTetsKey,     kRipplesKey, kOrientationKey,
-                                kLayersKey, kSkinKey,     kTaperedKey, kOriginKey, kUnitKey};
+    const char* const kept[] = {
+        kSchemaKey,      kVerticesKey, kPointsKey, kTetPointsKey, kPrismsKey, kTetsKey, kRipplesKey,
+        kOrientationKey, kLayersKey,   kSkinKey,   kTaperedKey,   kOriginKey, kUnitKey};
     for (const char* key : kept)
         if (file[key])
             grid.insertMeta(std::string("global:") + key, *file[key]);

@@ -140,8 +140,7 @@ Verification verify_certificate(const StackCertificate& found, PrismTest test, c
     const bool claims = claim.is_object() && claim.value("certified", json()) == true;
     std::string detail = std::string(found.certified() ? "certified" : "not certified") +
                          " by the test " + (found.complex ? "complex" : name_in_table(test)) +
-                         ", the file says " +
-                         (claims ? "certified" : "not certified");
+                         ", the file says " + (claims ? "certified" : "not certified");
     for (const std::string& failure : found.failures())
         detail += "; " + failure;
     return {"certificate is as stated",

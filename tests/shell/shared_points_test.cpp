@@ -100,4 +100,21 @@ TEST(SharedPoints, PrismsHaveOneTetLessForEachPointShared)
     EXPECT_EQ(tets.tets.size(), 80U * 3 + (80U * 3 - 2 - 3) + (80U - 4));
 }
 
+TEST(SharedPoints, InnerSurfaceIsWhatIsLeftOfIt)
+{
+    EXPECT_TRUE(inner_surface(test::two_sheets()).triangles.empty());
+    EXPECT_TRUE(inner_surface(test::coned(test::octahedron(), Vec3s(0))).points.empty());
+    const ShellStack rod = test::pinched_rod();
+    const TriangleMesh cavities = inner_surface(rod);
+    EXPECT_EQ(cavities.points.size(), rod.surface(1).size() - 5);
+    EXPECT_EQ(cavities.triangles.size(), rod.triangles().size() - 12);
+    EXPECT_NEAR(signed_volume(rod.surface(0), rod.triangles()) -
+                    signed_volume(cavities.points, cavities.triangles),
+                tet_volume(make_tets(rod)), 1e-6);
+    ShellStack plain = rod;
+    plain.tapered = false;
+    EXPECT_EQ(inner_surface(plain).points, rod.surface(1));
+    EXPECT_EQ(inner_surface(plain).triangles, rod.triangles());
+}
+
 } // namespace

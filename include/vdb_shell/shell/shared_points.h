@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/mesh/triangle_mesh.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <cstddef>
@@ -20,5 +21,10 @@ namespace vdb_shell
 std::vector<std::uint32_t> first_places(const ShellStack& stack);
 /// The same of `count` layers that lie on each other as in a stack.
 std::vector<std::uint32_t> first_places(const PrismShell* layers, std::size_t count, bool tapered);
+
+/// The innermost surface. Of a tapered stack: a point for each that it has, triangles of three
+/// different points, and none of those that lie on each other and face each other. It is empty
+/// where the shell fills the solid.
+TriangleMesh inner_surface(const ShellStack& stack);
 
 } // namespace vdb_shell
