@@ -95,11 +95,11 @@ struct ShellResult {
 
 /// The whole job on a mesh in memory: wrap or repair when asked, check, level set, smooth,
 /// directions, line stepping, limits, growth (Method::raw: prisms straight from the lengths),
-/// scale, layers, taper when asked, tets, certificate, overlaps (where it does not certify the whole), figures. For
-/// an outward shell the stages from directions to scale run on the reversed surface
-/// (shell/sides.h), for both sides once for each. `name` is what messages and the report call the
-/// mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for any number
-/// of threads (costs in the report aside).
+/// scale, layers, taper when asked, tets, certificate, overlaps (where it does not certify the
+/// whole), figures. For an outward shell the stages from directions to scale run on the reversed
+/// surface (shell/sides.h), for both sides once for each. `name` is what messages and the report
+/// call the mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for
+/// any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,
