@@ -10,9 +10,10 @@
 #include "vdb_shell/report/report.h"
 
 #include "mesh/placement_json.h"
+#include "report/resample_report.h"
+#include "report/text_line.h"
 
 #include <algorithm>
-#include <iomanip>
 #include <locale>
 #include <sstream>
 
@@ -20,34 +21,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-// The longest label and a space after it.
-constexpr int kLabelWidth = 12;
-
-/// "label       text", one line.
-void line(std::ostringstream& out, const char* label, const std::string& text)
-{
-    out << std::left << std::setw(kLabelWidth) << label << text << '\n';
-}
-
-/// Significant digits, so that lengths of any unit can be read. Whole numbers come out whole,
-/// whatever the digits.
-template <typename T> std::string number(T value, int digits = 4)
-{
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    out << std::setprecision(digits) << value;
-    return out.str();
-}
-
-/// Fixed decimals, since most fills are close to 1 and differ in the last ones.
-std::string percent(double share)
-{
-    std::ostringstream out;
-    out.imbue(std::locale::classic());
-    out << std::fixed << std::setprecision(2) << 100.0 * share << " %";
-    return out.str();
-}
 
 /// Three of the seven figures: the ends, where trouble shows, and what is usual. The mean and the
 /// percentiles are in the JSON.
@@ -113,35 +86,6 @@ void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
     line(out, "  distance",
          "input to wrap " + distance(wrap.input_to_wrap) + "; wrap to input " +
              distance(wrap.wrap_to_input));
-}
-
-void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
-{
-    std::string text =
-        number(decimate.before, 12) + " triangles to " + number(decimate.triangles, 12);
-    // The tolerance comes before the number, so fewer collapses than were wanted are no error, but
-    // the user has to know.
-    if (!decimate.reached())
-        text += " (wanted " + number(decimate.wanted, 12) + ": no more can be had)";
-    line(out, "decimate",
-         text + "; farthest input to result " + number(decimate.input_to_result.max) +
-             ", result to input " + number(decimate.result_to_input.max));
-}
-
-void refine_lines(std::ostringstream& out, const RefineReport& refine)
-{
-    line(out, "refine",
-         // Round 0 is the shell before refinement: it is in the list and is no round of it.
-         number(refine.rounds.size() - 1, 12) + " rounds, kept " + number(refine.kept, 12) +
-             ", ended by " + name_of(refine.end));
-    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
-        const RefineRound& round = refine.rounds[k];
-        std::string text = number(round.triangles, 12) + " triangles, " + number(round.tets, 12) +
-                           " tets, fill " + percent(round.fill);
-        if (k > 0)
-            text += ", gained per added tet " + number(refine.gain_per_tet(k), 3);
-        line(out, ("  round " + number(k, 12)).c_str(), text);
-    }
 }
 
 void read_lines(std::ostringstream& out, const ReadReport& read)
@@ -343,6 +287,8 @@ std::string report_text(const ShellReport& report)
         line(out, "contour", contour_text(*report.contour));
     if (report.decimate)
         decimate_line(out, *report.decimate);
+    if (report.remesh)
+        remesh_lines(out, *report.remesh);
     if (report.subdivided_from > 0)
         line(out, "subdivide", "from " + number(report.subdivided_from, 12) + " triangles");
     line(out, "mesh", mesh_lines(report.mesh));
