@@ -165,9 +165,17 @@ bool RemeshSurface::collapse_patch(std::uint32_t gone, std::uint32_t kept, doubl
             if (!(of_gone && of_kept))
                 patch.added.push_back(with(c, gone, kept));
         }
+    hand_on_features(gone, kept, s, patch);
+    return true;
+}
+
+/// The feature edges of both ends, if they are on a curve, as they are with the kept one at s.
+void RemeshSurface::hand_on_features(std::uint32_t gone, std::uint32_t kept, double s,
+                                     Patch& patch) const
+{
     const FeatureEdge* edge = feature(gone, kept);
     if (!edge)
-        return true;
+        return;
     // The lengths that the two ends had along the edge; s is told in these.
     const double s_gone = edge->from == gone ? edge->s_from : edge->s_to;
     const double s_kept = edge->from == gone ? edge->s_to : edge->s_from;
@@ -187,7 +195,6 @@ bool RemeshSurface::collapse_patch(std::uint32_t gone, std::uint32_t kept, doubl
     reach(gone, kept, s - s_gone);
     if (s != s_kept)
         reach(kept, gone, s - s_kept);
-    return true;
 }
 
 bool RemeshSurface::too_long(const Vec3d& p, double longest) const

@@ -56,6 +56,17 @@ double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& p)
     return (nearest_on_triangle(triangle, p).point - p).lengthSqr();
 }
 
+/// What no point in the box is nearer than.
+double squared_distance(const FloatBox& box, const Vec3d& p)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double beyond = std::max({double(box.lo[k]) - p[k], p[k] - double(box.hi[k]), 0.0});
+        sum += beyond * beyond;
+    }
+    return sum;
+}
+
 } // namespace
 
 RemeshSurface::RemeshSurface(const TriangleMesh& input, const FeatureCurves& features,
@@ -255,15 +266,21 @@ bool RemeshSurface::samples_near(const Patch& patch) const
     for (const Vec3I& c : patch.added)
         added.push_back(corners_of(c));
     const double most = tolerance_ * tolerance_;
+    // The boxes save most of the distances, which are half of what remeshing costs.
+    const auto is_near = [&](std::size_t i, std::uint32_t s) {
+        const Vec3I& c = patch.added[i];
+        return squared_distance(box_around(points_[c[0]], points_[c[1]], points_[c[2]]),
+                                samples_[s]) <= most &&
+               squared_distance(added[i], samples_[s]) <= most;
+    };
     for (std::size_t i = 0; i < patch.removed.size(); ++i)
         for (const std::uint32_t s : samples_of_[patch.removed[i]]) {
             // A moved triangle has its own place in both lists, and most likely its samples too.
             const std::size_t first = std::min(i, added.size() - 1);
-            if (squared_distance(added[first], samples_[s]) <= most)
-                continue;
-            if (std::none_of(added.begin(), added.end(), [&](const std::array<Vec3d, 3>& c) {
-                    return squared_distance(c, samples_[s]) <= most;
-                }))
+            bool found = is_near(first, s);
+            for (std::size_t j = 0; !found && j < added.size(); ++j)
+                found = is_near(j, s);
+            if (!found)
                 return false;
         }
     return true;
@@ -314,24 +331,30 @@ void RemeshSurface::commit(const Patch& patch)
     }
     for (std::size_t i = patch.added.size(); i < place.size(); ++i)
         free_triangles_.push_back(place[i]);
-    std::vector<std::array<Vec3d, 3>> added;
-    for (std::size_t i = 0; i < patch.added.size(); ++i) {
+    for (std::size_t i = 0; i < patch.added.size(); ++i)
         put(place[i], patch.added[i], shapes_[i]);
-        added.push_back(corners_of(patch.added[i]));
-    }
     for (const std::uint64_t edge : patch.forgotten)
         feature_edges_.erase(edge);
     for (const NewFeature& f : patch.features)
         feature_edges_[key(f.a, f.b)] = f.edge;
+    place.resize(patch.added.size());
+    hand_over(place);
+}
+
+/// Each sample to the nearest of the triangles. The boxes save most of the distances.
+void RemeshSurface::hand_over(const std::vector<std::uint32_t>& triangles)
+{
     for (const std::uint32_t s : handed_over_) {
-        std::size_t nearest = 0;
+        std::uint32_t nearest = triangles.front();
         double least = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < added.size(); ++i) {
-            const double squared = squared_distance(added[i], samples_[s]);
+        for (const std::uint32_t t : triangles) {
+            if (squared_distance(grid_.box(t), samples_[s]) >= least)
+                continue;
+            const double squared = squared_distance(corners_of(triangles_[t]), samples_[s]);
             if (squared < least)
-                least = squared, nearest = i;
+                least = squared, nearest = t;
         }
-        samples_of_[place[nearest]].push_back(s);
+        samples_of_[nearest].push_back(s);
     }
 }
 
@@ -349,6 +372,8 @@ void RemeshSurface::settle_samples()
             const Vec3I corners = triangles_[home[s]];
             for (int k = 0; k < 3; ++k)
                 for (const std::uint32_t t : star_[corners[k]]) {
+                    if (squared_distance(grid_.box(t), samples_[s]) >= least)
+                        continue;
                     const double squared = squared_distance(corners_of(triangles_[t]), samples_[s]);
                     if (squared < least)
                         least = squared, home[s] = t, nearer = true;

@@ -136,12 +136,14 @@ private:
     bool features_near(const Patch& patch) const;
     bool samples_near(const Patch& patch) const;
     void commit(const Patch& patch);
+    void hand_over(const std::vector<std::uint32_t>& triangles);
     void unlink(std::uint32_t t);
     void put(std::uint32_t t, const openvdb::Vec3I& corners, const Shape& shape);
 
     // Operations on feature edges, in remesh_operations.cpp.
     bool keeps_manifold(std::uint32_t a, std::uint32_t b) const;
     bool collapse_patch(std::uint32_t gone, std::uint32_t kept, double s, Patch& patch) const;
+    void hand_on_features(std::uint32_t gone, std::uint32_t kept, double s, Patch& patch) const;
     Refusal collapse_to(std::uint32_t gone, std::uint32_t kept, const openvdb::Vec3d& p, double s,
                         double longest, double cosine);
     bool too_long(const openvdb::Vec3d& p, double longest) const;
