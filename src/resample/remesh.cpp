@@ -29,6 +29,8 @@ namespace
 
 constexpr double kFewestTriangles = 4; // a tetrahedron
 constexpr double kPi = 3.141592653589793;
+// Just under half a turn, by which only triangles folded onto each other are apart.
+constexpr double kLargestAngle = 3.14;
 // Ten rounds as in Botsch and Kobbelt; more change less than a hundredth of the angles.
 constexpr int kRounds = 10;
 // Rounds of mending single triangles at the end; they end before when nothing is left to mend.
@@ -182,7 +184,7 @@ OptionList describe(RemeshOptions& o)
          option("feature_angle_radians", o.feature_angle_radians, "--remesh-feature-angle",
                 "Remeshing keeps edges at which the surface turns by more than this, radians")
              .in(Unit::radians)
-             .within(above(0).below(kPi))});
+             .within(above(0).at_most(kLargestAngle))});
 }
 
 void require_sensible(const RemeshOptions& options)

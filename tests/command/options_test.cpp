@@ -62,7 +62,7 @@ TEST_F(Options, ImpossibleOnesAreRefusedByTheirFlagsBeforeAnyFileIsRead)
     refused("--thickest --method raw", "--thickest excludes --method");
     refused("--decimate-tolerance 1", "--decimate-tolerance needs --decimate-to");
     refused("--remesh-edge-length 0", "--remesh-edge-length is 0, must be above 0");
-    refused("--remesh-to 3", "--remesh-to is 3, must be a whole number, 4 or more");
+    refused("--remesh-to 3", "--remesh-to is 3, must be 4 or more");
     refused("--remesh-to 300 --remesh-edge-length 1", "--remesh-to excludes --remesh-edge-length");
     refused("--remesh-tolerance 1", "--remesh-tolerance needs --remesh-edge-length or --remesh-to");
     refused("--remesh-map m.json", "--remesh-map needs --remesh-edge-length or --remesh-to");

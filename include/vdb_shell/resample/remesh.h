@@ -25,8 +25,8 @@ struct RemeshOptions {
     /// no feature edge; half the length times the sine of half the feature angle. So a surface with
     /// edges that sharp can be cut across them.
     std::optional<double> tolerance;
-    /// Edges at which the surface turns by more are kept, above 0 and below pi; but for curves of
-    /// them shorter than two edge lengths that end in nothing.
+    /// Edges at which the surface turns by more are kept, above 0 and at most 3.14; but for curves
+    /// of them shorter than two edge lengths that end in nothing.
     double feature_angle_radians = 1.0471975511965976;
 
     bool wanted() const { return edge_length || triangles; }
