@@ -17,6 +17,7 @@
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/report/report.h"
 #include "vdb_shell/resample/decimate.h"
+#include "vdb_shell/resample/remesh.h"
 #include "vdb_shell/resample/subdivide.h"
 #include "vdb_shell/shell/shell_stack.h"
 #include "vdb_shell/shell/sides.h"
@@ -44,6 +45,7 @@ struct ShellOptions {
     ContourOptions contour; ///< for build_shell_from_level_set alone
     CheckOptions check;
     DecimateOptions decimate;
+    RemeshOptions remesh;
     SubdivideOptions subdivide;
     LevelSetOptions level_set;
     /// Sparse: the level set is a narrow band, and deeper voxels are computed where lines read them
@@ -82,6 +84,8 @@ struct ShellResult {
     /// The input, repaired and turned outward when asked, with copies of vertices of several fans
     /// where self-intersections are allowed.
     TriangleMesh surface;
+    /// Where the surface was remeshed: the surface before that, and this one.
+    std::optional<RemeshMap> remesh_map;
     FloatGridPtr level_set;
     Directions directions; ///< of the side that the shell lies on; of both sides, inward
     /// Likewise. StopReason::none where no line was stepped: growth that begins on coarser surfaces
@@ -93,13 +97,13 @@ struct ShellResult {
     ShellReport report;
 };
 
-/// The whole job on a mesh in memory: wrap or repair when asked, check, level set, smooth,
-/// directions, line stepping, limits, growth (Method::raw: prisms straight from the lengths),
-/// scale, layers, taper when asked, tets, certificate, overlaps (where it does not certify the
-/// whole), figures. For an outward shell the stages from directions to scale run on the reversed
-/// surface (shell/sides.h), for both sides once for each. `name` is what messages and the report
-/// call the mesh. `thickness_grid` as in line_step. Throws what the stages throw. Same result for
-/// any number of threads (costs in the report aside).
+/// The whole job on a mesh in memory: wrap or repair when asked, check, decimate, remesh and
+/// subdivide when asked, level set, smooth, directions, line stepping, limits, growth (Method::raw:
+/// prisms straight from the lengths), scale, layers, taper when asked, tets, certificate, overlaps
+/// (where it does not certify the whole), figures. For an outward shell the stages from directions
+/// to scale run on the reversed surface (shell/sides.h), for both sides once for each. `name` is
+/// what messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the
+/// stages throw. Same result for any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

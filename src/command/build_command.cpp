@@ -16,6 +16,7 @@
 #include "command/surface_input.h"
 #include "report/stage_clock.h"
 #include "vdb_shell/core/atomic_file.h"
+#include "vdb_shell/write/remesh_map.h"
 
 #include <CLI/CLI.hpp>
 
@@ -128,6 +129,14 @@ void require_sensible(const BuildArguments& arguments)
     // took.
     if (!arguments.report.empty())
         require_writable(arguments.report);
+    const RemeshOptions& remesh = arguments.shell.remesh;
+    if (!remesh.wanted() && (remesh.tolerance || !arguments.remesh_map.empty()))
+        throw InvalidOption(std::string(remesh.tolerance ? "--remesh-tolerance" : "--remesh-map") +
+                            " needs --remesh-edge-length or --remesh-to");
+    if (!arguments.remesh_map.empty()) {
+        require_map_extension(arguments.remesh_map);
+        require_writable(arguments.remesh_map);
+    }
 }
 
 } // namespace
@@ -140,6 +149,9 @@ OptionSections describe(BuildArguments& a)
         sections.push_back(std::move(section));
     const OptionList figures{
         option("", a.report, "--report", "Write all figures as JSON"),
+        option("", a.remesh_map, "--remesh-map",
+               "Write where each vertex before remeshing lies on the surface after it, and the "
+               "other way round: .json or .csv"),
         option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
         option("", a.progress, "--progress", "Name each stage on standard error as it begins")};
     const Option painted = option("", a.thickness_grid, "--thickness-grid",
@@ -169,6 +181,8 @@ int run_build(const BuildArguments& arguments)
     ShellOptions options = arguments.shell;
     ShellResult result = read_and_build(arguments, options, &interrupter);
     StageClock(write_cost).run("write", [&] {
+        if (!arguments.remesh_map.empty())
+            write_remesh_map(arguments.remesh_map, *result.remesh_map);
         // Before to_file, which takes the tets out of the result.
         const std::vector<std::uint8_t> certified = certified_flags(result);
         write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter),

@@ -23,6 +23,7 @@ struct BuildArguments {
     std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID
     Outputs outputs;
     std::filesystem::path report;
+    std::filesystem::path remesh_map;
     bool quiet = false;
     bool progress = false;
 };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: the surface of a result, before or after its shell was built. Leaves: the surface
-// decimated and subdivided as the options say, or refined in rounds together with its shell. A
-// round cuts the triangles whose cutting is predicted to gain most, and growth goes on from the
-// shell there is. The best round is kept and not the last, as a round may lose fill. The report's
-// check is made anew for the surface that results, because coordinates have been rounded.
+// decimated, remeshed and subdivided as the options say, or refined in rounds together with its
+// shell. A round cuts the triangles whose cutting is predicted to gain most, and growth goes on
+// from the shell there is. The best round is kept and not the last, as a round may lose fill. The
+// report's check is made anew for the surface that results, because coordinates have been rounded.
 
 #include "pipeline/resample.h"
 
@@ -134,18 +134,33 @@ RefineReport refine(ShellResult& result, const ShellOptions& options,
     return report;
 }
 
-void decimate_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
+/// Contacts that the surface has beforehand would remain whatever a stage does, which tests its own
+/// result for contacts.
+void require_embedded(const ShellResult& result, const std::string& stage)
 {
-    const std::string& name = result.report.source;
-    // Decimation takes each contact in its result for its own doing and fixes the vertices around
-    // it. Contacts of the input would remain whatever was fixed.
     if (!result.report.mesh.embedded())
-        throw GeometryError(name + ": decimation needs a surface that does not cross itself; " +
+        throw GeometryError(result.report.source + ": " + stage +
+                            " needs a surface that does not cross itself; " +
                             std::to_string(result.report.mesh.self_intersections.count) +
                             " pairs of triangles cross or touch");
+}
+
+void decimate_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
+{
+    require_embedded(result, "decimation");
     DecimateResult decimated = decimate(result.surface, options.decimate, interrupter);
     result.surface = std::move(decimated.mesh);
     result.report.decimate = decimated.report;
+    result.report.mesh = check_mesh(result.surface);
+}
+
+void remesh_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
+{
+    require_embedded(result, "remeshing");
+    RemeshResult remeshed = remesh(result.surface, options.remesh, interrupter);
+    result.surface = std::move(remeshed.mesh);
+    result.remesh_map = std::move(remeshed.map);
+    result.report.remesh = remeshed.report;
     result.report.mesh = check_mesh(result.surface);
 }
 
@@ -156,6 +171,8 @@ void resample_surface(ShellResult& result, const ShellOptions& options, StageClo
 {
     if (options.decimate.triangles)
         clock.run("decimate", [&] { decimate_surface(result, options, interrupter); });
+    if (options.remesh.wanted())
+        clock.run("remesh", [&] { remesh_surface(result, options, interrupter); });
     if (options.subdivide.levels == 0)
         return;
     clock.run("subdivide", [&] {

@@ -60,6 +60,7 @@ OptionSections describe(ShellOptions& o)
             {"contour", describe(o.contour)},
             {"check", describe(o.check)},
             {"decimate", describe(o.decimate)},
+            {"remesh", describe(o.remesh)},
             {"subdivide", describe(o.subdivide)},
             {"level_set", describe(o.level_set)},
             {"", in_group("Level set", {option("field", o.field, "--field",
@@ -88,6 +89,10 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
     if (options.refine.rounds > 0 && options.side == Side::outward)
         throw InvalidOption("refine: rounds is " + std::to_string(options.refine.rounds) +
                             " (--refine-rounds), but an outward shell has no solid to fill");
+    require_sensible(options.remesh);
+    if (options.remesh.wanted() && options.decimate.triangles)
+        throw InvalidOption("decimate and remesh: one or the other; remeshing makes any number of "
+                            "triangles (--remesh-to)");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     require_taper_possible(options);

@@ -15,6 +15,7 @@
 #include "mesh/components_json.h"
 #include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"
+#include "report/resample_report.h"
 
 #include <nlohmann/json.hpp>
 
@@ -80,12 +81,6 @@ ordered_json contour_json(const ContourReport& contour)
             {"dropped_components", contour.dropped_components}};
 }
 
-/// Distances are sampled, so their number says how far mean and maximum can be trusted.
-ordered_json distance_json(const DistanceFigures& distance)
-{
-    return {{"mean", distance.mean}, {"max", distance.max}, {"samples", distance.samples}};
-}
-
 ordered_json wrap_json(const WrapReport& wrap)
 {
     return {{"voxel_size", wrap.voxel_size},
@@ -107,18 +102,6 @@ ordered_json mesh_json(const ShellReport& report)
     json["split_vertices"] = defect_json(report.split_vertices);
     json["vertex_copies"] = report.vertex_copies;
     return json;
-}
-
-ordered_json decimate_json(const DecimateReport& decimate)
-{
-    return {{"triangles_before", decimate.before},
-            {"triangles_wanted", decimate.wanted},
-            {"triangles", decimate.triangles},
-            // Collapses may end before: the tolerance goes before the number of triangles.
-            {"reached", decimate.reached()},
-            {"input_to_result", distance_json(decimate.input_to_result)},
-            {"result_to_input", distance_json(decimate.result_to_input)},
-            {"repeats", decimate.repeats}};
 }
 
 ordered_json field_json(const FieldReport& field)
@@ -345,6 +328,7 @@ void add_surface(ordered_json& json, const ShellReport& report)
     json["contour"] = report.contour ? contour_json(*report.contour) : ordered_json();
     json["mesh"] = mesh_json(report);
     json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
+    json["remesh"] = report.remesh ? remesh_json(*report.remesh) : ordered_json();
     json["subdivided_from"] =
         report.subdivided_from > 0 ? ordered_json(report.subdivided_from) : ordered_json();
 }

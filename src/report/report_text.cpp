@@ -8,6 +8,7 @@
 
 #include "vdb_shell/report/report.h"
 
+#include "report/resample_report.h"
 #include "report/surface_text.h"
 #include "report/text_lines.h"
 
@@ -19,22 +20,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-void refine_lines(std::ostringstream& out, const RefineReport& refine)
-{
-    line(out, "refine",
-         // Round 0 is the shell before refinement: it is in the list and is no round of it.
-         number(refine.rounds.size() - 1, 12) + " rounds, kept " + number(refine.kept, 12) +
-             ", ended by " + name_of(refine.end));
-    for (std::size_t k = 0; k < refine.rounds.size(); ++k) {
-        const RefineRound& round = refine.rounds[k];
-        std::string text = number(round.triangles, 12) + " triangles, " + number(round.tets, 12) +
-                           " tets, fill " + percent(round.fill);
-        if (k > 0)
-            text += ", gained per added tet " + number(refine.gain_per_tet(k), 3);
-        line(out, ("  round " + number(k, 12)).c_str(), text);
-    }
-}
 
 std::string stop_text(const LineReport& lines)
 {

@@ -7,6 +7,7 @@
 #include "report/surface_text.h"
 
 #include "mesh/placement_json.h"
+#include "report/resample_report.h"
 #include "report/text_lines.h"
 
 namespace vdb_shell
@@ -72,19 +73,6 @@ void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
              distance(wrap.wrap_to_input));
 }
 
-void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
-{
-    std::string text =
-        number(decimate.before, 12) + " triangles to " + number(decimate.triangles, 12);
-    // The tolerance comes before the number, so fewer collapses than were wanted are no error, but
-    // the user has to know.
-    if (!decimate.reached())
-        text += " (wanted " + number(decimate.wanted, 12) + ": no more can be had)";
-    line(out, "decimate",
-         text + "; farthest input to result " + number(decimate.input_to_result.max) +
-             ", result to input " + number(decimate.result_to_input.max));
-}
-
 void read_lines(std::ostringstream& out, const ReadReport& read)
 {
     line(out, "read",
@@ -112,6 +100,8 @@ void surface_lines(std::ostringstream& out, const ShellReport& report)
         line(out, "contour", contour_text(*report.contour));
     if (report.decimate)
         decimate_line(out, *report.decimate);
+    if (report.remesh)
+        remesh_lines(out, *report.remesh);
     if (report.subdivided_from > 0)
         line(out, "subdivide", "from " + number(report.subdivided_from, 12) + " triangles");
     line(out, "mesh", mesh_lines(report.mesh));

@@ -61,10 +61,33 @@ TEST_F(Options, ImpossibleOnesAreRefusedByTheirFlagsBeforeAnyFileIsRead)
     refused("--voxel-size 1 --resolution 9", "--resolution excludes --voxel-size");
     refused("--thickest --method raw", "--thickest excludes --method");
     refused("--decimate-tolerance 1", "--decimate-tolerance needs --decimate-to");
+    refused("--remesh-edge-length 0", "--remesh-edge-length is 0, must be above 0");
+    refused("--remesh-to 3", "--remesh-to is 3, must be 4 or more");
+    refused("--remesh-to 300 --remesh-edge-length 1", "--remesh-to excludes --remesh-edge-length");
+    refused("--remesh-tolerance 1", "--remesh-tolerance needs --remesh-edge-length or --remesh-to");
+    refused("--remesh-map m.json", "--remesh-map needs --remesh-edge-length or --remesh-to");
+    refused("--remesh-to 300 --remesh-map m.txt", "unknown extension \".txt\" for a remesh map");
+    refused("--remesh-to 300 --decimate-to 300", "decimate and remesh: one or the other");
     expect_refusal("inspect " + file("none.obj") + " --voxel-size 0", ExitCode::usage_error,
                    {"--voxel-size is 0, must be above 0"});
     expect_refusal("repair " + file("none.obj") + " -o x.obj --sliver-height -2",
                    ExitCode::usage_error, {"--sliver-height is -2, must be 0 or more"});
+}
+
+TEST_F(Options, RemeshingReportsWhatItDidAndWritesItsMap)
+{
+    const TriangleMesh input = icosphere(1.0, 3);
+    const json report = report_of(mesh_file("sphere.obj", input) + kCoarse +
+                                  " --remesh-edge-length 0.25 --remesh-map " + file("map.json"));
+    const json& remesh = report.at("remesh");
+    EXPECT_EQ(remesh.at("triangles_before"), 1280);
+    EXPECT_EQ(remesh.at("triangles"), report.at("mesh").at("triangles"));
+    EXPECT_EQ(remesh.at("edge_length"), 0.25);
+    EXPECT_GT(remesh.at("after").at("min_angle_degrees"), 30);
+    EXPECT_LE(remesh.at("result_to_input").at("max"), remesh.at("tolerance"));
+    const json map = json::parse(read_bytes(folder / "map.json"));
+    EXPECT_EQ(map.at("input_on_result").at("weights").size(), input.points.size());
+    EXPECT_EQ(map.at("result_on_input").at("weights").size(), report.at("mesh").at("points"));
 }
 
 TEST_F(Options, FlagsWinOverAFileOfOptions)

@@ -255,6 +255,7 @@ TEST(ShellOptions, EveryFieldIsDescribed)
     expect_all_described<LimitOptions>("LimitOptions");
     expect_all_described<LineStepOptions>("LineStepOptions");
     expect_all_described<RefineOptions>("RefineOptions");
+    expect_all_described<RemeshOptions>("RemeshOptions");
     expect_all_described<RepairOptions>("RepairOptions");
     expect_all_described<ScaleOptions>("ScaleOptions");
     expect_all_described<SmoothOptions>("SmoothOptions");

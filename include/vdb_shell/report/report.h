@@ -17,6 +17,7 @@
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/resample/decimate.h"
+#include "vdb_shell/resample/remesh.h"
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/step/line_step.h"
@@ -87,6 +88,7 @@ struct ShellReport {
     Defect<std::uint32_t> split_vertices;
     std::size_t vertex_copies = 0;
     std::optional<DecimateReport> decimate;
+    std::optional<RemeshReport> remesh;
     std::size_t subdivided_from = 0; ///< triangles before subdivision; 0 when there was none
     FieldReport field;
     Side side = Side::inward;

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes a closed, embedded surface and an edge length or a number of triangles, and leaves a
+// surface of nearly equilateral triangles within a tolerance of it. This file has the schedule: the
+// rounds (remesh_rounds.h), how the wanted length follows the number of triangles, and what happens
+// when the measured distance is too large, which is as in decimation: all is done anew with a
+// smaller tolerance. Validity is looked after by each operation (remesh_surface.h). Lengths are in
+// world units.
+
+#include "vdb_shell/resample/remesh.h"
+
+#include "core/stage_progress.h"
+#include "mesh/triangle_area.h"
+#include "resample/remesh_rounds.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/options/option.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+constexpr double kFewestTriangles = 4; // a tetrahedron
+constexpr double kPi = 3.141592653589793;
+// Just under half a turn, by which only triangles folded onto each other are apart.
+constexpr double kLargestAngle = 3.14;
+// Ten rounds as in Botsch and Kobbelt; more change less than a hundredth of the angles.
+constexpr int kRounds = 10;
+// Rounds of mending single triangles at the end; they end before when nothing is left to mend.
+constexpr int kLastRounds = 10;
+// Cosine of 35 degrees: angles under 30 are what is to be avoided, and some room is left.
+constexpr double kNarrow = 0.819;
+// Of the wanted length: no tolerance or feature makes it smaller than that.
+constexpr double kLeastSize = 0.1;
+// By how much the wanted length may change over an edge, as a share of the edge's length. Over
+// two edges it then doubles, and triangles in between have angles over 35 degrees.
+constexpr double kSlope = 0.5;
+// By how much a length that was made smaller grows again in each of the first rounds, in which
+// collapses may have been refused for what later ones have mended.
+constexpr double kRegrowth = 1.2;
+// Of the wanted length: curves of features that end in nothing count from there on.
+constexpr double kLeastCurve = 2.0;
+constexpr int kMostAttempts = 5;
+// Share of the tolerance that the operations are held to: they see less than is measured
+// afterwards.
+constexpr double kFirstShare = 0.9, kStricter = 0.7;
+// Points of the input at which operations look are no farther apart than that share of the length.
+constexpr double kSpacing = 0.5;
+// As in decimation, bounds the work for small tolerances: the diagonal over the spacing of samples.
+constexpr double kSamplesAlongDiagonal = 256.0;
+
+/// The edge length at which equilateral triangles of the surface's area are so many.
+double length_for(double area, double triangles)
+{
+    return std::sqrt(area * 4 / (std::sqrt(3.0) * triangles));
+}
+
+double default_tolerance(double length, double feature_angle)
+{
+    return 0.5 * length * std::sin(0.5 * feature_angle);
+}
+
+void require_sound(const TriangleMesh& mesh)
+{
+    require_usable(check_mesh(mesh), {}, "remesh");
+}
+
+/// What all attempts have in common.
+struct Job {
+    const TriangleMesh& input;
+    const RemeshOptions& options;
+    FeatureCurves features;
+    const StageProgress& progress;
+};
+
+/// One attempt; the edge length that it ended with is left in `length`.
+RemeshResult attempt(const Job& job, double tolerance, double& length)
+{
+    RemeshSurface surface(job.input, job.features, tolerance, kSpacing * length);
+    const double wanted = job.options.triangles ? double(*job.options.triangles) : 0.0;
+    for (std::uint32_t v = 0; v < surface.vertex_slots(); ++v)
+        surface.size(v) = length;
+    for (int round = 0; round < kRounds; ++round) {
+        job.progress.stop_if_interrupted(90 * round / kRounds);
+        if (round > 1 && wanted > 0) {
+            const double before = length;
+            length *= std::sqrt(double(surface.live_triangles()) / wanted);
+            grade_sizes(surface, length, kSlope, std::max(1.0, length / before));
+        }
+        grade_sizes(surface, length, kSlope, round < kRounds / 2 ? kRegrowth : 1.0);
+        split_long_edges(surface);
+        collapse_short_edges(surface, kLeastSize * length);
+        flip_to_valence(surface);
+        smooth(surface);
+        if (round + 1 == kRounds)
+            flip_to_angle(surface);
+        surface.settle_samples();
+    }
+    for (int round = 0; round < kLastRounds; ++round) {
+        job.progress.stop_if_interrupted(90);
+        if (raise_angles(surface, kNarrow) == 0)
+            break;
+        flip_to_angle(surface);
+        surface.settle_samples();
+    }
+    return surface.result();
+}
+
+RemeshResult unchanged(const TriangleMesh& mesh)
+{
+    RemeshResult out;
+    out.mesh = mesh;
+    out.map.input_on_result.resize(mesh.points.size());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            SurfacePoint& place = out.map.input_on_result[mesh.triangles[t][k]];
+            place = {t, mesh.triangles[t], {}};
+            place.weights[std::size_t(k)] = 1;
+        }
+    out.map.result_on_input = out.map.input_on_result;
+    out.report.kept_input = true;
+    return out;
+}
+
+double share_in_range(const TriangleMesh& mesh, double length)
+{
+    std::size_t inside = 0, all = 0;
+    for (const openvdb::Vec3I& c : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const double l =
+                (openvdb::Vec3d(mesh.points[c[k]]) - openvdb::Vec3d(mesh.points[c[(k + 1) % 3]]))
+                    .length();
+            inside += l >= 0.8 * length && l <= 4.0 / 3.0 * length;
+            ++all;
+        }
+    return double(inside) / double(all);
+}
+
+void measure(RemeshReport& report, const Job& job, const TriangleMesh& result, double diagonal,
+             Interrupter* interrupter)
+{
+    const double spacing =
+        std::max(diagonal / kSamplesAlongDiagonal, std::min(report.tolerance / 4, diagonal));
+    report.before = job.input.triangles.size();
+    report.triangles = result.triangles.size();
+    report.wanted = job.options.triangles;
+    report.feature_edges = job.features.edges;
+    report.feature_curves = job.features.curves.size();
+    report.corners = job.features.corners;
+    report.shape_before = triangle_figures(job.input);
+    report.shape = triangle_figures(result);
+    report.edges_in_range = share_in_range(result, report.edge_length);
+    report.input_to_result = surface_distance(job.input, result, spacing, interrupter);
+    report.result_to_input = surface_distance(result, job.input, spacing, interrupter);
+}
+
+} // namespace
+
+OptionList describe(RemeshOptions& o)
+{
+    return in_group(
+        "Resampling",
+        {option("edge_length", o.edge_length, "--remesh-edge-length",
+                "Make triangles nearly equilateral first, with edges of this length, world units")
+             .in(Unit::world_length)
+             .within(above(0)),
+         option("triangles", o.triangles, "--remesh-to",
+                "The same, with about this many triangles in place of a length")
+             .in(Unit::count)
+             .within(at_least(kFewestTriangles))
+             .excluding("--remesh-edge-length"),
+         option("tolerance", o.tolerance, "--remesh-tolerance",
+                "Farthest that remeshing may part the surfaces, world units; unset: half the "
+                "length times the sine of half the feature angle")
+             .in(Unit::world_length)
+             .within(above(0)),
+         option("feature_angle_radians", o.feature_angle_radians, "--remesh-feature-angle",
+                "Remeshing keeps edges at which the surface turns by more than this, radians")
+             .in(Unit::radians)
+             .within(above(0).at_most(kLargestAngle))});
+}
+
+void require_sensible(const RemeshOptions& options)
+{
+    require_in_range(options, "remesh");
+    if (options.edge_length && options.triangles)
+        throw InvalidOption("remesh: edge_length and triangles are both given; one or the other");
+}
+
+TriangleFigures triangle_figures(const TriangleMesh& mesh)
+{
+    using openvdb::Vec3d;
+    TriangleFigures figures;
+    figures.min_angle_radians = kPi;
+    for (const openvdb::Vec3I& c : mesh.triangles) {
+        const Vec3d p(mesh.points[c[0]]), q(mesh.points[c[1]]), r(mesh.points[c[2]]);
+        const Vec3d u = q - p, v = r - q, w = p - r;
+        const double twice = u.cross(v).length();
+        double least = kPi;
+        for (const double cosine : {-u.dot(v), -v.dot(w), -w.dot(u)})
+            least = std::min(least, std::atan2(twice, cosine));
+        figures.min_angle_radians = std::min(figures.min_angle_radians, least);
+        figures.mean_min_angle_radians += least / double(mesh.triangles.size());
+        figures.under_20_degrees += least < kPi / 9;
+        figures.under_30_degrees += least < kPi / 6;
+        for (const double length : {u.length(), v.length(), w.length()}) {
+            // Each edge of a closed surface comes twice, which the mean does not feel.
+            figures.mean_edge += length / (3 * double(mesh.triangles.size()));
+            figures.longest_edge = std::max(figures.longest_edge, length);
+            figures.shortest_edge =
+                figures.shortest_edge > 0 ? std::min(figures.shortest_edge, length) : length;
+        }
+    }
+    return figures;
+}
+
+RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
+                    Interrupter* interrupter)
+{
+    require_sensible(options);
+    if (!options.wanted())
+        throw InvalidOption("remesh: neither edge_length nor triangles is given");
+    require_sound(mesh);
+    const StageProgress progress(interrupter, "remesh");
+    const double diagonal = diagonal_of(bounds_of(mesh.points));
+    const double wanted = options.edge_length.value_or(length_for(
+        surface_area(mesh.points, mesh.triangles), double(options.triangles.value_or(1))));
+    const double tolerance =
+        options.tolerance.value_or(default_tolerance(wanted, options.feature_angle_radians));
+    const Job job{mesh, options,
+                  find_features(mesh, options.feature_angle_radians, kLeastCurve * wanted),
+                  progress};
+    RemeshResult out;
+    double tried = kFirstShare * tolerance;
+    for (int repeats = 0; repeats < kMostAttempts; ++repeats, tried *= kStricter) {
+        double length = wanted;
+        out = attempt(job, tried, length);
+        out.report.edge_length = length;
+        out.report.tolerance = tolerance;
+        out.report.repeats = repeats;
+        measure(out.report, job, out.mesh, diagonal, interrupter);
+        if (std::max(out.report.input_to_result.max, out.report.result_to_input.max) <= tolerance)
+            return out;
+    }
+    out = unchanged(mesh);
+    out.report.edge_length = wanted;
+    out.report.tolerance = tolerance;
+    out.report.repeats = kMostAttempts;
+    measure(out.report, job, out.mesh, diagonal, interrupter);
+    return out;
+}
+
+} // namespace vdb_shell

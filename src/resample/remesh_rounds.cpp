@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes a surface of operations that look after validity themselves, and decides which of them to
+// ask for: those of Botsch and Kobbelt 2004, "A remeshing approach to multiresolution modeling".
+// Lengths are held against a wanted length at each vertex, as in Dunyach and others 2013, "Adaptive
+// remeshing for real-time mesh deformation"; but it does not come from curvature, which a scan's
+// noise has everywhere. It becomes smaller where the tolerance or a feature has refused a collapse,
+// so the surface is fine where it has to be and nowhere else.
+
+#include "resample/remesh_rounds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+
+// Botsch and Kobbelt: halving an edge of 4/3 or collapsing one of 4/5 brings its length nearer to
+// the wanted one, and neither undoes the other.
+constexpr double kTooLong = 4.0 / 3.0, kTooShort = 4.0 / 5.0;
+// Cosines of the angles that operations may not go below, unless they were smaller before: 15
+// degrees for collapses and flips, after which smoothing follows, 30 for moves.
+constexpr double kEdgesMayLeave = 0.966, kMovesMayLeave = 0.866;
+// A refused collapse leaves an edge of this share of the wanted length that it sets: in range.
+constexpr double kLengthOverRefused = 1.1;
+// Moves under that share of the wanted length are not worth their tests.
+constexpr double kLeastMove = 0.01;
+
+struct LongEdge {
+    double ratio;
+    std::uint32_t a, b;
+};
+
+/// The edges for which keep(ratio) holds, ratio being length over wanted length, ascending.
+template <typename Keep>
+std::vector<LongEdge> edges_by_ratio(const RemeshSurface& surface, const Keep& keep)
+{
+    std::vector<LongEdge> edges;
+    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t) {
+        if (!surface.alive(t))
+            continue;
+        const Vec3I& c = surface.triangle(t);
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+            if (a > b)
+                continue; // seen from the other side
+            const double ratio = surface.length(a, b) / surface.size_of_edge(a, b);
+            if (keep(ratio))
+                edges.push_back({ratio, a, b});
+        }
+    }
+    std::sort(edges.begin(), edges.end(), [](const LongEdge& x, const LongEdge& y) {
+        return std::tie(x.ratio, x.a, x.b) < std::tie(y.ratio, y.a, y.b);
+    });
+    return edges;
+}
+
+std::vector<LongEdge> all_edges(const RemeshSurface& surface)
+{
+    return edges_by_ratio(surface, [](double) { return true; });
+}
+
+double ratio_of(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
+{
+    return surface.length(a, b) / surface.size_of_edge(a, b);
+}
+
+/// Whether the edge is as long as it is for the sake of the input and not of its neighbours.
+bool is_forced(Refusal refusal)
+{
+    return refusal == Refusal::feature || refusal == Refusal::far || refusal == Refusal::contact ||
+           refusal == Refusal::turned;
+}
+
+/// Of the four vertices at an edge, how far their numbers of neighbours are from six, before and
+/// after a flip: the difference.
+int gain_of_flip(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
+{
+    const auto [left, right] = surface.triangles_at(a, b);
+    int gain = 0;
+    const auto off = [](int valence) { return std::abs(valence - 6); };
+    for (const std::uint32_t t : {left, right})
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t v = surface.triangle(t)[k];
+            const int valence = static_cast<int>(surface.star(v).size());
+            if (v != a && v != b)
+                gain += off(valence) - off(valence + 1);
+            else if (t == left) // the ends are in both
+                gain += off(valence) - off(valence - 1);
+        }
+    return gain;
+}
+
+/// To the mean of the middles of the triangles around it, in the plane of their mean normal. A
+/// triangle counts by its area in squares of the wanted length: as many of them as there should be.
+Vec3d towards_middle(const RemeshSurface& surface, std::uint32_t v)
+{
+    Vec3d sum(0.0), normal(0.0);
+    double weights = 0;
+    for (const std::uint32_t t : surface.star(v)) {
+        const Vec3I& c = surface.triangle(t);
+        const Vec3d p = surface.point(c[0]), q = surface.point(c[1]), r = surface.point(c[2]);
+        const Vec3d cross = (q - p).cross(r - p);
+        const double size = surface.size(c[0]) + surface.size(c[1]) + surface.size(c[2]);
+        const double weight = cross.length() / (size * size);
+        sum += (p + q + r) * (weight / 3);
+        weights += weight;
+        normal += cross;
+    }
+    const double squared = normal.lengthSqr();
+    if (!(weights > 0 && squared > 0))
+        return Vec3d(0.0);
+    const Vec3d to = sum / weights - surface.point(v);
+    return to - normal * (to.dot(normal) / squared);
+}
+
+void smooth_on_surface(RemeshSurface& surface, std::uint32_t v)
+{
+    const Vec3d to = towards_middle(surface, v);
+    if (to.length() < kLeastMove * surface.size(v) && surface.on_input(v))
+        return;
+    const Vec3d from = surface.point(v);
+    // The whole way, or a part of it where the whole is too far.
+    for (const double share : {1.0, 0.5, 0.2})
+        if (surface.move(v, from + to * share, kMovesMayLeave) == Refusal::none)
+            return;
+}
+
+void smooth_on_curve(RemeshSurface& surface, std::uint32_t v)
+{
+    const auto [before, after] = surface.along_curve(v);
+    const double first = surface.size_of_edge(before, v), second = surface.size_of_edge(v, after);
+    const double share = first / (first + second);
+    if ((surface.point_between(v, share) - surface.point(v)).length() <
+        kLeastMove * surface.size(v))
+        return;
+    surface.slide(v, share, kMovesMayLeave);
+}
+
+} // namespace
+
+void split_long_edges(RemeshSurface& surface)
+{
+    // Halves may be too long as well; each time round the longest are shorter, so this ends.
+    for (bool any = true; any;) {
+        any = false;
+        const std::vector<LongEdge> edges =
+            edges_by_ratio(surface, [](double ratio) { return ratio > kTooLong; });
+        // Longest first, so that triangles are cut at their longest sides.
+        for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge)
+            any |= surface.has_edge(edge->a, edge->b) &&
+                   surface.split(edge->a, edge->b) == Refusal::none;
+    }
+}
+
+void collapse_short_edges(RemeshSurface& surface, double least_size)
+{
+    const std::vector<LongEdge> edges =
+        edges_by_ratio(surface, [](double ratio) { return ratio < kTooShort; });
+    for (const LongEdge& edge : edges) {
+        // Collapses before may have moved or taken it.
+        if (!surface.has_edge(edge.a, edge.b) || ratio_of(surface, edge.a, edge.b) >= kTooShort)
+            continue;
+        const Refusal refusal = surface.collapse(edge.a, edge.b, kTooLong, kEdgesMayLeave);
+        if (!is_forced(refusal))
+            continue;
+        const double size =
+            std::max(least_size, kLengthOverRefused * surface.length(edge.a, edge.b));
+        for (const std::uint32_t v : {edge.a, edge.b})
+            surface.size(v) = std::min(surface.size(v), size);
+    }
+}
+
+void flip_to_valence(RemeshSurface& surface)
+{
+    for (const LongEdge& edge : all_edges(surface))
+        if (surface.has_edge(edge.a, edge.b) && gain_of_flip(surface, edge.a, edge.b) > 0)
+            surface.flip(edge.a, edge.b, kEdgesMayLeave);
+}
+
+void flip_to_angle(RemeshSurface& surface)
+{
+    // Each flip makes an angle larger that was the smallest of its place, as in Lawson's algorithm;
+    // a few times round are enough for what is left to pay.
+    for (int round = 0; round < 3; ++round)
+        for (const LongEdge& edge : all_edges(surface))
+            if (surface.has_edge(edge.a, edge.b))
+                surface.flip(edge.a, edge.b, -1);
+}
+
+void smooth(RemeshSurface& surface)
+{
+    for (std::uint32_t v = 0; v < surface.vertex_slots(); ++v) {
+        if (surface.star(v).empty())
+            continue;
+        if (surface.kind(v) == VertexKind::free)
+            smooth_on_surface(surface, v);
+        else if (surface.kind(v) == VertexKind::on_curve)
+            smooth_on_curve(surface, v);
+    }
+}
+
+void grade_sizes(RemeshSurface& surface, double largest, double slope, double growth)
+{
+    using Entry = std::pair<double, std::uint32_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (std::uint32_t v = 0; v < surface.vertex_slots(); ++v) {
+        if (surface.star(v).empty())
+            continue;
+        surface.size(v) = std::min(largest, growth * surface.size(v));
+        queue.emplace(surface.size(v), v);
+    }
+    // From the smallest on, as in Dijkstra's algorithm.
+    while (!queue.empty()) {
+        const auto [size, v] = queue.top();
+        queue.pop();
+        if (size > surface.size(v))
+            continue;
+        for (const std::uint32_t t : surface.star(v))
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t w = surface.triangle(t)[k];
+                const double most = size + slope * surface.length(v, w);
+                if (surface.size(w) > most) {
+                    surface.size(w) = most;
+                    queue.emplace(most, w);
+                }
+            }
+    }
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "resample/remesh_surface.h"
+
+#include <cstddef>
+
+namespace vdb_shell
+{
+
+// What each round of remeshing does. All of it is in the order of the edges' lengths or of the
+// vertices, one after another, so the result is determined.
+
+/// Splits edges that are too long for their wanted length, longest first.
+void split_long_edges(RemeshSurface& surface);
+/// Collapses edges that are too short for it, shortest first. Where the tolerance or a feature does
+/// not allow that, the wanted length becomes that of the edge, but no less than `least_size`.
+void collapse_short_edges(RemeshSurface& surface, double least_size);
+/// Flips edges so that vertices get six neighbours.
+void flip_to_valence(RemeshSurface& surface);
+/// Flips edges so that the smallest of the angles on both sides gets larger.
+void flip_to_angle(RemeshSurface& surface);
+/// Moves vertices to the middle of the triangles around them, over the surface or along curves.
+void smooth(RemeshSurface& surface);
+/// Flips, collapses and moves at triangles with an angle below the one of this cosine, each only if
+/// the smallest angle around gets larger. How many were done.
+std::size_t raise_angles(RemeshSurface& surface, double cosine);
+
+/// Lets no wanted length be larger than `largest`, nor change by more than `slope` from a length's
+/// one end to the other; before that, all of them grow by `growth`.
+void grade_sizes(RemeshSurface& surface, double largest, double slope, double growth);
+
+} // namespace vdb_shell
