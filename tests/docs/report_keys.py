@@ -42,6 +42,7 @@ def reports(command, samples, folder):
             [samples / "torus.obj", "--wrap", "--wrap-resolution", "32"],
             [samples / "sphere.obj", "--decimate-to", "200", "--refine-rounds", "1"],
             [box, "--subdivide", "1"],
+            [samples / "torus.obj", "--remesh-to", "1000", "--taper"],
             [folder / "crossing.obj", "--allow-self-intersections"],
             [folder / "0.vdb"]]):
         out = folder / f"{number}.json"
