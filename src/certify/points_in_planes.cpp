@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 
 #include "certify/points_in_planes.h"
+#include "core/dispatch.h"
 #include "core/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -65,7 +66,7 @@ HWY_EXPORT(points_in_planes);
 std::size_t points_in_planes(const std::array<const float*, 3>& points, const PointRun* runs,
                              std::size_t count, const FloatPlanes& planes, std::uint32_t* inside)
 {
-    return HWY_DYNAMIC_DISPATCH(points_in_planes)(points, runs, count, planes, inside);
+    return VDB_SHELL_KERNEL(points_in_planes)(points, runs, count, planes, inside);
 }
 
 } // namespace vdb_shell

@@ -45,7 +45,7 @@ GridName split_grid_name(const std::string& name)
     return {name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1)};
 }
 
-openvdb::FloatGrid::Ptr read_thickness_grid(const std::string& name)
+FloatGridPtr read_thickness_grid(const std::string& name)
 {
     if (name.empty())
         return nullptr;
@@ -62,13 +62,13 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
     const GridName source = split_grid_name(arguments.mesh.string());
     const std::string name = arguments.mesh.filename().string();
     // The small inputs come first: a wrong name of a grid is told before a large mesh is read.
-    const openvdb::FloatGrid::Ptr thickness = read_thickness_grid(arguments.thickness_grid);
+    const FloatGridPtr thickness = read_thickness_grid(arguments.thickness_grid);
     ShellResult result;
     if (std::filesystem::path(source.file).extension() == ".vdb") {
         if (arguments.read.recentre || arguments.read.rescale)
             throw InvalidOption(name + ": --recentre and --rescale are for triangles; a level set "
                                        "has a transform of its own");
-        openvdb::FloatGrid::Ptr field;
+        FloatGridPtr field;
         StageClock(read_cost).run("read",
                                   [&] { field = read_level_set(source.file, source.grid); });
         result = build_shell_from_level_set(*field, options, name, thickness.get(), interrupter);

@@ -8,6 +8,7 @@
 
 #include "vdb_shell/houdini/polygon_mesh.h"
 
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/ValueTransformer.h>
 
@@ -22,7 +23,7 @@ ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& op
                                                  : read_mesh(path, options);
 }
 
-openvdb::FloatGrid::Ptr in_place(const openvdb::FloatGrid::Ptr& grid, const Placement& placement)
+FloatGridPtr in_place(const FloatGridPtr& grid, const Placement& placement)
 {
     if (!grid || !placement.moves())
         return grid;

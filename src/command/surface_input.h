@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/options/section.h"
-
-#include <openvdb/openvdb.h>
 
 #include <filesystem>
 
@@ -27,7 +26,7 @@ template <typename Options> Options in_unit(Options options, double unit)
 }
 
 /// The grid where the mesh is. Null stays null.
-openvdb::FloatGrid::Ptr in_place(const openvdb::FloatGrid::Ptr& grid, const Placement& placement);
+FloatGridPtr in_place(const FloatGridPtr& grid, const Placement& placement);
 
 /// On standard error, where reading lost digits that --recentre would keep.
 void warn_of_lost_digits(const std::filesystem::path& path, const ReadResult& read);

@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "core/fan.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/fan.h"
 #include "core/orient3d_filter-inl.h"
 #include "core/simd-inl.h"
@@ -196,12 +197,12 @@ HWY_EXPORT(apart_from);
 
 bool Fan::surely_embedded() const
 {
-    return HWY_DYNAMIC_DISPATCH(side_by_side)(spoke_, count_);
+    return VDB_SHELL_KERNEL(side_by_side)(spoke_, count_);
 }
 
 std::uint32_t Fan::surely_apart_from(std::size_t i) const
 {
-    return HWY_DYNAMIC_DISPATCH(apart_from)(spoke_, count_, i);
+    return VDB_SHELL_KERNEL(apart_from)(spoke_, count_, i);
 }
 
 } // namespace vdb_shell

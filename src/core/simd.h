@@ -6,7 +6,7 @@
 /// How this project uses Highway (https://github.com/google/highway) for several numbers at a time.
 ///
 /// A source whose loops gain by it is compiled once for each target below; the processor at hand
-/// decides which of them runs (HWY_DYNAMIC_DISPATCH). Such a source holds kernels over plain arrays
+/// decides which of them runs (core/dispatch.h). Such a source holds kernels over plain arrays
 /// and little else: what it instantiates of the standard library could otherwise be linked into
 /// code for processors that do not have the instructions. It is laid out as Highway's guide has it,
 /// with this header first and core/simd-inl.h, the operations, after foreach_target.h.

@@ -11,6 +11,7 @@
 #define HWY_TARGET_INCLUDE "field/eight_distances.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/simd-inl.h"
 #include "field/eight_distances.h"
 
@@ -97,13 +98,13 @@ HWY_EXPORT(list_within);
 void nearest_of(const PreparedTriangle* triangles, const std::uint32_t* list, std::size_t count,
                 const EightPoints& points, float* squared, EightNearest& nearest)
 {
-    HWY_DYNAMIC_DISPATCH(nearest_of)(triangles, list, count, points, squared, nearest);
+    VDB_SHELL_KERNEL(nearest_of)(triangles, list, count, points, squared, nearest);
 }
 
 void list_within(const float* squared, std::size_t count, const std::array<float, kLanes>& limit,
                  std::uint8_t* bits)
 {
-    HWY_DYNAMIC_DISPATCH(list_within)(squared, count, limit, bits);
+    VDB_SHELL_KERNEL(list_within)(squared, count, limit, bits);
 }
 
 } // namespace vdb_shell

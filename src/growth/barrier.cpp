@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "growth/barrier.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/simd-inl.h"
 #include "growth/barrier.h"
 
@@ -270,7 +271,7 @@ void LinearBounds::add_unit(const Vec3s& n, double value)
 void LinearBounds::add_prism(const std::array<Vec3d, 5>& corner)
 {
     size_ += kLanes;
-    HWY_DYNAMIC_DISPATCH(bound_prism)(corner, here_, scale_, block_.emplace_back());
+    VDB_SHELL_KERNEL(bound_prism)(corner, here_, scale_, block_.emplace_back());
 }
 
 void LinearBounds::weigh(std::size_t first, float weight)
@@ -287,7 +288,7 @@ Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball, const Vec3d& gradi
     const Ball scaled{(ball.centre - bounds.here()) * scale, ball.radius * scale};
     LinearBounds::Block* const first = bounds.blocks().data();
     Vec3d x;
-    HWY_DYNAMIC_DISPATCH(newton_minimum)
+    VDB_SHELL_KERNEL(newton_minimum)
     (first, first + bounds.blocks().size(), scaled, gradient / (weight * scale), x);
     return bounds.here() + x / scale;
 }

@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "growth/prism_lanes.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/orient3d_filter-inl.h"
 #include "core/simd-inl.h"
 #include "growth/prism_lanes.h"
@@ -154,19 +155,19 @@ HWY_EXPORT(sum_shortfalls);
 
 bool surely_positive(const PrismAround& prism, const double* x)
 {
-    return HWY_DYNAMIC_DISPATCH(surely_positive)(prism, x);
+    return VDB_SHELL_KERNEL(surely_positive)(prism, x);
 }
 
 double bound_tets(const CountedPrism* prisms, std::size_t count, const double* here,
                   TetBounds* bounds)
 {
-    return HWY_DYNAMIC_DISPATCH(bound_tets)(prisms, count, here, bounds);
+    return VDB_SHELL_KERNEL(bound_tets)(prisms, count, here, bounds);
 }
 
 ShortfallSlopes sum_shortfalls(const TetBounds* bounds, std::size_t count, double room,
                                const double* x)
 {
-    return HWY_DYNAMIC_DISPATCH(sum_shortfalls)(bounds, count, room, x);
+    return VDB_SHELL_KERNEL(sum_shortfalls)(bounds, count, room, x);
 }
 
 } // namespace vdb_shell::growth

@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "growth/separation_lanes.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/simd-inl.h"
 #include "growth/separation_lanes.h"
 
@@ -296,17 +297,17 @@ HWY_EXPORT(slabs_across);
 
 void estimate_rooms(const PairLanes& pairs, PairEstimates& estimates)
 {
-    HWY_DYNAMIC_DISPATCH(estimate_rooms)(pairs, estimates);
+    VDB_SHELL_KERNEL(estimate_rooms)(pairs, estimates);
 }
 
 void between_edges(const EdgeRows& edges, PointRow& between)
 {
-    HWY_DYNAMIC_DISPATCH(between_edges)(edges, between);
+    VDB_SHELL_KERNEL(between_edges)(edges, between);
 }
 
 void slabs_across(const PairLanes& pairs, const PointRow& ways, SlabLanes& slabs)
 {
-    HWY_DYNAMIC_DISPATCH(slabs_across)(pairs, ways, slabs);
+    VDB_SHELL_KERNEL(slabs_across)(pairs, ways, slabs);
 }
 
 } // namespace vdb_shell::growth

@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "mesh/triangle_tree_search.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/simd-inl.h"
 #include "mesh/triangle_tree.h"
 
@@ -283,18 +284,18 @@ HWY_EXPORT(gather);
 TriangleTree::Found TriangleTree::nearest(const openvdb::Vec3d& at, float tolerance,
                                           Seed& seed) const
 {
-    return HWY_DYNAMIC_DISPATCH(nearest)(arrays_, at, tolerance, seed);
+    return VDB_SHELL_KERNEL(nearest)(arrays_, at, tolerance, seed);
 }
 
 float TriangleTree::squared_distance(const openvdb::Vec3d& at, Nearby& nearby) const
 {
-    return HWY_DYNAMIC_DISPATCH(squared_distance)(arrays_, at, nearby);
+    return VDB_SHELL_KERNEL(squared_distance)(arrays_, at, nearby);
 }
 
 void TriangleTree::gather(const openvdb::Vec3d& centre, double radius, Nearby& nearby) const
 {
     Places places;
-    HWY_DYNAMIC_DISPATCH(gather)(arrays_, centre, radius, places, nearby);
+    VDB_SHELL_KERNEL(gather)(arrays_, centre, radius, places, nearby);
     // What follows uses the standard library's vectors and is therefore kept out of the kernels,
     // which are compiled for other processors.
     const auto& [list, count] = places;

@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "write/depth_lines.cpp"
 #include <hwy/foreach_target.h>
 
+#include "core/dispatch.h"
 #include "core/simd-inl.h"
 #include "write/depth_lines.h"
 
@@ -101,12 +102,12 @@ HWY_EXPORT(fill_depth_rows);
 
 void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEnds* ends)
 {
-    HWY_DYNAMIC_DISPATCH(find_line_ends)(tet, x, count, y, ends);
+    VDB_SHELL_KERNEL(find_line_ends)(tet, x, count, y, ends);
 }
 
 void fill_depth_rows(const DepthRow* rows, std::size_t count, const DepthAlongZ& depth)
 {
-    HWY_DYNAMIC_DISPATCH(fill_depth_rows)(rows, count, depth);
+    VDB_SHELL_KERNEL(fill_depth_rows)(rows, count, depth);
 }
 
 } // namespace vdb_shell

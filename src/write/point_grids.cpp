@@ -11,15 +11,9 @@
 #include "write/point_grids.h"
 
 #include "core/parallel.h"
-
-#include <openvdb/points/PointAttribute.h>
-#include <openvdb/points/PointConversion.h>
-#include <openvdb/points/PointGroup.h>
-#include <openvdb/tools/PointIndexGrid.h>
-#include <openvdb/tree/LeafManager.h>
+#include "write/point_grid_builder.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace vdb_shell
 {
@@ -30,115 +24,19 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 using openvdb::points::PointDataGrid;
-using openvdb::tools::PointIndexGrid;
 
-constexpr double kPointsPerVoxel = 4.0;
-
-/// Voxels of which each holds a few points, if they lie near a surface as large as the box's.
-openvdb::math::Transform::Ptr transform_for(const std::vector<Vec3s>& positions)
+/// get(i) for each of `count` points.
+template <typename T, typename Get> std::vector<T> column(std::size_t count, const Get& get)
 {
-    auto transform = openvdb::math::Transform::createLinearTransform(1.0);
-    if (positions.empty())
-        return transform;
-    const Bounds bounds = bounds_of(positions);
-    const Vec3d e = bounds.high - bounds.low;
-    // The points lie on surfaces, not in a volume. So the voxel is chosen for a number of points
-    // per area, with the box's own surface in place of the shell's.
-    const double area = 2.0 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]);
-    const double longest = std::max({e[0], e[1], e[2]});
-    const double from_area = std::sqrt(kPointsPerVoxel * area / double(positions.size()));
-    // A box without area is that of a line or of a point, where the estimate above gives 0; the
-    // points are then counted along the longest side.
-    const double voxel = std::max(from_area, longest / double(positions.size()));
-    // OpenVDB refuses maps whose determinant is next to zero.
-    constexpr double kSmallestVoxel = 1e-4;
-    transform = openvdb::math::Transform::createLinearTransform(
-        voxel > 0.0 ? std::max(voxel, kSmallestVoxel) : 1.0);
-    // Starting at the box keeps voxel coordinates small wherever the shell lies.
-    transform->postTranslate(bounds.low);
-    return transform;
+    std::vector<T> values(count);
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = T(get(i));
+    return values;
 }
-
-/// A grid of points under construction, with the order in which its voxels took the points.
-class Builder
+template <typename Get> std::vector<std::int32_t> integers(std::size_t count, const Get& get)
 {
-public:
-    Builder(const char* name, const std::vector<Vec3s>& positions)
-    {
-        const auto transform = transform_for(positions);
-        const openvdb::points::PointAttributeVector<Vec3s> list(positions);
-        index_ = openvdb::tools::createPointIndexGrid<PointIndexGrid>(list, *transform);
-        grid_ = openvdb::points::createPointDataGrid<openvdb::points::NullCodec, PointDataGrid>(
-            *index_, list, *transform);
-        grid_->setName(name);
-    }
-
-    /// get(point, element) is the attribute's value. Leaves are filled in parallel; each writes its
-    /// own arrays and reads shared data only. Rows are visited in the order of the index grid,
-    /// because that is the order in which createPointDataGrid laid the points down.
-    template <typename T, typename Get>
-    void add(const std::string& name, openvdb::Index stride, const Get& get)
-    {
-        auto& tree = grid_->tree();
-        // A shell without tets has an empty grid, and an attribute cannot be appended to a tree
-        // without leaves. The reader needs none either, as it expects no rows.
-        const auto first = tree.cbeginLeaf();
-        if (!first)
-            return;
-        openvdb::points::appendAttribute<T>(tree, name, openvdb::zeroVal<T>(), stride);
-        const auto position = tree.cbeginLeaf()->attributeSet().find(name);
-        openvdb::tree::LeafManager<openvdb::points::PointDataTree> leaves(tree);
-        leaves.foreach ([&](auto& leaf, std::size_t) {
-            auto& array = leaf.attributeArray(position);
-            openvdb::points::AttributeWriteHandle<T> handle(array);
-            openvdb::Index row = 0;
-            for (const auto point : index_->tree().probeConstLeaf(leaf.origin())->indices()) {
-                for (openvdb::Index element = 0; element < stride; ++element)
-                    handle.set(row, element, get(std::size_t(point), element));
-                ++row;
-            }
-            // Floats are left as they are: compacting takes -0 and 0 for the same value.
-            if (std::is_integral_v<T>)
-                array.compact();
-        });
-    }
-
-    /// One int32 per point.
-    template <typename Get> void add_integer(const std::string& name, const Get& get)
-    {
-        add<std::int32_t>(
-            name, 1, [&](std::size_t point, openvdb::Index) { return std::int32_t(get(point)); });
-    }
-
-    /// A tuple of int32 per point, and each element under its own name as well: VEX has no integer
-    /// tuples.
-    template <typename Get>
-    void add_tuple(const std::string& name, openvdb::Index stride, const Get& get)
-    {
-        add<std::int32_t>(name, stride, get);
-        for (openvdb::Index element = 0; element < stride; ++element)
-            add_integer(name + std::to_string(element),
-                        [&](std::size_t point) { return get(point, element); });
-    }
-
-    template <typename Get>
-    void add_group(const std::string& name, std::size_t count, const Get& get)
-    {
-        // Shorts, because that is the type which OpenVDB's setGroup takes.
-        std::vector<short> member(count);
-        for (std::size_t i = 0; i < count; ++i)
-            member[i] = get(i) ? 1 : 0;
-        openvdb::points::appendGroup(grid_->tree(), name);
-        if (!grid_->tree().empty())
-            openvdb::points::setGroup(grid_->tree(), index_->tree(), member, name);
-    }
-
-    PointDataGrid::Ptr take() { return grid_; }
-
-private:
-    PointIndexGrid::Ptr index_;
-    PointDataGrid::Ptr grid_;
-};
+    return column<std::int32_t>(count, get);
+}
 
 /// Where a prism or a tet is drawn. Nothing is read back from it, so its rounding does not matter.
 template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
@@ -151,72 +49,84 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
 
 /// Layers on one side of the skin share their reasons (require_consistent checks that), so the last
 /// layer speaks for all below the skin and the first for all above.
-void add_stop_reasons(Builder& builder, const ShellStack& stack, const ShellPoints& points)
+void add_stop_reasons(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points)
 {
     const auto add = [&](const char* name, const PrismShell& layer) {
-        builder.add_integer(
-            name, [&](std::size_t i) { return std::int32_t(layer.stop[points.vertex[i]]); });
+        builder.add(name, integers(points.vertex.size(),
+                                   [&](std::size_t i) { return layer.stop[points.vertex[i]]; }));
     };
     add("stop_reason", stack.layers.back());
     if (on_both_sides(stack))
         add(kOuterStop, stack.layers.front());
 }
 
+/// Positions, and what is drawn or shaded with: the other end of the pillar, normal, thickness.
+void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points)
+{
+    const std::size_t count = points.position.size();
+    std::vector<std::vector<Vec3s>> normals;
+    for (std::size_t k = 0; k < stack.surfaces(); ++k)
+        normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
+    builder.add("rest", points.position);
+    builder.add("opposite", column<Vec3s>(count, [&](std::size_t i) {
+                    return opposite_of(stack, points.layer[i], points.vertex[i]);
+                }));
+    builder.add("N", column<Vec3s>(count, [&](std::size_t i) {
+                    return normals[points.layer[i]][points.vertex[i]];
+                }));
+    builder.add("thickness", column<float>(count, [&](std::size_t i) {
+                    return thickness_of(stack, points.vertex[i]);
+                }));
+}
+
 PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& points)
 {
-    Builder builder(kPointsGrid, points.position);
+    PointGridBuilder builder(kPointsGrid, points.position);
     const std::size_t count = points.position.size(), last = stack.layers.size();
-    const auto vertex = [&](std::size_t i) { return points.vertex[i]; };
-    const auto layer = [&](std::size_t i) { return points.layer[i]; };
-    const auto is_pinned = [&](std::size_t i) { return pinned_throughout(stack, vertex(i)); };
-    std::vector<std::vector<Vec3s>> normals;
-    for (std::size_t k = 0; k <= last; ++k)
-        normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
-    builder.add_integer("id", [](std::size_t i) { return i; });
-    builder.add_integer("tet_point", [&](std::size_t i) { return points.tet_point[i]; });
-    builder.add_integer("layer", layer);
-    builder.add_integer("source_vertex", vertex);
+    const auto is_pinned = [&](std::size_t i) {
+        return pinned_throughout(stack, points.vertex[i]);
+    };
+    builder.add("id", integers(count, [](std::size_t i) { return i; }));
+    builder.add("tet_point", integers(count, [&](std::size_t i) { return points.tet_point[i]; }));
+    builder.add("layer", integers(count, [&](std::size_t i) { return points.layer[i]; }));
+    builder.add("source_vertex", integers(count, [&](std::size_t i) { return points.vertex[i]; }));
     add_stop_reasons(builder, stack, points);
-    builder.add_integer("pinned", is_pinned);
-    builder.add<Vec3s>("rest", 1,
-                       [&](std::size_t i, openvdb::Index) { return points.position[i]; });
-    builder.add<Vec3s>("opposite", 1, [&](std::size_t i, openvdb::Index) {
-        return opposite_of(stack, layer(i), vertex(i));
-    });
-    builder.add<Vec3s>("N", 1,
-                       [&](std::size_t i, openvdb::Index) { return normals[layer(i)][vertex(i)]; });
-    builder.add<float>("thickness", 1, [&](std::size_t i, openvdb::Index) {
-        return thickness_of(stack, vertex(i));
-    });
-    builder.add_group("outer", count, [&](std::size_t i) { return layer(i) == 0; });
-    builder.add_group("inner", count, [&](std::size_t i) { return layer(i) == last; });
-    builder.add_group("pinned", count, is_pinned);
+    builder.add("pinned", integers(count, is_pinned));
+    add_geometry(builder, stack, points);
+    const auto on_surface = [&](std::size_t surface) {
+        return column<short>(count, [&](std::size_t i) { return points.layer[i] == surface; });
+    };
+    builder.add_group("outer", on_surface(0));
+    builder.add_group("inner", on_surface(last));
+    builder.add_group("pinned", column<short>(count, is_pinned));
     return builder.take();
 }
 
 PointDataGrid::Ptr make_prisms(const ShellStack& stack, const ShellPoints& points)
 {
     const std::vector<Vec3I>& triangles = stack.triangles();
-    const std::size_t faces = triangles.size();
-    std::vector<Vec3s> centres(stack.layers.size() * faces);
-    for (std::size_t p = 0; p < centres.size(); ++p) {
+    const std::size_t faces = triangles.size(), count = stack.layers.size() * faces;
+    std::vector<Vec3s> centres(count);
+    for (std::size_t p = 0; p < count; ++p) {
         const Vec3I t = triangles[p % faces];
         const PrismShell& layer = stack.layers[p / faces];
         centres[p] =
             mean_of(6, [&](int i) { return i < 3 ? layer.outer[t[i]] : layer.inner[t[i - 3]]; });
     }
-    Builder builder(kPrismsGrid, centres);
-    builder.add_integer("id", [](std::size_t p) { return p; });
-    builder.add_tuple("prism_pts", 6, [&](std::size_t p, openvdb::Index i) {
-        const std::size_t surface = p / faces + (i < 3 ? 0 : 1);
-        return std::int32_t(points.id[surface][triangles[p % faces][int(i % 3)]]);
-    });
-    builder.add_tuple("split_order", 3, [&](std::size_t p, openvdb::Index i) {
-        return std::int32_t(stack.splits[p / faces].order[p % faces][i]);
-    });
+    PointGridBuilder builder(kPrismsGrid, centres);
+    builder.add("id", integers(count, [](std::size_t p) { return p; }));
+    builder.add_tuples("prism_pts", 6, integers(6 * count, [&](std::size_t k) {
+                           const std::size_t p = k / 6, i = k % 6;
+                           const std::size_t surface = p / faces + (i < 3 ? 0 : 1);
+                           return points.id[surface][triangles[p % faces][int(i % 3)]];
+                       }));
+    builder.add_tuples("split_order", 3, integers(3 * count, [&](std::size_t k) {
+                           const std::size_t p = k / 3;
+                           return stack.splits[p / faces].order[p % faces][k % 3];
+                       }));
     if (stack.layers.size() > 1) {
-        builder.add_integer("layer", [&](std::size_t p) { return p / faces; });
-        builder.add_integer("triangle", [&](std::size_t p) { return p % faces; });
+        builder.add("layer", integers(count, [&](std::size_t p) { return p / faces; }));
+        builder.add("triangle", integers(count, [&](std::size_t p) { return p % faces; }));
     }
     return builder.take();
 }
@@ -224,19 +134,20 @@ PointDataGrid::Ptr make_prisms(const ShellStack& stack, const ShellPoints& point
 PointDataGrid::Ptr make_tet_points(const ShellStack& stack, const TetMesh& tets,
                                    const ShellPoints& points)
 {
-    const std::size_t faces = stack.triangles().size();
-    std::vector<Vec3s> centres(tets.tets.size());
-    for (std::size_t t = 0; t < centres.size(); ++t)
-        centres[t] = mean_of(4, [&](int i) { return tets.points[tets.tets[t][i]]; });
-    Builder builder(kTetsGrid, centres);
-    builder.add_integer("id", [](std::size_t t) { return t; });
-    builder.add_tuple("tet", 4, [&](std::size_t t, openvdb::Index i) {
-        return std::int32_t(points.id_of_tet_point[tets.tets[t][int(i)]]);
-    });
-    builder.add_integer("prism",
-                        [&](std::size_t t) { return tets.prism_layer[t] * faces + tets.prism[t]; });
+    const std::size_t faces = stack.triangles().size(), count = tets.tets.size();
+    const auto centre = [&](std::size_t t) {
+        return mean_of(4, [&](int i) { return tets.points[tets.tets[t][i]]; });
+    };
+    PointGridBuilder builder(kTetsGrid, column<Vec3s>(count, centre));
+    builder.add("id", integers(count, [](std::size_t t) { return t; }));
+    builder.add_tuples("tet", 4, integers(4 * count, [&](std::size_t k) {
+                           return points.id_of_tet_point[tets.tets[k / 4][int(k % 4)]];
+                       }));
+    builder.add("prism", integers(count, [&](std::size_t t) {
+                    return tets.prism_layer[t] * faces + tets.prism[t];
+                }));
     if (stack.layers.size() > 1)
-        builder.add_integer("layer", [&](std::size_t t) { return tets.prism_layer[t]; });
+        builder.add("layer", integers(count, [&](std::size_t t) { return tets.prism_layer[t]; }));
     return builder.take();
 }
 
