@@ -233,14 +233,39 @@ void check_bare_triangles(const FreeFaces& free, const std::vector<char>& degene
             add_to(certificate.tets_through_outer, Pair{tet, f});
 }
 
-void check_attached(const FreeFaces& free, ComplexCertificate& certificate)
+/// Whether the point, which is not on the outer surface, is behind it: its winding number, by the
+/// exact crossings of a ray.
+bool behind_surface(const ShellStack& stack, const Vec3s& point)
 {
+    const std::vector<Vec3s>& outer = stack.surface(0);
+    int winding = 0;
+    for (const Vec3I& t : stack.triangles()) {
+        bool on_surface = false;
+        winding += exact::crossing_above(point, outer[t[0]], outer[t[1]], outer[t[2]], on_surface);
+        if (on_surface)
+            return false;
+    }
+    return winding > 0;
+}
+
+/// A piece of tets without an outer triangle of its own hangs on others by edges or corners only.
+/// Any of its corners that is no outer vertex tells where it is.
+void check_attached(const ShellStack& stack, const FreeFaces& free, const TetMesh& mesh,
+                    ComplexCertificate& certificate)
+{
+    constexpr std::uint32_t kNone = ~std::uint32_t(0);
     std::vector<char> attached(free.piece.size());
     for (std::size_t f = 0; f < free.outer_count; ++f)
         if (free.tet[f] != FreeFaces::kNoTet)
             attached[free.piece[free.tet[f]]] = 1;
+    std::vector<std::uint32_t> corner(free.piece.size(), kNone);
     for (std::uint32_t t = 0; t < free.piece.size(); ++t)
-        if (free.piece[t] == t && !attached[t])
+        for (int k = 0; k < 4; ++k)
+            if (mesh.layer[mesh.tets[t][k]] > 0)
+                corner[free.piece[t]] = mesh.tets[t][k];
+    for (std::uint32_t t = 0; t < free.piece.size(); ++t)
+        if (free.piece[t] == t && !attached[t] &&
+            (corner[t] == kNone || !behind_surface(stack, mesh.points[corner[t]])))
             add_to(certificate.detached_tets, t);
 }
 
@@ -290,7 +315,7 @@ ComplexCertificate certify_complex(const ShellStack& stack, Interrupter* interru
     const TetTree tree(tets, sign);
     check_pieces(free, tets, tree, certificate);
     check_bare_triangles(free, degenerate, tets, tree, certificate);
-    check_attached(free, certificate);
+    check_attached(stack, free, tets, certificate);
     return certificate;
 }
 

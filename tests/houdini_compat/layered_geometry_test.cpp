@@ -8,6 +8,7 @@
 #include "houdini_compat/round_trip.h"
 #include "support/files.h"
 #include "support/shapes.h"
+#include "support/tapered.h"
 
 #include <gtest/gtest.h>
 
@@ -66,6 +67,21 @@ TEST(LayeredGeometry, PillarsMayBePinnedInAnyLayers)
     }
     whole.tets = make_tets(whole.stack);
     expect_round_trips(whole);
+}
+
+TEST(LayeredGeometry, TaperedStacksComeBackBitForBit)
+{
+    for (const ShellStack& stack : {test::two_sheets(), test::layers_to_a_point(),
+                                    test::coned(test::octahedron(), Vec3s(1, 0, 0))}) {
+        ShellFile file;
+        file.stack = stack;
+        file.tets = make_tets(stack);
+        file.parameters_json = file.report_json = "{}";
+        expect_round_trips(file);
+        const HoudiniGeometry geometry = shell_geometry(file);
+        EXPECT_TRUE(shell_of_geometry(geometry, "x").stack.tapered);
+        EXPECT_NE(find(geometry.detail_attributes, "vdb_shell_tapered"), nullptr);
+    }
 }
 
 TEST(LayeredGeometry, OneLayerSaysNothingOfLayers)

@@ -31,7 +31,7 @@ ShellFile file_of(const ShellStack& stack)
     ShellFile file = test::hand_made_file({first, stack.splits[0], make_tets(stack)}, 0.1);
     file.stack = stack;
     file.tets = make_tets(stack);
-    file.depth = shell_depth_grid(file.tets, 0.1);
+    file.depth = shell_depth_grid(file.tets, file.surface->voxelSize()[0]);
     ShellReport report;
     report.signs = count_tet_signs(file.tets);
     report.shell_volume = tet_volume(file.tets);

@@ -40,8 +40,8 @@ struct ComplexCertificate {
     Defect<TetAndTriangle> tets_through_outer;
     /// The tet behind one face of a connected piece of free faces, and one that it overlaps.
     Defect<TwoTets> overlapping_tets;
-    /// Pieces of tets that hang together by faces and have no outer triangle among their faces, by
-    /// first tet.
+    /// Pieces of tets that hang together by faces, have no outer triangle among their faces, and
+    /// no corner that shows them to be behind the outer surface, by first tet.
     Defect<std::uint32_t> detached_tets;
     Defect<Edge> open_edges;                ///< of the outer surface, as in Certificate
     Defect<std::uint32_t> split_vertices;   ///< of the outer surface, as in Certificate
