@@ -143,7 +143,7 @@ bool Changes::merge(int from, int to)
     s_.point[std::size_t(to)] = at;
     for (Swept& tet : swept_)
         tet.corners[3] = at;
-    if (!best.valid || passes_itself(s_, swept_, {from, to}) ||
+    if (!best.valid || passes_itself(s_, swept_, pieces_, {from, to}) ||
         !inner_triangles_clear(s_, pieces_)) {
         point_places(from, from);
         s_.point[std::size_t(to)] = q;
@@ -195,7 +195,7 @@ bool Changes::move(int n)
         for (Swept& tet : swept_)
             tet.corners[3] = x;
         if (better(measured()) && within_caps(s_, s_.places[std::size_t(n)], x) &&
-            !passes_itself(s_, swept_, {n, n}) && inner_triangles_clear(s_, pieces_)) {
+            !passes_itself(s_, swept_, pieces_, {n, n}) && inner_triangles_clear(s_, pieces_)) {
             accept();
             return true;
         }
@@ -219,7 +219,7 @@ bool Changes::hand_over(int place, int to)
         }
     s_.node[std::size_t(place)] = to;
     if (!better(measured()) || !within_caps(s_, {place}, s_.at(to)) ||
-        passes_itself(s_, swept_, {from, to}) || !inner_triangles_clear(s_, pieces_)) {
+        passes_itself(s_, swept_, pieces_, {from, to}) || !inner_triangles_clear(s_, pieces_)) {
         s_.node[std::size_t(place)] = from;
         return false;
     }

@@ -11,6 +11,8 @@
 #include "growth/predicates.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace vdb_shell::taper
 {
@@ -106,93 +108,168 @@ bool triangle_clear(const TaperState& s, int face, const InnerTriangle& t)
     return clear;
 }
 
-/// The tet's share of the winding number at p; `on_it` is set if p is on its surface.
-int winding_of(const TetCorners& tet, const Vec3d& p, bool& on_it)
+/// A swept tet as often as it is asked about points.
+struct SweptTet {
+    const Swept* of;
+    FloatBox box;
+    int turn; ///< its orientation; 0: flat
+
+    explicit SweptTet(const Swept& swept) : of(&swept), box(FloatBox::around(Vec3s(of->corners[0])))
+    {
+        const auto& [a, b, c, d] = of->corners;
+        for (const Vec3d& p : {b, c, d})
+            box.add(Vec3s(p));
+        turn = growth::orient(a, b, c, d);
+    }
+    /// Its share of the winding number at p; `on_it` is set if p is on its surface.
+    int winding_at(const Vec3d& p, bool& on_it) const
+    {
+        if (turn == 0 || !box.contains(Vec3s(p)))
+            return 0;
+        const auto& [a, b, c, d] = of->corners;
+        const std::array<int, 4> side{
+            growth::orient(p, b, c, d) * turn, growth::orient(a, p, c, d) * turn,
+            growth::orient(a, b, p, d) * turn, growth::orient(a, b, c, p) * turn};
+        const int least = *std::min_element(side.begin(), side.end());
+        on_it = on_it || least == 0;
+        return least > 0 ? turn : 0;
+    }
+};
+
+void sort_unique(std::vector<int>& values)
 {
-    const auto& [a, b, c, d] = tet;
-    const int turn = growth::orient(a, b, c, d);
-    if (turn == 0)
-        return 0;
-    const std::array<int, 4> side{
-        growth::orient(p, b, c, d) * turn, growth::orient(a, p, c, d) * turn,
-        growth::orient(a, b, p, d) * turn, growth::orient(a, b, c, p) * turn};
-    const int least = *std::min_element(side.begin(), side.end());
-    on_it = on_it || least == 0;
-    return least > 0 ? turn : 0;
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// The swept tets of one fan: those that share a node besides the moving ones.
+bool among(const std::vector<int>& sorted, int value)
+{
+    return std::binary_search(sorted.begin(), sorted.end(), value);
+}
+
+/// The swept tets of one fan: those that hang together by nodes other than the moving ones.
 class SweptFan
 {
 public:
     SweptFan(const Swept* first, const Swept* last, const std::array<int, 2>& moving)
-        : first_(first), last_(last), moving_(moving)
+        : moving_(moving), nodes_{moving[0], moving[1]}
     {
-        for (const Swept* tet = first; tet != last; ++tet)
-            for (const Vec3d& p : tet->corners)
-                tet == first&&& p == tet->corners.data() ? void(box_ = FloatBox::around(Vec3s(p)))
-                                                         : box_.add(Vec3s(p));
+        for (const Swept* tet = first; tet != last; ++tet) {
+            tets_.emplace_back(*tet);
+            nodes_.insert(nodes_.end(), tet->nodes.begin(), tet->nodes.end());
+        }
+        sort_unique(nodes_);
+        box_ = tets_.front().box;
+        for (const SweptTet& tet : tets_)
+            box_.add(tet.box);
     }
-    const FloatBox& box() const { return box_; }
 
-    /// Whether the fan went past the triangle, which is as it is after the change.
+    /// Whether the fan went past a part of the inner surface; `changed` are the faces that have
+    /// moved, ascending.
+    bool passes(const TaperState& s, const std::vector<int>& changed) const
+    {
+        std::vector<int> others, on_fan;
+        s.inner_tree.for_each_overlap(box_, [&](int face) {
+            const InnerTriangle t(s, s.levels, face);
+            if (t.gone())
+                return;
+            int of_fan = 0;
+            for (const int n : t.ids)
+                among(nodes_, n) ? void(++of_fan) : others.push_back(n);
+            // All of its nodes lie on what is swept over, where winding numbers mean nothing.
+            if (of_fan == 3 && !among(changed, face))
+                on_fan.push_back(face);
+        });
+        sort_unique(others);
+        return std::any_of(others.begin(), others.end(),
+                           [&](int n) { return winding_at(s.at(n)); }) ||
+               std::any_of(on_fan.begin(), on_fan.end(),
+                           [&](int face) { return passes(InnerTriangle(s, s.levels, face)); });
+    }
+
+private:
+    /// The same of a triangle that has not moved and has no node of its own.
     bool passes(const InnerTriangle& t) const
     {
-        int on_fan = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (of_fan(t.ids[i]))
-                ++on_fan;
-            else if (box_.contains(Vec3s(t.corners[i])) && winding_at(t.corners[i]))
-                return true;
-        }
-        if (on_fan < 3)
-            return false;
-        // All of its nodes lie on what is swept over, where winding numbers mean nothing.
-        if (makes(t))
+        if (faces_a_made_one(t))
             return false;
         return moves_behind(t) ||
                winding_at(growth::rounded((t.corners[0] + t.corners[1] + t.corners[2]) / 3.0));
     }
-
-private:
-    bool moves(int n) const { return n == moving_[0] || n == moving_[1]; }
-    bool of_fan(int n) const
-    {
-        return moves(n) || std::any_of(first_, last_, [n](const Swept& tet) {
-                   return tet.nodes[0] == n || tet.nodes[1] == n || tet.nodes[2] == n;
-               });
-    }
     bool winding_at(const Vec3d& p) const
     {
+        if (!box_.contains(Vec3s(p)))
+            return false;
         int winding = 0;
         bool on_it = false;
-        for (const Swept* tet = first_; tet != last_; ++tet)
-            winding += winding_of(tet->corners, p, on_it);
+        for (const SweptTet& tet : tets_)
+            winding += tet.winding_at(p, on_it);
         return winding != 0 || on_it;
     }
-    /// Whether the triangle is one that the change has made, or faces one: such a triangle has the
-    /// node that took the others in, and two nodes of an old one.
-    bool makes(const InnerTriangle& t) const
+    /// Such a triangle has the node that took the others in, and two nodes of an old one.
+    bool faces_a_made_one(const InnerTriangle& t) const
     {
-        return t.has(moving_[1]) && std::any_of(first_, last_, [&](const Swept& tet) {
-                   return std::count_if(tet.nodes.begin(), tet.nodes.end(),
+        return t.has(moving_[1]) &&
+               std::any_of(tets_.begin(), tets_.end(), [&](const SweptTet& tet) {
+                   return std::count_if(tet.of->nodes.begin(), tet.of->nodes.end(),
                                         [&](int n) { return n != moving_[1] && t.has(n); }) >= 2;
                });
     }
     /// Whether it faces an old triangle and the fan went behind that one, where there is no void.
     bool moves_behind(const InnerTriangle& t) const
     {
-        return std::any_of(first_, last_, [&](const Swept& tet) {
-            const auto& [a, b, c, x] = tet.corners;
-            return same_corners(t.ids, tet.nodes) && !same_turn(t.ids, tet.nodes) &&
-                   growth::orient(a, b, c, x) < 0;
+        // Below nought: the place lies behind the old triangle.
+        return std::any_of(tets_.begin(), tets_.end(), [&](const SweptTet& tet) {
+            return tet.turn < 0 && same_corners(t.ids, tet.of->nodes) &&
+                   !same_turn(t.ids, tet.of->nodes);
         });
     }
 
-    const Swept *first_, *last_;
     std::array<int, 2> moving_;
+    std::vector<SweptTet> tets_;
+    std::vector<int> nodes_; ///< moving ones and those of old triangles, ascending
     FloatBox box_{};
 };
+
+/// Brings swept tets of one fan together, and calls visit(first, last) for each fan until one
+/// returns true; whether one did.
+template <class Visit>
+bool any_fan(const std::vector<Swept>& swept, const std::array<int, 2>& moving, const Visit& visit)
+{
+    const std::size_t count = swept.size();
+    std::vector<std::size_t> parent(count);
+    std::iota(parent.begin(), parent.end(), std::size_t(0));
+    const auto root_of = [&](std::size_t i) {
+        while (parent[i] != i)
+            i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    std::vector<std::pair<int, std::size_t>> uses;
+    for (std::size_t i = 0; i < count; ++i)
+        for (const int n : swept[i].nodes)
+            if (n != moving[0] && n != moving[1])
+                uses.emplace_back(n, i);
+    std::sort(uses.begin(), uses.end());
+    for (std::size_t i = 1; i < uses.size(); ++i)
+        if (uses[i].first == uses[i - 1].first) {
+            const std::size_t a = root_of(uses[i].second), b = root_of(uses[i - 1].second);
+            parent[std::max(a, b)] = std::min(a, b);
+        }
+    std::vector<std::pair<std::size_t, std::size_t>> order;
+    for (std::size_t i = 0; i < count; ++i)
+        order.emplace_back(root_of(i), i);
+    std::sort(order.begin(), order.end());
+    std::vector<Swept> sorted;
+    for (const auto& [root, i] : order)
+        sorted.push_back(swept[i]);
+    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+        while (end < count && order[end].first == order[begin].first)
+            ++end;
+        if (visit(sorted.data() + begin, sorted.data() + end))
+            return true;
+    }
+    return false;
+}
 
 } // namespace
 
@@ -246,34 +323,16 @@ void list_swept(const TaperState& s, const std::vector<int>& pieces, int n,
     }
 }
 
-bool passes_itself(const TaperState& s, std::vector<Swept>& swept, const std::array<int, 2>& moving)
+bool passes_itself(const TaperState& s, const std::vector<Swept>& swept,
+                   const std::vector<int>& pieces, const std::array<int, 2>& moving)
 {
-    const auto linked = [&](const Swept& a, const Swept& b) {
-        for (const int i : a.nodes)
-            for (const int j : b.nodes)
-                if (i == j && i != moving[0] && i != moving[1])
-                    return true;
-        return false;
-    };
-    const std::size_t count = swept.size();
-    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-        end = begin + 1;
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t j = end; j < count; ++j)
-                if (linked(swept[i], swept[j]))
-                    std::swap(swept[j], swept[end++]);
-        const SweptFan fan(swept.data() + begin, swept.data() + end, moving);
-        bool passes = false;
-        s.inner_tree.for_each_overlap(fan.box(), [&](int g) {
-            if (passes)
-                return;
-            const InnerTriangle other(s, s.levels, g);
-            passes = !other.gone() && fan.passes(other);
-        });
-        if (passes)
-            return true;
-    }
-    return false;
+    std::vector<int> changed;
+    for (const int piece : pieces)
+        changed.push_back(piece - first_inner_piece(s));
+    std::sort(changed.begin(), changed.end());
+    return any_fan(swept, moving, [&](const Swept* first, const Swept* last) {
+        return SweptFan(first, last, moving).passes(s, changed);
+    });
 }
 
 } // namespace vdb_shell::taper

@@ -29,8 +29,9 @@ struct Swept {
 void list_swept(const TaperState& s, const std::vector<int>& pieces, int n,
                 std::vector<Swept>& swept);
 /// Whether the inner surface has been taken past a part of itself: asked after the change, where
-/// no triangles touch. `moving` are the nodes that moved, were handed over or took others in.
-bool passes_itself(const TaperState& s, std::vector<Swept>& swept,
-                   const std::array<int, 2>& moving);
+/// no triangles touch. `pieces` are those that have changed, `moving` the node that moved or was
+/// taken in, and the one that it is part of now.
+bool passes_itself(const TaperState& s, const std::vector<Swept>& swept,
+                   const std::vector<int>& pieces, const std::array<int, 2>& moving);
 
 } // namespace vdb_shell::taper
