@@ -147,12 +147,20 @@ bool among(const std::vector<int>& sorted, int value)
     return std::binary_search(sorted.begin(), sorted.end(), value);
 }
 
+/// Whether one of the faces has the corners of the triangle.
+bool faces_one_of(const TaperState& s, const std::vector<int>& faces, const InnerTriangle& t)
+{
+    return std::any_of(faces.begin(), faces.end(), [&](int face) {
+        return face >= 0 && same_corners(t.ids, InnerTriangle(s, s.levels, face).ids);
+    });
+}
+
 /// The swept tets of one fan: those that hang together by nodes other than the moving ones.
 class SweptFan
 {
 public:
     SweptFan(const Swept* first, const Swept* last, const std::array<int, 2>& moving)
-        : moving_(moving), nodes_{moving[0], moving[1]}
+        : nodes_{moving[0], moving[1]}
     {
         for (const Swept* tet = first; tet != last; ++tet) {
             tets_.emplace_back(*tet);
@@ -183,16 +191,16 @@ public:
         sort_unique(others);
         return std::any_of(others.begin(), others.end(),
                            [&](int n) { return winding_at(s.at(n)); }) ||
-               std::any_of(on_fan.begin(), on_fan.end(),
-                           [&](int face) { return passes(InnerTriangle(s, s.levels, face)); });
+               std::any_of(on_fan.begin(), on_fan.end(), [&](int face) {
+                   const InnerTriangle t(s, s.levels, face);
+                   return !faces_one_of(s, changed, t) && passes(t);
+               });
     }
 
 private:
-    /// The same of a triangle that has not moved and has no node of its own.
+    /// The same of a triangle that has not moved, has no node of its own, and faces none that has.
     bool passes(const InnerTriangle& t) const
     {
-        if (faces_a_made_one(t))
-            return false;
         return moves_behind(t) ||
                winding_at(growth::rounded((t.corners[0] + t.corners[1] + t.corners[2]) / 3.0));
     }
@@ -206,15 +214,6 @@ private:
             winding += tet.winding_at(p, on_it);
         return winding != 0 || on_it;
     }
-    /// Such a triangle has the node that took the others in, and two nodes of an old one.
-    bool faces_a_made_one(const InnerTriangle& t) const
-    {
-        return t.has(moving_[1]) &&
-               std::any_of(tets_.begin(), tets_.end(), [&](const SweptTet& tet) {
-                   return std::count_if(tet.of->nodes.begin(), tet.of->nodes.end(),
-                                        [&](int n) { return n != moving_[1] && t.has(n); }) >= 2;
-               });
-    }
     /// Whether it faces an old triangle and the fan went behind that one, where there is no void.
     bool moves_behind(const InnerTriangle& t) const
     {
@@ -225,7 +224,6 @@ private:
         });
     }
 
-    std::array<int, 2> moving_;
     std::vector<SweptTet> tets_;
     std::vector<int> nodes_; ///< moving ones and those of old triangles, ascending
     FloatBox box_{};
