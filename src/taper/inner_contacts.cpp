@@ -151,7 +151,7 @@ bool among(const std::vector<int>& sorted, int value)
 bool faces_one_of(const TaperState& s, const std::vector<int>& faces, const InnerTriangle& t)
 {
     return std::any_of(faces.begin(), faces.end(), [&](int face) {
-        return face >= 0 && same_corners(t.ids, InnerTriangle(s, s.levels, face).ids);
+        return same_corners(t.ids, InnerTriangle(s, s.levels, face).ids);
     });
 }
 
@@ -324,9 +324,12 @@ void list_swept(const TaperState& s, const std::vector<int>& pieces, int n,
 bool passes_itself(const TaperState& s, const std::vector<Swept>& swept,
                    const std::vector<int>& pieces, const std::array<int, 2>& moving)
 {
+    // Pieces also change by their other corners; the triangles that moved have the moved node.
     std::vector<int> changed;
     for (const int piece : pieces)
-        changed.push_back(piece - first_inner_piece(s));
+        if (const int face = piece - first_inner_piece(s);
+            face >= 0 && InnerTriangle(s, s.levels, face).has(moving[1]))
+            changed.push_back(face);
     std::sort(changed.begin(), changed.end());
     return any_fan(swept, moving, [&](const Swept* first, const Swept* last) {
         return SweptFan(first, last, moving).passes(s, changed);
