@@ -4,6 +4,7 @@
 #include "write/point_grids.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <openvdb/points/AttributeArray.h>
 #include <openvdb/points/AttributeGroup.h>
 
