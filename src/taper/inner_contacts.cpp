@@ -11,6 +11,8 @@
 #include "growth/predicates.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -201,8 +203,32 @@ private:
     /// The same of a triangle that has not moved, has no node of its own, and faces none that has.
     bool passes(const InnerTriangle& t) const
     {
-        return moves_behind(t) ||
-               winding_at(growth::rounded((t.corners[0] + t.corners[1] + t.corners[2]) / 3.0));
+        for (const SweptTet& tet : tets_)
+            if (same_corners(t.ids, tet.of->nodes))
+                // It faces an old triangle. Behind that one there is no void to move into, and
+                // below nought means that the place lies behind.
+                return tet.turn < 0;
+        return winding_near_middle(t);
+    }
+    /// Whether it is swept over in its middle. That is no float32, so all floats around it are
+    /// asked: a doubt makes a change fail, never pass.
+    bool winding_near_middle(const InnerTriangle& t) const
+    {
+        const Vec3d middle = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
+        double size = 0;
+        for (int k = 0; k < 3; ++k)
+            size = std::max(size, std::abs(middle[k]));
+        const double rounding = size * double(std::numeric_limits<float>::epsilon());
+        if (winding_at(growth::rounded(middle)))
+            return true;
+        for (int k = 0; k < 3; ++k)
+            for (const double by : {-rounding, rounding}) {
+                Vec3d beside = middle;
+                beside[k] += by;
+                if (winding_at(growth::rounded(beside)))
+                    return true;
+            }
+        return false;
     }
     bool winding_at(const Vec3d& p) const
     {
@@ -214,16 +240,6 @@ private:
             winding += tet.winding_at(p, on_it);
         return winding != 0 || on_it;
     }
-    /// Whether it faces an old triangle and the fan went behind that one, where there is no void.
-    bool moves_behind(const InnerTriangle& t) const
-    {
-        // Below nought: the place lies behind the old triangle.
-        return std::any_of(tets_.begin(), tets_.end(), [&](const SweptTet& tet) {
-            return tet.turn < 0 && same_corners(t.ids, tet.of->nodes) &&
-                   !same_turn(t.ids, tet.of->nodes);
-        });
-    }
-
     std::vector<SweptTet> tets_;
     std::vector<int> nodes_; ///< moving ones and those of old triangles, ascending
     FloatBox box_{};
