@@ -20,6 +20,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <optional>
 #include <utility>
 
 namespace vdb_shell
@@ -142,12 +143,25 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     });
     build_and_refine(r, options, start, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
-    if (options.taper.wanted)
+    const auto certify = [&] {
+        clock.run("tets", [&] { r.tets = make_tets(r.stack); });
+        clock.run("certificate", [&] {
+            r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
+        });
+    };
+    std::optional<ShellStack> untapered;
+    if (options.taper.wanted) {
+        untapered = r.stack;
         clock.run("taper", [&] { taper_layers(r, options, thickness_grid, interrupter); });
-    clock.run("tets", [&] { r.tets = make_tets(r.stack); });
-    clock.run("certificate", [&] {
-        r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
-    });
+    }
+    certify();
+    // The tests of single changes are exact, but no proof for every degenerate case; the user gets
+    // a certified shell all the same.
+    if (untapered && !r.report.certificate->certified()) {
+        r.stack = std::move(*untapered);
+        r.report.taper->undone = true;
+        certify();
+    }
     // What is certified as a whole has no overlaps, so the search would only cost time. It serves
     // surfaces that cross themselves, and the raw method.
     if (!r.report.certificate->certified())

@@ -214,7 +214,8 @@ ordered_json taper_json(const TaperReport& taper)
             {"handed_over", taper.handed_over},
             {"turned_diagonals", taper.turned},
             {"inner_points", taper.inner_points},
-            {"prisms_by_tets", taper.prisms_by_tets}};
+            {"prisms_by_tets", taper.prisms_by_tets},
+            {"undone", taper.undone}};
 }
 
 ordered_json scale_json(const ScaleReport& scale)

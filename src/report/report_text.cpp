@@ -88,6 +88,8 @@ void taper_line(std::ostringstream& out, const ShellReport& report)
         text += std::to_string(tets) + (tets < 3 ? ", " : " tets: ");
     for (std::size_t tets = 1; tets <= 3; ++tets)
         text += number(report.taper->prisms_by_tets[tets], 12) + (tets < 3 ? ", " : "");
+    if (report.taper->undone)
+        text += "; UNDONE, for it was not certified";
     line(out, "taper", text);
 }
 

@@ -44,6 +44,8 @@ struct TaperReport {
     std::size_t inner_points = 0;                                   ///< points below the surface
     /// Prisms of 0 (three pins), 1, 2 and 3 tets, over all layers.
     std::array<std::size_t, 4> prisms_by_tets{};
+    /// Set by build_shell: the result was not certified, so the stack is the one before tapering.
+    bool undone = false;
 };
 
 /// Lets vertices share inner points, moves those points, and turns diagonals, as long as what the
