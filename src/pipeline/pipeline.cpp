@@ -20,8 +20,8 @@
 
 #include <openvdb/openvdb.h>
 
-#include <optional>
 #include <utility>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -59,11 +59,35 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
         r.report.cut = cut.report;
 }
 
-void taper_layers(ShellResult& r, const ShellOptions& options,
-                  const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter)
+/// Tapers when asked; makes the tets and certifies them. The tests of single changes are exact, but
+/// no proof for every degenerate case, so what is not certified is undone: the user gets a
+/// certified shell all the same.
+void taper_and_certify(ShellResult& r, const ShellOptions& options,
+                       const openvdb::FloatGrid* thickness_grid, StageClock& clock,
+                       Interrupter* interrupter)
 {
-    const std::vector<double> cap = largest_lengths(r.surface, options.line_step, thickness_grid);
-    r.report.taper = taper_shell(r.stack, cap, options.taper, interrupter);
+    const auto certify = [&] {
+        clock.run("tets", [&] { r.tets = make_tets(r.stack); });
+        clock.run("certificate", [&] {
+            r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
+        });
+    };
+    if (!options.taper.wanted) {
+        certify();
+        return;
+    }
+    ShellStack untapered = r.stack;
+    clock.run("taper", [&] {
+        const std::vector<double> cap =
+            largest_lengths(r.surface, options.line_step, thickness_grid);
+        r.report.taper = taper_shell(r.stack, cap, options.taper, interrupter);
+    });
+    certify();
+    if (r.report.certificate->certified())
+        return;
+    r.stack = std::move(untapered);
+    r.report.taper->undone = true;
+    certify();
 }
 
 /// Puts the surface to work with into r.surface: repaired if the options say so, checked and found
@@ -143,25 +167,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     });
     build_and_refine(r, options, start, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
-    const auto certify = [&] {
-        clock.run("tets", [&] { r.tets = make_tets(r.stack); });
-        clock.run("certificate", [&] {
-            r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
-        });
-    };
-    std::optional<ShellStack> untapered;
-    if (options.taper.wanted) {
-        untapered = r.stack;
-        clock.run("taper", [&] { taper_layers(r, options, thickness_grid, interrupter); });
-    }
-    certify();
-    // The tests of single changes are exact, but no proof for every degenerate case; the user gets
-    // a certified shell all the same.
-    if (untapered && !r.report.certificate->certified()) {
-        r.stack = std::move(*untapered);
-        r.report.taper->undone = true;
-        certify();
-    }
+    taper_and_certify(r, options, thickness_grid, clock, interrupter);
     // What is certified as a whole has no overlaps, so the search would only cost time. It serves
     // surfaces that cross themselves, and the raw method.
     if (!r.report.certificate->certified())
