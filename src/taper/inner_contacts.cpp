@@ -274,6 +274,7 @@ bool any_fan(const std::vector<Swept>& swept, const std::array<int, 2>& moving, 
         order.emplace_back(root_of(i), i);
     std::sort(order.begin(), order.end());
     std::vector<Swept> sorted;
+    sorted.reserve(count);
     for (const auto& [root, i] : order)
         sorted.push_back(swept[i]);
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
@@ -290,6 +291,7 @@ bool any_fan(const std::vector<Swept>& swept, const std::array<int, 2>& moving, 
 void build_trees(TaperState& s)
 {
     std::vector<FloatBox> outer;
+    outer.reserve(s.mesh->faces.size());
     for (int f = 0; f < s.faces(); ++f)
         outer.push_back(growth::float_box_of(InnerTriangle(s, 0, f).corners));
     s.outer_tree.build(std::move(outer));
@@ -299,6 +301,7 @@ void build_trees(TaperState& s)
 void rebuild_inner_tree(TaperState& s)
 {
     std::vector<FloatBox> boxes;
+    boxes.reserve(s.mesh->faces.size());
     for (int f = 0; f < s.faces(); ++f)
         boxes.push_back(growth::float_box_of(InnerTriangle(s, s.levels, f).corners));
     s.inner_tree.build(std::move(boxes));

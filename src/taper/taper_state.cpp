@@ -139,7 +139,7 @@ PrismNodes nodes_of(const TaperState& s, int piece)
 {
     const int layer = piece / s.faces();
     const openvdb::Vec3I& face = s.mesh->faces[std::size_t(piece % s.faces())];
-    const int* above = s.node.data() + layer * s.vertices();
+    const int* above = s.node.data() + s.place(layer, 0);
     const int* below = above + s.vertices();
     return {above[face[0]], above[face[1]], above[face[2]],
             below[face[0]], below[face[1]], below[face[2]]};
