@@ -12,10 +12,6 @@ namespace vdb_shell::growth
 void mend_directions(const TriangleMesh& mesh, Directions& directions,
                      const InitialSchedule& schedule = {});
 
-/// The unit direction whose smallest dot product with the unit normals given is largest; zero
-/// where there are none.
-openvdb::Vec3d most_visible(const std::vector<openvdb::Vec3d>& normals);
-
 /// Bilateral smoothing that never gives up the visibility of a star: weights die out across
 /// creases, so that the parts of a machined solid keep their own directions.
 void smooth_directions(const TriangleMesh& mesh, Directions& directions,

@@ -20,10 +20,10 @@ namespace vdb_shell::growth
 namespace
 {
 
-/// Shortens the pillars of violating prisms, each by its share, and doubles that; marks in `moved`
-/// what this moves. False when there is nothing to shorten.
-bool shorten_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vector<double>& cut,
-                    std::vector<std::uint8_t>& moved)
+/// Shortens the pillars of violating prisms, each by its share, which grows by the factor; marks in
+/// `moved` what this moves. False when there is nothing to shorten.
+bool shorten_around(GrowState& s, const std::vector<std::uint8_t>& bad, double cut_growth,
+                    std::vector<double>& cut, std::vector<std::uint8_t>& moved)
 {
     moved = free_corners_of(s, bad);
     bool any = false;
@@ -33,7 +33,7 @@ bool shorten_around(GrowState& s, const std::vector<std::uint8_t>& bad, std::vec
         any = true;
         const Vec3d arm = (1 - cut[v]) * (s.b[v] - s.a[v]);
         // Little at first, for mostly it is a neighbour's move that was missing.
-        cut[v] = std::min(2 * cut[v], s.schedule.mend.greatest_cut);
+        cut[v] = std::min(cut_growth * cut[v], s.schedule.mend.greatest_cut);
         s.b[v] = arm.length() < shortest_pillar(s) ? s.a[v] : rounded(s.a[v] + arm);
         s.pinned[v] = s.b[v] == s.a[v];
     }
@@ -78,11 +78,13 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
     for (int round = 0;; ++round) {
         progress.stop_if_interrupted(0);
         const bool first = round == 0;
-        if (round < schedule.moving_rounds)
+        const bool moving = round < schedule.moving_rounds;
+        if (moving)
             untangle(s, first ? schedule.first_sweeps : schedule.sweeps, look, moved);
         const std::vector<std::uint8_t> changed =
             first ? std::vector<std::uint8_t>(s.mesh->faces.size(), 1) : faces_around(s, moved);
-        if (!shorten_around(s, violating_faces(s, changed, first), cut, moved))
+        if (!shorten_around(s, violating_faces(s, changed, first),
+                            moving ? schedule.cut_growth : schedule.last_cut_growth, cut, moved))
             break;
         look_around(*s.mesh, moved, look);
     }

@@ -28,6 +28,8 @@ namespace growth
 namespace
 {
 
+using openvdb::Vec3d;
+
 /// Lines of a level: its own pseudo-normals, for the level set's gradient is known at the vertices
 /// of the mesh alone. Smoothing pays where the start is along the lines, not where they are only
 /// fallen back on.
@@ -60,11 +62,28 @@ std::vector<double> at_vertices(const std::vector<double>& all,
     return some;
 }
 
-/// Where no rounds on a surface of so many triangles follow, most of the time goes into mending,
-/// and smoothing saves some of that; else rounds win back more than it saves.
+/// Where a single round on the whole surface follows, most of the time goes into mending, and
+/// smoothing saves some of that; else rounds win back more than it saves.
 Bends bends_towards(std::size_t triangles, const GrowthSchedule& schedule)
 {
-    return affordable_rounds(triangles, schedule) > 0 ? Bends::kept : Bends::smoothed;
+    return affordable_rounds(triangles, schedule) > 1 ? Bends::kept : Bends::smoothed;
+}
+
+/// A pin on a coarse surface says little about a finer one. So that it holds nobody back there, its
+/// inner point goes to the middle of those beside it.
+void lift_pins(GrowState& s)
+{
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        if (!s.pinned[v])
+            continue;
+        Vec3d sum(0.0);
+        int count = 0;
+        for (const int u : neighbours(*s.mesh, v))
+            if (!s.pinned[u])
+                sum += s.b[u], ++count;
+        if (count > 0)
+            s.b[v] = sum / count;
+    }
 }
 
 /// What stays the same over all levels.
@@ -99,6 +118,7 @@ std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<dou
     GrowReport ignored;
     relax(s, lines.visibility, job.options, relax_coarse(s, from, job.triangles), job.progress,
           ignored);
+    lift_pins(s);
     return std::move(s.b);
 }
 
@@ -155,6 +175,10 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
         Coarsened coarse = coarsen(finest(), static_cast<std::size_t>(double(count) / ratio));
         // A surface that cannot be coarsened by half would cost about as much as the finer one.
         if (coarse.mesh.triangles.size() > count / 2)
+            break;
+        // Where the finer surface does not cross itself, it is the better start. Whether the mesh
+        // does nobody has asked; if so, no level can be free of crossings.
+        if (!coarse.embedded && !levels.empty() && levels.back().embedded)
             break;
         levels.push_back(std::move(coarse));
     }

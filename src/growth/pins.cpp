@@ -7,8 +7,8 @@
 #include "growth/pins.h"
 
 #include "core/parallel.h"
-#include "growth/line_directions.h"
 #include "growth/move_tests.h"
+#include "mesh/most_visible.h"
 
 #include <algorithm>
 

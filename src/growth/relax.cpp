@@ -170,7 +170,7 @@ private:
     bool ends_after(double gain, double active) const
     {
         const bool coarse_done =
-            weight_ < relax_.end_weight && gain <= relax_.end_gain_per_vertex * active;
+            weight_ < relax_.end_weight && gain <= relax_.end_gain_of_void * (1 - fill_);
         const bool too_dear = gain <= relax_.least_gain_per_vertex * active;
         const bool converged = weight_ <= schedule_.least_weight && gain < relax_.least_gain;
         return coarse_done || too_dear || converged;

@@ -70,9 +70,9 @@ bool asks_for_more(const GrowOptions& options)
 int affordable_rounds(std::size_t triangles, const GrowthSchedule& schedule)
 {
     // Falls with the square: a round on more triangles costs more, and it wins less, since the
-    // surfaces before have won most.
+    // surfaces before have won most. One is always worth it: it wins back what mending has lost.
     const double over = schedule.multilevel.one_round_triangles / double(triangles);
-    return static_cast<int>(std::min(double(schedule.barrier.most_rounds), over * over));
+    return static_cast<int>(std::clamp(over * over, 1.0, double(schedule.barrier.most_rounds)));
 }
 
 RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t triangles)
@@ -89,7 +89,7 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
                                                            : schedule.coarsest_weight_decrease;
     relax.least_gain = s.schedule.barrier.least_gain;
     relax.end_weight = schedule.end_weight;
-    relax.end_gain_per_vertex = schedule.end_gain_per_vertex;
+    relax.end_gain_of_void = schedule.end_gain_of_void;
     return relax;
 }
 

@@ -26,8 +26,8 @@ struct RelaxOptions {
     double weight_decrease = 0; ///< factor on it in each round
     double least_gain = 0;      ///< of a round at the smallest weight, for another to follow
     /// Ends once the weight is below end_weight and a round has won no more than
-    /// end_gain_per_vertex for each active vertex. A weight of 0 ends nothing.
-    double end_weight = 0, end_gain_per_vertex = 0;
+    /// end_gain_of_void, a share of what was still empty. A weight of 0 ends nothing.
+    double end_weight = 0, end_gain_of_void = 0;
     /// Ends with a round that wins no more than this for each active vertex, whatever the weight.
     /// Below 0 not even a loss ends it: early on a loss is the barrier undoing jams.
     double least_gain_per_vertex = -1;

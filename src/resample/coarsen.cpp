@@ -1,22 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes a closed surface and leaves one of fewer triangles, for which nothing bounds the distance
-// and which may cross itself. That is enough for growth, which takes such a surface only for a
-// start: what it makes of the hint is tested exactly on the surface itself. Idea and sources:
+// Takes a closed surface and leaves one of fewer triangles, for which nothing bounds the distance.
+// That is enough for growth, which takes such a surface only for a start: what it makes of the hint
+// is tested exactly on the surface itself. A surface that crosses itself is a bad start, for no
+// pillar near the crossing has any length, and where no direction sees a whole star there is no
+// pillar at all. The scan boot, collapsed to 1,200 triangles without a look at either, had 60 of
+// 600 vertices pinned, and its shell ended at .909 of the solid instead of .956. Idea and sources:
 // edge_collapse.cpp.
 
 #include "vdb_shell/resample/coarsen.h"
 
-#include "resample/edge_collapse.h"
+#include "core/stage_progress.h"
+#include "resample/collapse_embedded.h"
+
+#include <utility>
 
 namespace vdb_shell
 {
+namespace
+{
+
+// Each repeat costs as much as the first try.
+constexpr int kMostRepeats = 3;
+
+} // namespace
 
 Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles)
 {
     CollapseLimits limits;
     limits.fewest_triangles = triangles;
-    return collapse_edges(mesh, limits);
+    EmbeddedCollapse collapsed = collapse_embedded(mesh, limits, kMostRepeats, Blind::avoided,
+                                                   StageProgress(nullptr, "coarsen"));
+    collapsed.result.embedded = collapsed.embedded;
+    return std::move(collapsed.result);
 }
 
 } // namespace vdb_shell

@@ -69,17 +69,19 @@ struct PinSchedule {
 struct MultilevelSchedule {
     /// Triangles of the coarsest surface, about.
     double coarsest_triangles = 1200;
-    /// Ratio of triangles between one surface and the next at most.
-    double greatest_ratio = 9;
+    /// Ratio of triangles between one surface and the next at most. Mending loses less on each the
+    /// smaller the step is.
+    double greatest_ratio = 4;
     /// Rounds on a coarse surface end once the barrier weight (mean tets) is below the first and a
-    /// round has won no more than the second (share of the solid) for each active vertex.
-    double end_weight = 0.004, end_gain_per_vertex = 1e-5;
+    /// round has won no more than the second (share of what is still empty).
+    double end_weight = 0.004, end_gain_of_void = 0.2;
     /// Factor on the barrier weight in each round: on the coarsest surface, and on those after it.
     double coarsest_weight_decrease = 0.5, weight_decrease = 0.35;
     /// The first barrier weight after a prolongation, in mean tets over the share of the solid that
     /// is still empty. Twice this where the user asked for more than the default.
     double first_weight_over_void = 0.5;
-    /// Triangles up to which a surface gets one round after a prolongation; n times fewer get n^2.
+    /// A surface of so many triangles or more gets one round after a prolongation, one of n times
+    /// fewer n^2.
     double one_round_triangles = 50000;
     /// Cost of all rounds on one coarse surface, where a round on the whole surface costs 1.
     double cost_share = 1.0 / 3;
@@ -91,12 +93,13 @@ struct MultilevelSchedule {
 
 /// Prolongate: a prolonged shell made valid, first by moves, then by shortening.
 struct MendSchedule {
-    /// Shares of a failing pillar that shortening takes away: at first, doubled each time, and at
-    /// most.
-    double first_cut = 0.01, greatest_cut = 0.7;
+    /// Shares of a failing pillar that shortening takes away: at first, and at most.
+    double first_cut = 0.003, greatest_cut = 0.7;
+    /// Factor on the share from one round to the next: while there are moves, and afterwards.
+    double cut_growth = 1.6, last_cut_growth = 2;
     /// Count. Rounds that move inner points before they shorten; after these only shortening is
     /// left, which terminates.
-    int moving_rounds = 7;
+    int moving_rounds = 14;
     /// Counts. Sweeps of moves in the first such round and in the others.
     int first_sweeps = 12, sweeps = 5;
     /// Shares of the shortest inner edge at a vertex: the distance that a move seeks to each plane

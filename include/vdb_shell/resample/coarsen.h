@@ -14,14 +14,16 @@ namespace vdb_shell
 struct Coarsened {
     TriangleMesh mesh;
     std::vector<std::uint32_t> from; ///< for each point, which of the input's it is, ascending
+    bool embedded = false;           ///< by coarsen: no triangles touch but in what they share
 };
 
 /// Edge collapses of least quadric error (Garland, Heckbert 1997, "Surface simplification using
 /// quadric error metrics") onto one of the edge's own ends, in rounds of many that do not touch
 /// each other, until `triangles` are left or no collapse is left that turns no normal far and makes
-/// no sliver. Nothing bounds the distance. Closed and manifold like the input, but it may cross
-/// itself: for those who only want a hint, soon. Same result for any number of threads.
-/// Precondition: closed, manifold.
+/// no sliver. Nothing bounds the distance. Closed and manifold like the input. Where it would cross
+/// itself, or no direction would see all triangles of a vertex, the vertices around are kept and
+/// all is done anew, three times at most; `embedded` says whether that was enough. For those who
+/// only want a hint, soon. Same result for any number of threads. Precondition: closed, manifold.
 Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles);
 
 } // namespace vdb_shell

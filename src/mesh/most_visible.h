@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// The unit direction whose smallest dot product with the unit normals given is largest; zero
+/// where there are none.
+openvdb::Vec3d most_visible(const std::vector<openvdb::Vec3d>& normals);
+
+/// The smallest dot product of d and one of these; infinite where there are none.
+double smallest_dot(const std::vector<openvdb::Vec3d>& normals, const openvdb::Vec3d& d);
+
+/// By vertex, the inward unit normals of its triangles; those without area have none.
+std::vector<std::vector<openvdb::Vec3d>> star_normals(const TriangleMesh& mesh);
+
+/// Vertices that no direction serves, ascending: each sees a triangle from behind or edge on.
+std::vector<std::uint32_t> blind_vertices(const TriangleMesh& mesh);
+
+} // namespace vdb_shell
