@@ -72,6 +72,17 @@ TEST(Coarsen, MakesNoSliversOfWhatIsFlat)
     }
 }
 
+TEST(Coarsen, KeepsTheSidesOfAThinWallApart)
+{
+    // A hollow ball. Spheres of so few triangles are flat by more than the wall is thick.
+    const TriangleMesh fine =
+        test::joined(test::icosphere(1.0, 4), test::reversed(test::icosphere(0.985, 4)));
+    const Coarsened coarse = coarsen(fine, fine.triangles.size() / 16);
+    EXPECT_TRUE(coarse.embedded);
+    EXPECT_LT(coarse.mesh.triangles.size(), fine.triangles.size() / 2);
+    EXPECT_TRUE(check_mesh(coarse.mesh).embedded());
+}
+
 TEST(Coarsen, EndsWhereNothingIsLeftToCollapse)
 {
     const TriangleMesh tetrahedron = test::unit_tetrahedron();
