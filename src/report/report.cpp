@@ -218,6 +218,23 @@ ordered_json taper_json(const TaperReport& taper)
             {"undone", taper.undone}};
 }
 
+ordered_json cores_json(const CoreReport& cores)
+{
+    ordered_json files = ordered_json::array();
+    for (const CoreFigures& core : cores.cores)
+        files.push_back({{"name", core.name},
+                         {"triangles", core.triangles},
+                         {"parts", core.parts},
+                         {"volume", core.volume},
+                         {"ended", core.ended}});
+    return {{"distance", cores.distance},
+            {"least_distance", cores.least_distance},
+            {"volume", cores.volume},
+            {"ended", cores.ended},
+            {"kept_out_triangles", cores.kept_out_triangles},
+            {"files", files}};
+}
+
 ordered_json scale_json(const ScaleReport& scale)
 {
     return {{"shortened_pillars", scale.shortened}, {"pinned_pillars", scale.pinned}};
@@ -346,6 +363,7 @@ void add_shell(ordered_json& json, const ShellReport& report)
     json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
     json["taper"] = report.taper ? taper_json(*report.taper) : ordered_json();
+    json["cores"] = report.cores ? cores_json(*report.cores) : ordered_json();
     json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},

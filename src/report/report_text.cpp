@@ -232,6 +232,11 @@ void stage_lines(std::ostringstream& out, const ShellReport& report)
         growth_line(out, *report.grow);
     if (report.refine)
         refine_lines(out, *report.refine);
+    if (report.cores)
+        line(out, "cores",
+             number(report.cores->cores.size(), 12) + ", " + number(report.cores->ended, 12) +
+                 " pillars ended there; no tet nearer than " +
+                 number(report.cores->least_distance));
     concession_lines(out, report);
     layer_lines(out, report);
 }
