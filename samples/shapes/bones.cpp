@@ -86,7 +86,7 @@ void add_leg(double side, bool front, PolygonMesh& mesh)
     const Vec3d hip(0.25 * side, front ? 0.52 : 0.50, front ? 0.34 : -0.44);
     const Vec3d knee(0.33 * side, 0.30, z + (front ? -0.05 : 0.07));
     const Vec3d ankle(0.32 * side, 0.11, z);
-    constexpr double kGap = 0.04;
+    constexpr double kGap = 0.055;
     const Vec3d thigh = (knee - hip).unit(), shin = (ankle - knee).unit();
     add_bone({hip, knee - kGap * thigh, 0.07, 0.045, 0.3}, mesh);
     add_bone({knee + kGap * shin, ankle, 0.04, 0.035, 0.25}, mesh);
@@ -97,7 +97,7 @@ void add_leg(double side, bool front, PolygonMesh& mesh)
 PolygonMesh creature_bones()
 {
     PolygonMesh mesh;
-    add_bone({{0.05, 1.20, 0.76}, {0.09, 1.16, 0.92}, 0.15, 0.13, 0.0}, mesh); // skull
+    add_bone({{0.05, 1.20, 0.76}, {0.08, 1.22, 0.90}, 0.15, 0.1, 0.0}, mesh); // skull
     add_bone({{0.01, 0.97, 0.52}, {0.0, 0.78, 0.30}, 0.07, 0.07, 0.3}, mesh);  // neck
     add_bone({{0.0, 0.72, 0.14}, {0.0, 0.68, -0.18}, 0.09, 0.09, 0.3}, mesh);  // back
     add_bone({{0.0, 0.66, -0.38}, {0.0, 0.57, -0.62}, 0.09, 0.06, 0.2}, mesh); // rump

@@ -69,6 +69,8 @@ openvdb::FloatGrid::Ptr lowered(const openvdb::FloatGrid& field, double iso)
     openvdb::tools::foreach (grid->beginValueAll(),
                              [by](const auto& value) { value.setValue(*value - by); });
     openvdb::tools::changeBackground(grid->tree(), field.background() - by);
+    // Of any other class OpenVDB takes what is positive for the inside.
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
     return grid;
 }
 
