@@ -79,15 +79,19 @@ FloatBox box_around(const Corners& c, double margin)
     return box;
 }
 
-/// Between corners of one and the other surface: no less than the distance looked for.
+/// From the corners of one to the other surface: no less than the distance looked for.
 double bound_on_distance(const TriangleMesh& first, const TriangleMesh& second)
 {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    // A point of no triangle is none of the surface.
+    std::vector<double> distance(first.points.size(), kNone);
+    for (const openvdb::Vec3I& t : first.triangles)
+        for (int k = 0; k < 3; ++k)
+            distance[t[k]] = 0;
     const NearestOnMesh nearest(second);
-    std::vector<double> distance(first.triangles.size());
-    for_each_index(distance.size(), [&](std::size_t t) {
-        const Corners c = triangle_corners(first, t);
-        distance[t] = std::min({nearest.nearest(c[0]).distance, nearest.nearest(c[1]).distance,
-                                nearest.nearest(c[2]).distance});
+    for_each_index(distance.size(), [&](std::size_t v) {
+        if (distance[v] != kNone)
+            distance[v] = nearest.nearest(Vec3d(first.points[v])).distance;
     });
     return *std::min_element(distance.begin(), distance.end());
 }

@@ -36,7 +36,7 @@ using openvdb::Vec3s;
 /// Finer voxels than this along the longest side are not worth their number: with them the surface
 /// is farther out than it had to be by a five-hundredth of that side at most.
 constexpr double kMostVoxelsAlong = 500;
-constexpr double kVoxelsInDistance = 3;
+constexpr double kVoxelsInDistance = 2;
 /// The contour is moved out by what is missing, and that changes little else, so two rounds do.
 constexpr int kMostRounds = 8;
 
@@ -112,12 +112,13 @@ TriangleMesh without_unused_points(const TriangleMesh& mesh)
 TriangleMesh offset_surface(const TriangleMesh& mesh, double distance, Interrupter* interrupter)
 {
     const double voxel = voxel_for(mesh, distance);
-    // Every point of the mesh has a voxel within the half diagonal of one, so none gets lost.
-    double iso = std::max(distance, voxel);
+    ContourOptions contouring;
+    // Every point of the mesh has a voxel within the half diagonal of one, so none gets lost. The
+    // contour may be moved inward by its adaptivity.
+    double iso = std::max(distance + 1.2 * contouring.adaptivity * voxel, voxel);
     // Far enough out for the rounds that follow, and for the contour's own stencil.
     constexpr double kSpareVoxels = 6;
     const auto field = distances_to(mesh, voxel, iso + kSpareVoxels * voxel, interrupter);
-    ContourOptions contouring;
     // The surfaces on the inner side of the band, and those of voids where no shell gets to.
     contouring.outer_only = true;
     for (int round = 0; round < kMostRounds; ++round) {

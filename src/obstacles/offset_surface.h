@@ -9,7 +9,7 @@ namespace vdb_shell
 
 /// A closed, embedded surface around closed ones, oriented outward: no point of it, and so no point
 /// outside of it, is nearer to the mesh than `distance`, measured between triangles in doubles. It
-/// is one to two voxels farther out at most, a voxel being a third of the distance, or more where
+/// is a voxel farther out at most, or nearly so, a voxel being half the distance, or more where
 /// the mesh is large beside that. Same result for any number of threads.
 /// Throws InvalidOption for a distance of which float32 leaves nothing; GeometryError; Cancelled.
 /// Precondition: the mesh is closed, manifold, embedded and outward, and has no part inside
