@@ -15,6 +15,7 @@
 #include "mesh/components_json.h"
 #include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"
+#include "report/cores_report.h"
 #include "report/resample_report.h"
 
 #include <nlohmann/json.hpp>
@@ -216,23 +217,6 @@ ordered_json taper_json(const TaperReport& taper)
             {"inner_points", taper.inner_points},
             {"prisms_by_tets", taper.prisms_by_tets},
             {"undone", taper.undone}};
-}
-
-ordered_json cores_json(const CoreReport& cores)
-{
-    ordered_json files = ordered_json::array();
-    for (const CoreFigures& core : cores.cores)
-        files.push_back({{"name", core.name},
-                         {"triangles", core.triangles},
-                         {"parts", core.parts},
-                         {"volume", core.volume},
-                         {"ended", core.ended}});
-    return {{"distance", cores.distance},
-            {"least_distance", cores.least_distance},
-            {"volume", cores.volume},
-            {"ended", cores.ended},
-            {"kept_out_triangles", cores.kept_out_triangles},
-            {"files", files}};
 }
 
 ordered_json scale_json(const ScaleReport& scale)

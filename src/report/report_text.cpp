@@ -8,6 +8,7 @@
 
 #include "vdb_shell/report/report.h"
 
+#include "report/cores_report.h"
 #include "report/resample_report.h"
 #include "report/surface_text.h"
 #include "report/text_lines.h"
@@ -233,10 +234,7 @@ void stage_lines(std::ostringstream& out, const ShellReport& report)
     if (report.refine)
         refine_lines(out, *report.refine);
     if (report.cores)
-        line(out, "cores",
-             number(report.cores->cores.size(), 12) + ", " + number(report.cores->ended, 12) +
-                 " pillars ended there; no tet nearer than " +
-                 number(report.cores->least_distance));
+        cores_line(out, *report.cores);
     concession_lines(out, report);
     layer_lines(out, report);
 }
