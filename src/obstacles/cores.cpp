@@ -12,6 +12,8 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "mesh/components.h"
+#include "mesh/topology.h"
 #include "obstacles/offset_surface.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -34,6 +36,10 @@ using openvdb::Vec3s;
 std::string core_named(const CoreMesh& core)
 {
     return "core " + core.name;
+}
+std::string part_named(const CoreMesh& core, std::uint32_t first_triangle)
+{
+    return core_named(core) + ": the part of triangle " + std::to_string(first_triangle);
 }
 
 std::string shown(std::uint32_t index)
@@ -72,12 +78,10 @@ void require_sound(const CoreMesh& core)
     refuse_any(core, check.self_intersections, "it crosses or touches itself", "triangles");
     for (const Component& part : check.components) {
         if (part.nesting_depth > 0)
-            throw GeometryError(core_named(core) + ": the part of triangle " +
-                                std::to_string(part.first_triangle) +
+            throw GeometryError(part_named(core, part.first_triangle) +
                                 " lies inside another part; what is inside a core is of no use");
         if (part.inside_out)
-            throw GeometryError(core_named(core) + ": the part of triangle " +
-                                std::to_string(part.first_triangle) +
+            throw GeometryError(part_named(core, part.first_triangle) +
                                 " is inside out: its triangles face inward");
     }
 }
@@ -141,25 +145,52 @@ int winding_number(const TriangleMesh& mesh, const Vec3s& point)
     return winding;
 }
 
-/// As nothing touches, one point of a part stands for all of it.
+/// Of each part of a mesh the first triangle and a corner of it. As nothing touches, that point
+/// stands for all of the part.
+struct Part {
+    std::uint32_t first_triangle = 0;
+    Vec3s point;
+};
+std::vector<Part> parts_of(const TriangleMesh& mesh)
+{
+    const std::vector<std::uint32_t> component =
+        component_of_triangles(sorted_edge_uses(mesh.triangles), mesh.triangles.size());
+    std::vector<Part> parts;
+    // Components are numbered by their first triangles.
+    for (std::uint32_t t = 0; t < component.size(); ++t)
+        if (component[t] == parts.size())
+            parts.push_back({t, mesh.points[mesh.triangles[t][0]]});
+    return parts;
+}
+
 void require_inside(const TriangleMesh& surface, const std::string& name,
                     const std::vector<CoreMesh>& cores, std::size_t which)
 {
-    const TriangleMesh& core = cores[which].mesh;
-    for (const Component& part : check_mesh(core).components) {
-        const std::string where = core_named(cores[which]) + ": the part of triangle " +
-                                  std::to_string(part.first_triangle);
-        const Vec3s& point = core.points[core.triangles[part.first_triangle][0]];
-        if (winding_number(surface, point) <= 0)
-            throw GeometryError(where + " lies outside of " + name);
+    const CoreMesh& core = cores[which];
+    for (const Part& part : parts_of(core.mesh)) {
+        if (winding_number(surface, part.point) <= 0)
+            throw GeometryError(part_named(core, part.first_triangle) + " lies outside of " + name);
         for (std::size_t other = 0; other < cores.size(); ++other)
-            if (other != which && winding_number(cores[other].mesh, point) > 0)
-                throw GeometryError(where + " lies inside " + core_named(cores[other]));
+            if (other != which && winding_number(cores[other].mesh, part.point) > 0)
+                throw GeometryError(part_named(core, part.first_triangle) + " lies inside " +
+                                    core_named(cores[other]));
     }
+    // The wall of a cavity, whose shell would lie in the core.
+    for (const Part& part : parts_of(surface))
+        if (winding_number(core.mesh, part.point) > 0)
+            throw GeometryError(core_named(core) + ": a part of " + name +
+                                " lies inside it, that of triangle " +
+                                std::to_string(part.first_triangle));
 }
 
-/// The first triangle of the surface that the surface around the cores meets, named for the user,
-/// who knows nothing of the latter.
+/// A triangle of the surface is named, for the user knows nothing of what is around the cores.
+[[noreturn]] void refuse_distance(const std::string& name, double distance, std::uint32_t triangle)
+{
+    throw GeometryError(name + ": the surface comes nearer to a core than " +
+                        std::to_string(distance) + " (--core-distance), at triangle " +
+                        std::to_string(triangle));
+}
+
 void require_room(const TriangleMesh& surface, const std::string& name, const TriangleMesh& around,
                   double distance)
 {
@@ -168,25 +199,19 @@ void require_room(const TriangleMesh& surface, const std::string& name, const Tr
     add_part(both, around);
     const auto contacts = contacts_between(both);
     if (!contacts.empty())
-        throw GeometryError(name + ": the surface comes nearer to a core than " +
-                            std::to_string(distance) + " (--core-distance), at triangle " +
-                            std::to_string(contacts.front()[0]));
-    // A surface around the cores that is outside of what it touches nowhere holds that inside.
-    for (const Component& part : check_mesh(around).components)
-        if (winding_number(surface, around.points[around.triangles[part.first_triangle][0]]) <= 0)
-            throw GeometryError(name + ": all of the surface is nearer to a core than " +
-                                std::to_string(distance) + " (--core-distance)");
+        refuse_distance(name, distance, contacts.front()[0]);
+    for (const Part& part : parts_of(surface))
+        if (winding_number(around, part.point) > 0)
+            refuse_distance(name, distance, part.first_triangle);
 }
 
-/// As the surface around the cores touches none of them, one point of a part stands for all of it.
+/// Every part of the cores has to lie inside the surface around them, which touches none.
 void require_held(const std::vector<CoreMesh>& cores, const TriangleMesh& around)
 {
     for (const CoreMesh& core : cores)
-        for (const Component& part : check_mesh(core.mesh).components)
-            if (winding_number(around,
-                               core.mesh.points[core.mesh.triangles[part.first_triangle][0]]) <= 0)
-                throw GeometryError(core_named(core) + ": the part of triangle " +
-                                    std::to_string(part.first_triangle) +
+        for (const Part& part : parts_of(core.mesh))
+            if (winding_number(around, part.point) <= 0)
+                throw GeometryError(part_named(core, part.first_triangle) +
                                     " is too small for --core-distance");
 }
 

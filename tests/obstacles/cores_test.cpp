@@ -271,6 +271,23 @@ TEST(Cores, WhatIsNoCoreIsRefusedByName)
     EXPECT_THAT(refusal(skin, {{"none", {}}}), HasSubstr("core none: it has no triangles"));
 }
 
+TEST(Cores, ACavityMayStandBesideOneButNotInIt)
+{
+    const TriangleMesh hollow =
+        test::joined(test::icosphere(1, 3), test::reversed(test::icosphere(0.2, 2)));
+    expect_clear(build(hollow, {ball(0.2, Vec3d(0.6, 0, 0))}));
+    EXPECT_THAT(refusal(hollow, {ball(0.5)}),
+                HasSubstr("core ball: a part of skin lies inside it, that of triangle 1280"));
+    EXPECT_THAT(refusal(hollow, {ball(0.1)}), HasSubstr("lies outside of skin"));
+    CoreOptions options;
+    options.distance = 0.5; // around the core and the cavity beside it, without touching its wall
+    EXPECT_THAT(refusal(test::joined(test::icosphere(2, 3),
+                                     test::reversed(test::translated(test::icosphere(0.1, 2),
+                                                                     Vec3d(0.4, 0, 0)))),
+                        {ball(0.2)}, options),
+                HasSubstr("the surface comes nearer to a core than 0.5"));
+}
+
 TEST(Cores, ADistanceThatTheSurfaceDoesNotKeepIsRefused)
 {
     CoreOptions options;
@@ -280,7 +297,7 @@ TEST(Cores, ADistanceThatTheSurfaceDoesNotKeepIsRefused)
         AllOf(HasSubstr("the surface comes nearer to a core than 0.4"), HasSubstr("at triangle ")));
     options.distance = 3;
     EXPECT_THAT(refusal(test::icosphere(1, 3), {ball(0.2)}, options),
-                HasSubstr("all of the surface is nearer to a core than 3"));
+                HasSubstr("the surface comes nearer to a core than 3"));
     options.distance = -1;
     EXPECT_THROW(prepare_cores(test::icosphere(1, 3), "skin", {ball(0.2)}, options), InvalidOption);
 }
