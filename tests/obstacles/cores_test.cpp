@@ -181,7 +181,7 @@ TEST(Cores, TheDistanceIsKept)
 {
     const CoreMesh core = ball(0.3);
     const auto of_sphere = [](double radius) { return 4 * kPi / 3 * std::pow(radius, 3); };
-    for (const double distance : {0.01, 0.1, 0.3}) {
+    for (const double distance : {0.05, 0.1, 0.3}) {
         SCOPED_TRACE(distance);
         ShellOptions options = coarse_field();
         options.cores.distance = distance;
