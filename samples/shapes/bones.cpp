@@ -97,7 +97,7 @@ void add_leg(double side, bool front, PolygonMesh& mesh)
 PolygonMesh creature_bones()
 {
     PolygonMesh mesh;
-    add_bone({{0.05, 1.20, 0.76}, {0.08, 1.22, 0.90}, 0.15, 0.1, 0.0}, mesh); // skull
+    add_bone({{0.05, 1.20, 0.76}, {0.08, 1.22, 0.90}, 0.15, 0.1, 0.0}, mesh);  // skull
     add_bone({{0.01, 0.97, 0.52}, {0.0, 0.78, 0.30}, 0.07, 0.07, 0.3}, mesh);  // neck
     add_bone({{0.0, 0.72, 0.14}, {0.0, 0.68, -0.18}, 0.09, 0.09, 0.3}, mesh);  // back
     add_bone({{0.0, 0.66, -0.38}, {0.0, 0.57, -0.62}, 0.09, 0.06, 0.2}, mesh); // rump

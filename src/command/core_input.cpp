@@ -6,6 +6,7 @@
 
 #include "command/core_input.h"
 
+#include "vdb_shell/core/error.h"
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/given_level_set.h"
 
@@ -60,6 +61,10 @@ std::vector<CoreMesh> read_cores(const std::vector<std::string>& files, const Re
     for (const std::string& file : files) {
         const GridName parts = split_grid_name(file);
         const std::filesystem::path path(parts.file);
+        // A misspelt word looks like a file.
+        if (!std::filesystem::exists(path))
+            throw ReadError(file +
+                            ": there is no such file; --core takes free, stitched or a file");
         CoreMesh core{path.filename().string(), {}};
         Placement own;
         if (path.extension() == ".vdb") {

@@ -46,7 +46,7 @@ TEST_F(Cores, WordsAndFilesShareTheFlag)
     EXPECT_EQ(two.at("cores").at("files").size(), 2U);
     EXPECT_EQ(two.at("cores").at("files")[1].at("name"), "b.stl");
     expect_refusal("build " + sphere + kCoarse + " -q -o " + file("s.vdb") + " --core loose",
-                   ExitCode::read_error, {"loose"});
+                   ExitCode::read_error, {"loose", "--core takes free, stitched or a file"});
 }
 
 TEST_F(Cores, AFileNamedLikeAWordIsGivenWithItsFolder)

@@ -105,8 +105,9 @@ TEST(CoreFeet, EndAtTheCoreThatTheyReach)
 {
     const ShellResult result = capsule_with_bones();
     for (std::size_t v = 0; v < result.core_feet.size(); ++v)
-        if (const CoreFoot& foot = result.core_feet[v]; foot.core >= 0)
+        if (const CoreFoot& foot = result.core_feet[v]; foot.core >= 0) {
             EXPECT_EQ(foot.core, result.stack.surface(1)[v][2] > 0 ? 0 : 1) << v;
+        }
 }
 
 TEST(CoreFeet, AllOfAnEvenShellEndsThere)
