@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes the sample meshes: vdb_shell_make_meshes OUTDIR
 
+#include "shapes/bones.h"
 #include "shapes/creature.h"
 #include "shapes/simple_shapes.h"
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv)
         write("torus", samples::torus(48, 24));
         write("bracket", samples::bracket(32, 8));
         write("creature", samples::join_into_quads(samples::creature()));
+        write("creature_bones", samples::creature_bones());
     } catch (const std::exception& error) {
         std::cerr << "vdb_shell_make_meshes: " << error.what() << '\n';
         return 1;

@@ -13,6 +13,7 @@
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/write/shell_points.h"
 
+#include "core_columns.h"
 #include "shell_names.h"
 
 #include <nlohmann/json.hpp>
@@ -375,6 +376,7 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     const std::vector<Part> parts = parts_of(file);
     HoudiniGeometry geometry;
     add_point_attributes(file.stack, points, geometry);
+    add_core_attributes(points, file.core_feet, geometry);
     add_point_groups(file.stack, points, geometry);
     add_primitives(file, points, parts, geometry);
     add_primitive_attributes(file, parts, geometry);

@@ -10,6 +10,7 @@
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/write/shell_points.h"
 
+#include "core_columns.h"
 #include "shell_columns.h"
 
 #include <cmath>
@@ -279,6 +280,7 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     if (found != detail.text(kChecksum))
         refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
                          detail.text(kChecksum));
+    file.core_feet = read_core_attributes(geometry, points, file.stack, name);
     return file;
 }
 

@@ -13,6 +13,9 @@
 #include "vdb_shell/layers/cut_layers.h"
 #include "vdb_shell/layers/scale_thickness.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/obstacles/core_feet.h"
+#include "vdb_shell/obstacles/cores.h"
+#include "vdb_shell/obstacles/join_cores.h"
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/report/report.h"
@@ -28,6 +31,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -47,6 +51,7 @@ struct ShellOptions {
     DecimateOptions decimate;
     RemeshOptions remesh;
     SubdivideOptions subdivide;
+    CoreOptions cores; ///< for runs that are given cores
     LevelSetOptions level_set;
     /// Sparse: the level set is a narrow band, and deeper voxels are computed where lines read them
     /// (line_step_sparse). Dense all the same, with the reason in report.field.origin, for lines
@@ -72,6 +77,9 @@ OptionSections describe(ShellOptions& options);
 /// whatever the surface. `thickness_grid`: there will be one.
 void require_sensible(const ShellOptions& options, bool thickness_grid = false);
 
+/// Throws InvalidOption for options with which there can be no cores.
+void require_cores_possible(const ShellOptions& options);
+
 /// The lines of one side, towards which they grow: Directions::inward of an outward line is the
 /// surface's outward direction.
 struct SideLines {
@@ -94,6 +102,11 @@ struct ShellResult {
     std::optional<SideLines> outside; ///< the lines outward, where the shell lies on both sides
     ShellStack stack;                 ///< one layer a side unless more were asked for
     TetMesh tets;
+    std::optional<Cores> cores;      ///< where some were given
+    std::vector<CoreFoot> core_feet; ///< likewise, by vertex of the surface
+    /// Up to the certificate surface, directions, lengths and stack have the cores too, as vertices
+    /// that are pinned; in the result they have not, and this is empty.
+    VertexRange core_vertices;
     ShellReport report;
 };
 
@@ -102,12 +115,15 @@ struct ShellResult {
 /// prisms straight from the lengths), scale, layers, taper when asked, tets, certificate, overlaps
 /// (where it does not certify the whole), figures. For an outward shell the stages from directions
 /// to scale run on the reversed surface (shell/sides.h), for both sides once for each. `name` is
-/// what messages and the report call the mesh. `thickness_grid` as in line_step. Throws what the
-/// stages throw. Same result for any number of threads (costs in the report aside).
+/// what messages and the report call the mesh. `thickness_grid` as in line_step. `cores` are closed
+/// surfaces inside, which the shell ends on or before; those of a run with cores are a grown shell
+/// inside an embedded surface (else InvalidOption). Throws what the stages throw. Same result for
+/// any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,
-                        Interrupter* interrupter = nullptr);
+                        Interrupter* interrupter = nullptr,
+                        const std::vector<CoreMesh>& cores = {});
 
 /// The same for the zero surface of a level set: contour first, then as above; lines step through
 /// `field` itself when it is fit for that (why_not_steppable), else through a field made anew of
@@ -117,7 +133,8 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
 ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const ShellOptions& options,
                                        const std::string& name = "level set",
                                        const openvdb::FloatGrid* thickness_grid = nullptr,
-                                       Interrupter* interrupter = nullptr);
+                                       Interrupter* interrupter = nullptr,
+                                       const std::vector<CoreMesh>& cores = {});
 
 /// The options as JSON, as they are stored in a shell's .vdb.
 std::string options_json(const ShellOptions& options);

@@ -11,6 +11,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/section.h"
 
+#include "command/core_input.h"
 #include "command/exit_code.h"
 #include "command/signals.h"
 #include "command/surface_input.h"
@@ -28,22 +29,6 @@ namespace vdb_shell::command
 {
 namespace
 {
-
-/// FILE.vdb or FILE.vdb:GRID.
-struct GridName {
-    std::string file, grid;
-};
-
-GridName split_grid_name(const std::string& name)
-{
-    // The last one counts, as a folder may have such a name too. A colon alone would not do: names
-    // of files may contain it.
-    const std::size_t colon = name.rfind(".vdb:");
-    if (colon == std::string::npos)
-        return {name, ""};
-    constexpr std::size_t kExtension = 4; // ".vdb"
-    return {name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1)};
-}
 
 FloatGridPtr read_thickness_grid(const std::string& name)
 {
@@ -71,7 +56,8 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
         FloatGridPtr field;
         StageClock(read_cost).run("read",
                                   [&] { field = read_level_set(source.file, source.grid); });
-        result = build_shell_from_level_set(*field, options, name, thickness.get(), interrupter);
+        result = build_shell_from_level_set(*field, options, name, thickness.get(), interrupter,
+                                            read_cores(arguments.cores, arguments.read, {}));
     } else {
         ReadResult read;
         StageClock(read_cost).run("read",
@@ -80,7 +66,7 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
         const Placement& placement = read.report.placement;
         options = in_unit(options, placement.unit);
         result = build_shell(read.mesh, options, name, in_place(thickness, placement).get(),
-                             interrupter);
+                             interrupter, read_cores(arguments.cores, arguments.read, placement));
         result.report.read = read.report;
     }
     // Reading came before the pipeline and its clock; it is put in front so that the report has all
@@ -99,6 +85,7 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     ShellFile file;
     file.stack = std::move(result.stack);
     file.tets = std::move(result.tets);
+    file.core_feet = std::move(result.core_feet);
     if (result.report.read)
         file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);
@@ -124,7 +111,14 @@ void require_sensible(const BuildArguments& arguments)
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
-    require_possible(arguments.outputs, {split_grid_name(arguments.mesh.string()).file});
+    std::vector<std::filesystem::path> inputs{split_grid_name(arguments.mesh.string()).file};
+    for (const std::string& core : arguments.cores)
+        inputs.emplace_back(split_grid_name(core).file);
+    require_possible(arguments.outputs, inputs);
+    if (!arguments.cores.empty())
+        require_cores_possible(arguments.shell);
+    else if (arguments.shell.cores.distance > 0)
+        throw InvalidOption("--core-distance needs --core FILE");
     // The report is written last, because it is the only output that can tell how long the others
     // took.
     if (!arguments.report.empty())
@@ -158,8 +152,12 @@ OptionSections describe(BuildArguments& a)
                                   "Float grid of largest lengths: FILE.vdb or FILE.vdb:GRID");
     sections.push_back({"", in_group("Output", figures)});
     sections.push_back({"read", describe(a.read)});
-    for (OptionSection& section : describe(a.shell))
+    for (OptionSection& section : describe(a.shell)) {
+        for (Option& o : section.options)
+            if (o.flag == "--core")
+                take_core_files(o, a.cores);
         sections.push_back(std::move(section));
+    }
     sections.push_back({"", in_group("Lines", {painted})});
     return sections;
 }

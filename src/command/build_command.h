@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace vdb_shell::command
 {
@@ -20,7 +21,8 @@ struct BuildArguments {
     std::filesystem::path mesh;   ///< or a level set: FILE.vdb or FILE.vdb:GRID
     ReadOptions read;
     ShellOptions shell;
-    std::string thickness_grid; ///< FILE.vdb or FILE.vdb:GRID
+    std::string thickness_grid;     ///< FILE.vdb or FILE.vdb:GRID
+    std::vector<std::string> cores; ///< files of --core
     Outputs outputs;
     std::filesystem::path report;
     std::filesystem::path remesh_map;

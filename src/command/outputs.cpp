@@ -135,7 +135,8 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             houdini::write_shell_geometry(path, file);
             break;
         case Kind::tets:
-            write_tets(path, file.tets, certified, file.placement);
+            write_tets(path, file.tets, certified, file.placement,
+                       feet_of_tet_points(file.stack, file.tets, file.core_feet));
             break;
         case Kind::surface:
             write_mesh(path, grown_surface(file.stack), file.placement);

@@ -17,6 +17,17 @@
 
 namespace vdb_shell::command
 {
+GridName split_grid_name(const std::string& name)
+{
+    // The last one counts, as a folder may have such a name too. A colon alone would not do: names
+    // of files may contain it.
+    const std::size_t colon = name.rfind(".vdb:");
+    if (colon == std::string::npos)
+        return {name, ""};
+    constexpr std::size_t kExtension = 4; // ".vdb"
+    return {name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1)};
+}
+
 ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& options)
 {
     return houdini::has_geometry_extension(path) ? houdini::read_polygon_mesh(path, options)

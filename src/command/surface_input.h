@@ -7,12 +7,20 @@
 #include "vdb_shell/options/section.h"
 
 #include <filesystem>
+#include <string>
 
 namespace vdb_shell::command
 {
 
 /// Extensions that read_surface knows, for the help.
 inline constexpr const char* kSurfaceExtensions = ".obj .ply .off .stl .geo .bgeo .bgeo.sc";
+
+/// FILE.vdb or FILE.vdb:GRID.
+struct GridName {
+    std::string file, grid;
+};
+
+GridName split_grid_name(const std::string& name);
 
 /// The triangles of any file that can have some, Houdini's included.
 ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& options);

@@ -147,6 +147,8 @@ void measure_result(ShellResult& result)
                      measure_sides(result);
                  });
     report.solid_volume = signed_volume(result.surface.points, result.surface.triangles);
+    if (report.cores)
+        report.solid_volume -= report.cores->volume;
     report.shell_volume = tet_volume(result.tets);
     report.outside_volume = volume_outside(stack, result.tets, report.shell_volume);
     report.fill = (report.shell_volume - report.outside_volume) / report.solid_volume;

@@ -12,6 +12,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/repair/split_fans.h"
 
+#include "pipeline/core_stages.h"
 #include "pipeline/figures.h"
 #include "pipeline/resample.h"
 #include "pipeline/sides.h"
@@ -80,10 +81,10 @@ void taper_and_certify(ShellResult& r, const ShellOptions& options,
     clock.run("taper", [&] {
         const std::vector<double> cap =
             largest_lengths(r.surface, options.line_step, thickness_grid);
-        r.report.taper = taper_shell(r.stack, cap, options.taper, interrupter);
+        r.report.taper = taper_shell(r.stack, cap, options.taper, interrupter, r.core_vertices);
     });
     certify();
-    if (r.report.certificate->certified())
+    if (r.report.certificate->certified() && !shares_core_point(r.stack, r.core_vertices))
         return;
     r.stack = std::move(untapered);
     r.report.taper->undone = true;
@@ -130,7 +131,9 @@ void make_field(ShellResult& r, const ShellOptions& options, const GrowStart& st
     const std::string dense_for = why_not_sparse(options, r, start, thickness_grid);
     origin = dense_for.empty() ? "a narrow band made of the surface, deeper where lines end"
                                : "made of the surface, dense for " + dense_for;
-    if (given) {
+    if (given && r.cores) {
+        origin += ", for the given one has no cores";
+    } else if (given) {
         // A given band outside is as wide as its maker needed, which need not be as deep as lines
         // outward go, and beyond it no distance is known.
         const std::string hindrance = options.side == Side::inward
@@ -153,10 +156,11 @@ void make_field(ShellResult& r, const ShellOptions& options, const GrowStart& st
 /// All stages from the check on. `given` may be null.
 void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
                         const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
-                        Interrupter* interrupter)
+                        const std::vector<CoreMesh>& cores, Interrupter* interrupter)
 {
     StageClock clock(r.report.stages);
     prepare_surface(r, mesh, options, clock, interrupter);
+    join_with_cores(r, cores, options, clock, interrupter);
     GrowStart start;
     clock.run("coarsen", [&] { start = start_of_growth(options, r.surface); });
     clock.run("level set",
@@ -168,6 +172,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     build_and_refine(r, options, start, thickness_grid, clock, interrupter);
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
     taper_and_certify(r, options, thickness_grid, clock, interrupter);
+    part_from_cores(r, options, clock);
     // What is certified as a whole has no overlaps, so the search would only cost time. It serves
     // surfaces that cross themselves, and the raw method.
     if (!r.report.certificate->certified())
@@ -177,7 +182,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
         // Layers outside are held against what the outermost surface encloses, since the input's
         // own volume holds none of them.
         const TriangleMesh solid = options.side == Side::inward
-                                       ? r.surface
+                                       ? solid_to_fill(r)
                                        : TriangleMesh{r.stack.surface(0), r.stack.triangles()};
         r.report.coverage = estimate_coverage(solid, r.tets, options.coverage, interrupter);
     });
@@ -187,13 +192,15 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
 
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name, const openvdb::FloatGrid* thickness_grid,
-                        Interrupter* interrupter)
+                        Interrupter* interrupter, const std::vector<CoreMesh>& cores)
 {
     require_sensible(options, thickness_grid != nullptr);
+    if (!cores.empty())
+        require_cores_possible(options);
     ShellResult r;
     r.report.source = name;
     if (!options.wrap.wanted) {
-        build_from_surface(r, mesh, options, nullptr, thickness_grid, interrupter);
+        build_from_surface(r, mesh, options, nullptr, thickness_grid, cores, interrupter);
         return r;
     }
     WrapResult wrap;
@@ -201,16 +208,18 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
         wrap = wrap_mesh(mesh, options.wrap, interrupter);
     });
     r.report.wrap = wrap.report;
-    build_from_surface(r, wrap.mesh, options, nullptr, thickness_grid, interrupter);
+    build_from_surface(r, wrap.mesh, options, nullptr, thickness_grid, cores, interrupter);
     return r;
 }
 
 ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const ShellOptions& options,
                                        const std::string& name,
                                        const openvdb::FloatGrid* thickness_grid,
-                                       Interrupter* interrupter)
+                                       Interrupter* interrupter, const std::vector<CoreMesh>& cores)
 {
     require_sensible(options, thickness_grid != nullptr);
+    if (!cores.empty())
+        require_cores_possible(options);
     if (options.wrap.wanted)
         throw InvalidOption(name + ": a wrap is for triangles; the surface of a level set is "
                                    "closed, manifold and embedded as it is");
@@ -222,7 +231,7 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
         r.report.contour.emplace();
         surface = contour(field, options.contour, &*r.report.contour, interrupter);
     });
-    build_from_surface(r, surface, options, &field, thickness_grid, interrupter);
+    build_from_surface(r, surface, options, &field, thickness_grid, cores, interrupter);
     return r;
 }
 

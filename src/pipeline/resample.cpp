@@ -82,7 +82,11 @@ GrowStart start_on(const RefinedMesh& refined, const PrismShell& shell)
 bool cut_triangles(ShellResult& result, const ShellOptions& options, RefineReport& report,
                    GrowStart& start, Interrupter* interrupter)
 {
-    const std::vector<double> gain = refinement_gain(inward_layer(result), options.refine.by);
+    std::vector<double> gain = refinement_gain(inward_layer(result), options.refine.by);
+    // Cores are no part of the surface, and gain nothing.
+    for (std::size_t t = 0; t < gain.size(); ++t)
+        if (result.core_vertices.holds(result.surface.triangles[t][0]))
+            gain[t] = 0;
     RefinedMesh refined =
         refine_triangles(result.surface, triangles_to_cut(gain, options.refine.share),
                          most_triangles(options), interrupter);

@@ -62,6 +62,7 @@ OptionSections describe(ShellOptions& o)
             {"decimate", describe(o.decimate)},
             {"remesh", describe(o.remesh)},
             {"subdivide", describe(o.subdivide)},
+            {"cores", describe(o.cores)},
             {"level_set", describe(o.level_set)},
             {"", in_group("Level set", {option("field", o.field, "--field",
                                                "Deep voxels only where lines end, or all of them; "
@@ -102,6 +103,19 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
         options.limits.limit == Limit::none && !options.line_step.thickness && !thickness_grid)
         throw InvalidOption("the stop test is none, there is no limit and no thickness: nothing "
                             "would end the lines");
+}
+
+void require_cores_possible(const ShellOptions& options)
+{
+    const char* hindrance = nullptr;
+    if (options.side != Side::inward)
+        hindrance = "a shell outside the surface (--side)";
+    else if (options.grow.method == Method::raw)
+        hindrance = "the raw method, which looks at no obstacle (--method)";
+    else if (options.check.allow_self_intersections)
+        hindrance = "a surface that may cross itself (--allow-self-intersections)";
+    if (hindrance)
+        throw InvalidOption(std::string("cores: --core FILE is not for ") + hindrance);
 }
 
 std::string options_json(const ShellOptions& options)

@@ -74,6 +74,7 @@ struct SideJob {
     std::string prefix; ///< of the stages' names
     Interrupter* interrupter;
     const GrowStart& start;
+    VertexRange cores{}; ///< vertices that stay pinned
 };
 
 /// What the stages of one side make.
@@ -96,13 +97,21 @@ void make_raw_shell(const SideJob& job, SideResult& side)
     side.stack = one_layer(std::move(shell), std::move(split));
 }
 
+/// The user's bounds on the pillars; those of cores have no length.
+std::vector<double> caps_of(const SideJob& job)
+{
+    std::vector<double> cap =
+        largest_lengths(job.surface, job.options.line_step, job.thickness_grid);
+    std::fill_n(cap.begin() + std::ptrdiff_t(job.cores.first), job.cores.count, 0.0);
+    return cap;
+}
+
 void grow_and_scale(const SideJob& job, SideResult& side)
 {
     const ShellOptions& options = job.options;
     GrowResult grown =
         grow_shell_from(job.start, job.surface, side.lines.directions, side.lines.lengths,
-                        largest_lengths(job.surface, options.line_step, job.thickness_grid),
-                        options.grow, options.split, job.interrupter);
+                        caps_of(job), options.grow, options.split, job.interrupter);
     side.grow = grown.report;
     if (options.scale.factor < 1.0)
         side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
@@ -238,7 +247,7 @@ void build_sides(ShellResult& result, const ShellOptions& options,
         options.side == Side::outward
             ? build_outside(result, options, thickness_grid, clock, interrupter)
             : build_side({result.surface, *result.level_set, result.report.field.sparse, options,
-                          thickness_grid, clock, "", interrupter, start});
+                          thickness_grid, clock, "", interrupter, start, result.core_vertices});
     result.directions = std::move(main.lines.directions);
     result.lengths = std::move(main.lines.lengths);
     // For both sides the main report is that of the side inside, and the other one stands apart.

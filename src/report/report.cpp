@@ -15,6 +15,7 @@
 #include "mesh/components_json.h"
 #include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"
+#include "report/cores_report.h"
 #include "report/resample_report.h"
 
 #include <nlohmann/json.hpp>
@@ -346,6 +347,7 @@ void add_shell(ordered_json& json, const ShellReport& report)
     json["outside"] = report.outside ? outside_json(*report.outside) : ordered_json();
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
     json["taper"] = report.taper ? taper_json(*report.taper) : ordered_json();
+    json["cores"] = report.cores ? cores_json(*report.cores) : ordered_json();
     json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},

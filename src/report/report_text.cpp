@@ -8,6 +8,7 @@
 
 #include "vdb_shell/report/report.h"
 
+#include "report/cores_report.h"
 #include "report/resample_report.h"
 #include "report/surface_text.h"
 #include "report/text_lines.h"
@@ -232,6 +233,8 @@ void stage_lines(std::ostringstream& out, const ShellReport& report)
         growth_line(out, *report.grow);
     if (report.refine)
         refine_lines(out, *report.refine);
+    if (report.cores)
+        cores_line(out, *report.cores);
     concession_lines(out, report);
     layer_lines(out, report);
 }

@@ -67,7 +67,8 @@ void add_pairs_across(const TaperState& s, double share, std::vector<Pair>& pair
         box.add(Vec3s(s.at(n) + Vec3d(reach)));
         s.inner_tree.for_each_overlap(box, [&](int face) {
             for (int i = 0; i < 3; ++i)
-                if (const int m = s.corner(s.levels, face, i); distance(s, n, m) <= reach)
+                if (const int m = s.corner(s.levels, face, i);
+                    !s.obstacle(m) && distance(s, n, m) <= reach)
                     add_pair(s, n, m, pairs);
         });
     }

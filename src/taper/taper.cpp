@@ -96,13 +96,15 @@ OptionList describe(TaperOptions& o)
 }
 
 TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
-                        const TaperOptions& options, Interrupter* interrupter)
+                        const TaperOptions& options, Interrupter* interrupter,
+                        const VertexRange& obstacles)
 {
     require_in_range(options, "taper");
     assert(stack.skin == 0 && cap.size() == stack.surface(0).size());
     const StageProgress progress(interrupter, "taper");
     const growth::Connectivity mesh = growth::connect(stack.surface(0).size(), stack.triangles());
     TaperState s = make_taper_state(mesh, stack, cap, weights_of(stack, options));
+    s.obstacles = obstacles;
     MergeOptions merge;
     merge.across = options.core == CoreSurface::stitched ? merge.across : 0;
     // With one layer a point that joined the surface would be a pin, and thickness lost.

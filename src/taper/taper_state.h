@@ -7,6 +7,7 @@
 #include "growth/connectivity.h"
 #include "growth/prism.h"
 #include "taper/tet_shape.h"
+#include "vdb_shell/obstacles/join_cores.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <array>
@@ -58,6 +59,8 @@ struct TaperState {
     std::vector<std::array<int, 3>> edges_of_face; ///< from local corner i to the next
     std::vector<std::array<int, 2>> faces_of_edge;
 
+    VertexRange obstacles; ///< among the fixed nodes: nothing becomes one with them
+
     CostWeights weights;
     std::vector<PieceCost> cost; ///< by piece, of how it is now
 
@@ -76,6 +79,7 @@ struct TaperState {
     }
     const Vec3d& at(int n) const { return point[std::size_t(n)]; }
     bool fixed(int n) const { return n < vertices(); }
+    bool obstacle(int n) const { return obstacles.holds(std::uint32_t(n)); }
     bool used(int n) const { return !places[std::size_t(n)].empty(); }
     bool on_inner_surface(int n) const
     {

@@ -11,6 +11,7 @@
 #include "write/point_grids.h"
 
 #include "core/parallel.h"
+#include "write/core_feet_grid.h"
 #include "write/point_grid_builder.h"
 
 #include <algorithm>
@@ -79,7 +80,8 @@ void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const Shel
                 }));
 }
 
-PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& points)
+PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& points,
+                               const std::vector<CoreFoot>& feet)
 {
     PointGridBuilder builder(kPointsGrid, points.position);
     const std::size_t count = points.position.size(), last = stack.layers.size();
@@ -93,6 +95,7 @@ PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& point
     add_stop_reasons(builder, stack, points);
     builder.add("pinned", integers(count, is_pinned));
     add_geometry(builder, stack, points);
+    add_core_feet(builder, points, feet);
     const auto on_surface = [&](std::size_t surface) {
         return column<short>(count, [&](std::size_t i) { return points.layer[i] == surface; });
     };
@@ -257,12 +260,13 @@ ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets)
             stack.tapered};
 }
 
-PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets)
+PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets,
+                            const std::vector<CoreFoot>& feet)
 {
     const ShellPoints points = number_points(stack, tets);
     PointGrids grids;
     run_together([&] { grids.tets = make_tet_points(stack, tets, points); },
-                 [&] { grids.points = make_points(stack, points); },
+                 [&] { grids.points = make_points(stack, points, feet); },
                  [&] { grids.prisms = make_prisms(stack, points); });
     return grids;
 }

@@ -22,7 +22,9 @@ inline constexpr const char* kOuterStop = "stop_reason_outer";
 struct PointGrids {
     openvdb::points::PointDataGrid::Ptr points, prisms, tets;
 };
-PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets);
+/// `feet`: by vertex, or empty.
+PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets,
+                            const std::vector<CoreFoot>& feet = {});
 
 /// Fills everything but the splits' ripples. Throws ReadError, its message opened by `name`, unless
 /// every id is there once, in range, and the redundant parts agree.

@@ -71,7 +71,8 @@ const std::vector<std::string>& tet_file_extensions()
 }
 
 void write_tets(const fs::path& path, const TetMesh& tets,
-                const std::vector<std::uint8_t>& certified, const Placement& placement)
+                const std::vector<std::uint8_t>& certified, const Placement& placement,
+                const std::vector<CoreFoot>& feet)
 {
     // Only .vtu has a place for the flags; the other formats drop them, but a wrong number is
     // refused for all.
@@ -79,12 +80,15 @@ void write_tets(const fs::path& path, const TetMesh& tets,
         throw InvalidOption(path.string() + ": " + std::to_string(certified.size()) +
                             " flags of certified tets for " + std::to_string(tets.tets.size()) +
                             " tets");
+    if (!feet.empty() && feet.size() != tets.points.size())
+        throw InvalidOption(path.string() + ": " + std::to_string(feet.size()) +
+                            " feet on cores for " + std::to_string(tets.points.size()) + " points");
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele")
         return write_tetgen(path, tets, placement);
     if (extension == ".vtu")
         return write_stream_atomically(
-            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement); });
+            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, feet); });
     void (*write)(std::ostream&, const TetMesh&, const Placement&) = nullptr;
     if (extension == ".mesh")
         write = write_medit;

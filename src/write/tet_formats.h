@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/placement.h"
+#include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <algorithm>
@@ -19,9 +20,9 @@ inline bool has_layers(const TetMesh& tets)
                        [](std::uint8_t layer) { return layer > 0; });
 }
 
-/// `certified` by tet, or empty.
+/// `certified` by tet, or empty; `feet` by point, or empty.
 void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
-               const Placement& placement);
+               const Placement& placement, const std::vector<CoreFoot>& feet);
 void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& placement);
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets);
 void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placement);

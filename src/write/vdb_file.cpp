@@ -17,6 +17,7 @@
 #include "io/vdb_archive.h"
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/io/vdb_header.h"
+#include "write/core_feet_grid.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 
@@ -193,7 +194,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     PointGrids made;
     // Checksum and grids each go over all arrays of the shell, and neither needs the other.
     run_together([&] { metadata = shell_metadata(path, file, options.points); },
-                 [&] { made = make_point_grids(file.stack, file.tets); });
+                 [&] { made = make_point_grids(file.stack, file.tets, file.core_feet); });
     openvdb::GridPtrVec volumes{
         named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
         named_copy(file.depth, kDepthGrid, options.half, file.placement)};
@@ -247,8 +248,10 @@ ShellFile read_shell_vdb(const fs::path& path)
         put_in_place(*result.depth, -info.placement.shift());
         const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
                                  info.tets,     info.layers, info.skin,       info.tapered};
-        read_point_grids(find_points(file, info, path), counts, info.points_at.string(),
-                         result.stack, result.tets);
+        const PointGrids points = find_points(file, info, path);
+        read_point_grids(points, counts, info.points_at.string(), result.stack, result.tets);
+        result.core_feet = read_core_feet(*points.points, number_points(result.stack, {}),
+                                          info.points_at.string());
         // The file has the sum over all layers; it is put into the first layer.
         result.stack.splits.front().ripples = std::size_t(info.ripples);
         result.parameters_json = info.parameters_json;

@@ -94,10 +94,29 @@ void write_points(TextOut& text, const TetMesh& tets, const Placement& placement
     write_array(text, "Float64", "Points", 3, placed);
 }
 
+void write_feet(TextOut& text, const std::vector<CoreFoot>& feet)
+{
+    if (feet.empty())
+        return;
+    std::vector<std::int32_t> core, triangle;
+    std::vector<openvdb::Vec3s> uvw;
+    std::vector<float> distance;
+    for (const CoreFoot& foot : feet) {
+        core.push_back(foot.core);
+        triangle.push_back(foot.triangle);
+        uvw.push_back(foot.uvw);
+        distance.push_back(foot.distance);
+    }
+    write_array(text, "Int32", "core", 1, core);
+    write_array(text, "Int32", "core_triangle", 1, triangle);
+    write_array(text, "Float32", "core_uvw", 3, uvw);
+    write_array(text, "Float32", "core_distance", 1, distance);
+}
+
 } // namespace
 
 void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
-               const Placement& placement)
+               const Placement& placement, const std::vector<CoreFoot>& feet)
 {
     TextOut text(out);
     text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
@@ -107,6 +126,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
          << "\">\n<PointData>\n";
     write_array(text, "UInt32", "source_vertex", 1, tets.source_vertex);
     write_array(text, "UInt8", "layer", 1, tets.layer);
+    write_feet(text, feet);
     text << "</PointData>\n<CellData>\n";
     write_array(text, "UInt32", "prism", 1, tets.prism);
     if (has_layers(tets))

@@ -23,13 +23,15 @@ BOTH_SIDES = ["--side", "both", "--layers", "2", "--thickness-scale", "0.5"]
 
 
 def surfaces(samples, folder):
-    """Of the sample box: with a hole, and with a copy that crosses it."""
+    """Of the sample box: with a hole, with a copy that crosses it, and small."""
     box = (samples / "box.obj").read_text().splitlines()
     points = [line for line in box if line.startswith("v ")]
     faces = [line for line in box if line.startswith("f ")]
     moved = ["v " + " ".join(str(float(x) + 0.3) for x in line.split()[1:4]) for line in points]
     shifted = [re.sub(r"(?<=\s)(\d+)(/\S*)?", lambda m: str(int(m[1]) + len(points)), line) for line in faces]
     (folder / "open.obj").write_text("\n".join(points + faces[1:]) + "\n")
+    small = ["v " + " ".join(str(float(x) * 0.3) for x in line.split()[1:4]) for line in points]
+    (folder / "core.obj").write_text("\n".join(small + faces) + "\n")
     (folder / "crossing.obj").write_text("\n".join(points + moved + faces + shifted) + "\n")
 
 
@@ -42,6 +44,7 @@ def reports(command, samples, folder):
             [samples / "torus.obj", "--wrap", "--wrap-resolution", "32"],
             [samples / "sphere.obj", "--decimate-to", "200", "--refine-rounds", "1"],
             [box, "--subdivide", "1"],
+            [samples / "sphere.obj", "--core", folder / "core.obj"],
             [samples / "torus.obj", "--remesh-to", "1000", "--taper"],
             [folder / "crossing.obj", "--allow-self-intersections"],
             [folder / "0.vdb"]]):

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "shapes/bones.h"
 #include "shapes/creature.h"
 #include "shapes/simple_shapes.h"
 #include "support/files.h"
@@ -6,6 +7,7 @@
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/normals.h"
+#include "vdb_shell/obstacles/cores.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -35,6 +37,7 @@ struct Sample {
     int euler;
     double volume;           ///< of the exact shape; 0: not known
     double volume_tolerance; ///< relative, from the chords that replace arcs
+    std::size_t components = 1;
 };
 
 // GoogleTest would print the bytes, addresses included.
@@ -65,6 +68,11 @@ PolygonMesh make_creature()
     return join_into_quads(creature());
 }
 
+PolygonMesh make_bones()
+{
+    return creature_bones();
+}
+
 const std::vector<Sample>& all_samples()
 {
     const double fillet = (1 - kPi / 4) * 0.15 * 0.15, hole = kPi * 0.28 * 0.28 * 0.2;
@@ -73,7 +81,8 @@ const std::vector<Sample>& all_samples()
         {"box", make_box, 2, 2.0 * 1.2 * 0.8, 1e-6},
         {"torus", make_torus, 0, 2 * kPi * kPi * 0.35 * 0.35, 0.02},
         {"bracket", make_bracket, 0, 1.6 * 0.2 + 1.0 * 0.2 + fillet - hole, 0.002},
-        {"creature", make_creature, 2, 0, 0}};
+        {"creature", make_creature, 2, 0, 0},
+        {"creature_bones", make_bones, 2, 0, 0, 14}};
     return samples;
 }
 
@@ -125,8 +134,11 @@ TEST_P(SampleMesh, IsClosedManifoldOutwardAndEmbedded)
     EXPECT_EQ(check.inconsistent_edges.count, 0U);
     EXPECT_EQ(check.degenerate_triangles.count, 0U);
     EXPECT_EQ(check.inside_out_components(), 0U);
-    ASSERT_EQ(check.components.size(), 1U);
-    EXPECT_EQ(check.components.front().euler, GetParam().euler);
+    ASSERT_EQ(check.components.size(), GetParam().components);
+    for (const Component& component : check.components) {
+        EXPECT_EQ(component.euler, GetParam().euler);
+        EXPECT_EQ(component.nesting_depth, 0);
+    }
     EXPECT_GT(check.volume, 0.0);
     if (GetParam().volume > 0) {
         EXPECT_NEAR(check.volume / GetParam().volume, 1.0, GetParam().volume_tolerance);
@@ -155,6 +167,14 @@ TEST(Creature, ReachesItsFieldsZeroAndMixesTrianglesWithQuads)
     EXPECT_LE(mesh.faces.size(), 6000U);
     EXPECT_GT(quads, mesh.faces.size() / 4);
     EXPECT_LT(quads, mesh.faces.size() * 3 / 4);
+}
+
+TEST(Creature, HasItsBonesInside)
+{
+    const TriangleMesh skin = read_mesh(committed("creature")).mesh;
+    const TriangleMesh bones = read_mesh(committed("creature_bones")).mesh;
+    const Cores cores = prepare_cores(skin, "creature", {{"bones", bones}}, {});
+    EXPECT_EQ(cores.kept_out.triangles, bones.triangles);
 }
 
 TEST(Creature, IsTheSameForAnyNumberOfThreads)

@@ -15,6 +15,7 @@
 #include "vdb_shell/layers/cut_layers.h"
 #include "vdb_shell/layers/scale_thickness.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/resample/decimate.h"
 #include "vdb_shell/resample/remesh.h"
@@ -99,12 +100,13 @@ struct ShellReport {
     std::optional<OutsideReport> outside;
     std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
     std::optional<TaperReport> taper; ///< absent unless it was asked for
+    std::optional<CoreReport> cores;  ///< absent unless there were some
     std::vector<LayerFigures> layers; ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     TetSigns signs;
     Conformity conformity;
     QualityReport quality;
-    double solid_volume = 0;
+    double solid_volume = 0;   ///< of the surface, less that of the cores
     double shell_volume = 0;   ///< sum of signed tet volumes
     double outside_volume = 0; ///< the part of it in layers outside the surface
     double fill = 0;           ///< what of shell_volume lies in layers inside / solid_volume

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/core/interrupter.h"
+#include "vdb_shell/obstacles/join_cores.h"
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/options/name_table.h"
 #include "vdb_shell/shell/shell_stack.h"
@@ -56,9 +57,12 @@ struct TaperReport {
 /// afresh. Between layers points may move as well, and a layer may end where its pillars have lost
 /// their length. Sets `stack.tapered`. Same bits for any number of threads.
 /// `cap`: by vertex, the upper bound of the length of its pillar, may be infinite.
+/// `obstacles`: vertices that are pinned throughout, of components of their own, with which no
+/// point becomes one.
 /// Precondition: the stack is certified and lies inward of its skin, surface 0, which touches
 /// itself nowhere. Throws InvalidOption for options out of their range; Cancelled.
 TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
-                        const TaperOptions& options, Interrupter* interrupter = nullptr);
+                        const TaperOptions& options, Interrupter* interrupter = nullptr,
+                        const VertexRange& obstacles = {});
 
 } // namespace vdb_shell

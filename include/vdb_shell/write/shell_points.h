@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <openvdb/Types.h>
@@ -43,6 +44,12 @@ struct ShellPoints {
 };
 /// Precondition: require_consistent.
 ShellPoints number_points(const ShellStack& stack, const TetMesh& tets);
+
+/// By id: the foot of the pillar whose innermost point it is; other points have none.
+std::vector<CoreFoot> feet_by_id(const ShellPoints& points, const std::vector<CoreFoot>& feet);
+/// The way back. Throws ReadError, its message opened by `name`, for values that no foot has.
+std::vector<CoreFoot> feet_by_vertex(const ShellPoints& points, const std::vector<CoreFoot>& by_id,
+                                     const std::string& name);
 
 /// The next point of the pillar: below, or above where there is nothing below.
 const openvdb::Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex);

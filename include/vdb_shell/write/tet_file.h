@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/mesh/placement.h"
+#include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <cstdint>
@@ -20,10 +21,12 @@ const std::vector<std::string>& tet_file_extensions();
 /// whether a program reads them into floats or doubles; with a placement that moves, doubles where
 /// the file of the surface has them. Data beside them, where the format has a
 /// place (docs/file_format.md): per point source vertex and layer, per tet its prism and, where
-/// `certified` is given, its flag (Overlaps::certified; .vtu only). Files appear whole or not at
-/// all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension
-/// and for flags that are not one a tet, WriteError.
+/// `certified` is given, its flag (Overlaps::certified; .vtu only); per point its foot on a core
+/// where `feet` are given (feet_of_tet_points; .vtu only). Files appear whole or not at all; same
+/// bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension for flags
+/// that are not one a tet and feet that are not one a point, WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets,
-                const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {});
+                const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {},
+                const std::vector<CoreFoot>& feet = {});
 
 } // namespace vdb_shell

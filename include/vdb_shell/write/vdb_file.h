@@ -4,6 +4,7 @@
 #include "vdb_shell/core/grid_types.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/placement.h"
+#include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/shell_stack.h"
 
@@ -28,6 +29,7 @@ struct ShellFile {
     FloatGridPtr depth;   ///< see shell_depth_grid
     ShellStack stack;
     TetMesh tets;
+    std::vector<CoreFoot> core_feet; ///< by vertex; empty where there were no cores
     std::string parameters_json;
     std::string report_json;
     /// Of the surface that was read. In memory grids and points are about the mesh's origin; in the

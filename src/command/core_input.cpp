@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The files of --core: closed surfaces inside, from any format that has triangles or a level set.
+// The flag had words before it had files, so a word means what it meant, and a file of such a name
+// is given with its folder: ./free.
+
+#include "command/core_input.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/field/contour.h"
+#include "vdb_shell/field/given_level_set.h"
+
+#include "command/surface_input.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+/// A core is read in a frame of its own and brought into that of the surface by doubles, so that
+/// the digits of its file count as they do for the surface.
+void bring_into(const Placement& placement, const Placement& own, std::vector<Vec3s>& points)
+{
+    if (!placement.moves() && !own.moves())
+        return;
+    for (Vec3s& p : points)
+        p = Vec3s((own.in_file(p) - placement.origin) / placement.unit);
+}
+
+} // namespace
+
+void take_core_files(Option& option, std::vector<std::string>& files)
+{
+    option.kind = OptionKind::text;
+    option.repeated = true;
+    option.help += " (" + option.choices.front() + ", " + option.choices.back() +
+                   "). Or FILE: a closed surface inside (or FILE.vdb:GRID, a level set) that the "
+                   "shell stays off; once for each. A file of such a name: ./" +
+                   option.choices.front();
+    option.set = [words = std::exchange(option.choices, {}), set = option.set,
+                  &files](const OptionValue& value) {
+        const auto& text = std::get<std::string>(value);
+        if (std::find(words.begin(), words.end(), text) != words.end())
+            set(value);
+        else
+            files.push_back(text);
+    };
+}
+
+std::vector<CoreMesh> read_cores(const std::vector<std::string>& files, const ReadOptions& options,
+                                 const Placement& placement)
+{
+    std::vector<CoreMesh> cores;
+    for (const std::string& file : files) {
+        const GridName parts = split_grid_name(file);
+        const std::filesystem::path path(parts.file);
+        // A misspelt word looks like a file.
+        if (!std::filesystem::exists(path))
+            throw ReadError(file +
+                            ": there is no such file; --core takes free, stitched or a file");
+        CoreMesh core{path.filename().string(), {}};
+        Placement own;
+        if (path.extension() == ".vdb") {
+            core.mesh = contour(*read_level_set(parts.file, parts.grid));
+        } else {
+            ReadResult read = read_surface(path, options);
+            own = read.report.placement;
+            core.mesh = std::move(read.mesh);
+        }
+        bring_into(placement, own, core.mesh.points);
+        cores.push_back(std::move(core));
+    }
+    return cores;
+}
+
+} // namespace vdb_shell::command
