@@ -124,6 +124,7 @@ void require_sensible(const BuildArguments& arguments)
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
+    require_fit(arguments.purpose, arguments.shell);
     require_possible(arguments.outputs, {split_grid_name(arguments.mesh.string()).file});
     // The report is written last, because it is the only output that can tell how long the others
     // took.
@@ -197,7 +198,7 @@ int run_build(const BuildArguments& arguments)
         });
     if (!arguments.quiet)
         std::cout << report_text(result.report);
-    return success;
+    return result.report.wanted && !result.report.wanted->met() ? bound_not_met : success;
 }
 
 } // namespace vdb_shell::command

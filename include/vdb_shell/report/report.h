@@ -20,8 +20,10 @@
 #include "vdb_shell/resample/remesh.h"
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/shell/sides.h"
+#include "vdb_shell/shell/surface_bounds.h"
 #include "vdb_shell/step/line_step.h"
 #include "vdb_shell/taper/taper.h"
+#include "vdb_shell/taper/wanted_bounds.h"
 
 #include <array>
 #include <cstdint>
@@ -104,6 +106,8 @@ struct ShellReport {
     TetSigns signs;
     Conformity conformity;
     QualityReport quality;
+    SurfaceBounds surface_bounds;
+    std::optional<BoundsReport> wanted; ///< absent where nothing was
     double solid_volume = 0;
     double shell_volume = 0;   ///< sum of signed tet volumes
     double outside_volume = 0; ///< the part of it in layers outside the surface
