@@ -21,7 +21,7 @@ const NameTable<Purpose>& names(Purpose);
 /// The options as JSON: samples/presets/NAME.json, word for word. An empty object for Purpose::any.
 std::string options_for(Purpose purpose);
 
-/// Throws InvalidOption where options take away what the purpose stands for (docs/recipes.md).
+/// Throws InvalidOption where options take away what the purpose stands for (docs/options.md).
 /// Other options of the preset may be overruled.
 void require_fit(Purpose purpose, const ShellOptions& options);
 

@@ -61,7 +61,7 @@ TEST(SurfaceBounds, ATriangleWithoutAreaHasNone)
 
 TEST(SurfaceBounds, EveryTriangleHasATetOfSixtyDegrees)
 {
-    // Its mirror image turned by 60 degrees about the longest edge (docs/theory.md).
+    // Turned by 60 degrees about the longest edge (docs/theory.md, "What the surface bounds").
     for (const Triangle& t : {kEquilateral, kNeedle, kCap}) {
         const Vec3d apex(t.c[0], 0.5 * t.c[1], std::sqrt(0.75) * t.c[1]);
         EXPECT_GE(shape_of({t.a, t.b, t.c, apex}).min_dihedral_radians, M_PI / 3 - 1e-9);
