@@ -28,6 +28,7 @@
 #include "vdb_shell/step/limits.h"
 #include "vdb_shell/step/line_step.h"
 #include "vdb_shell/taper/taper.h"
+#include "vdb_shell/taper/wanted_bounds.h"
 
 #include <optional>
 #include <string>
@@ -67,6 +68,8 @@ struct ShellOptions {
     ScaleOptions scale;
     LayerOptions layers;
     TaperOptions taper;
+    /// Tapering is run towards them; without it they are only checked.
+    WantedBounds wanted;
     SplitOptions split;
     CoverageOptions coverage;
 };

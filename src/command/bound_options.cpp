@@ -186,7 +186,10 @@ void set_given(BoundOption& bound)
         option.set(bound.given->as<bool>());
     else
         for (const std::string& text : bound.given->results())
-            assign_text(option, text, option.flag);
+            // --layers auto for --layers-auto.
+            assign_text(option,
+                        option.flag + "-" + text == option.shorthand ? option.shorthand_for : text,
+                        option.flag);
 }
 
 /// Of two flags that say the same thing in different ways the one that was given holds, whatever

@@ -114,6 +114,7 @@ void require_sensible(const BuildArguments& arguments)
     std::vector<std::filesystem::path> inputs{split_grid_name(arguments.mesh.string()).file};
     for (const std::string& core : arguments.cores)
         inputs.emplace_back(split_grid_name(core).file);
+    require_fit(arguments.purpose, arguments.shell);
     require_possible(arguments.outputs, inputs);
     if (!arguments.cores.empty())
         require_cores_possible(arguments.shell);
@@ -195,7 +196,7 @@ int run_build(const BuildArguments& arguments)
         });
     if (!arguments.quiet)
         std::cout << report_text(result.report);
-    return success;
+    return result.report.wanted && !result.report.wanted->met() ? bound_not_met : success;
 }
 
 } // namespace vdb_shell::command

@@ -13,6 +13,7 @@ enum ExitCode {
     read_error = 3,
     geometry_error = 4,
     write_error = 5,
+    bound_not_met = 6,
     check_failed = 7,
     signal_base = 128, ///< plus the signal's number
 };

@@ -5,6 +5,8 @@
 
 #include "command/purpose.h"
 
+#include "vdb_shell/core/error.h"
+
 #include "preset_texts.h"
 
 namespace vdb_shell::command
@@ -32,6 +34,25 @@ std::string options_for(Purpose purpose)
         break;
     }
     return "{}";
+}
+
+void require_fit(Purpose purpose, const ShellOptions& options)
+{
+    const char* hindrance = nullptr;
+    const bool tapers = purpose == Purpose::simulation || purpose == Purpose::fewest_tets;
+    if (tapers && !options.taper.wanted)
+        hindrance = "without tapering (--no-taper)";
+    else if (purpose == Purpose::fewest_tets && options.layers.layers != 1)
+        hindrance = "of several layers (--layers), each of which has tets of its own";
+    else if (purpose == Purpose::fewest_tets && options.subdivide.levels > 0)
+        hindrance = "of a surface cut into more triangles (--subdivide)";
+    else if (purpose == Purpose::thickness && options.grow.method != Method::thickest)
+        hindrance = "of another method than thickest (--method)";
+    else if (purpose == Purpose::thickness && options.scale.factor < 1)
+        hindrance = "of pillars scaled down (--thickness-scale)";
+    if (hindrance)
+        throw InvalidOption(std::string("--for ") + name_in_table(purpose) +
+                            " is not for a shell " + hindrance);
 }
 
 } // namespace vdb_shell::command

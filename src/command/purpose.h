@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/options/name_table.h"
+#include "vdb_shell/pipeline.h"
 
 #include <string>
 
@@ -19,5 +20,9 @@ const NameTable<Purpose>& names(Purpose);
 
 /// The options as JSON: samples/presets/NAME.json, word for word. An empty object for Purpose::any.
 std::string options_for(Purpose purpose);
+
+/// Throws InvalidOption where options take away what the purpose stands for (docs/options.md).
+/// Other options of the preset may be overruled.
+void require_fit(Purpose purpose, const ShellOptions& options);
 
 } // namespace vdb_shell::command

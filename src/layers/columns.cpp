@@ -168,7 +168,8 @@ bool mend_point(Columns& c, std::size_t j, std::uint32_t v)
 } // namespace
 
 Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
-                    const std::vector<double>& shares, bool upside_down, PrismTest test)
+                    const std::vector<std::vector<double>>& shares, bool upside_down,
+                    PrismTest test)
 {
     Columns c;
     c.triangles = &shell.triangles;
@@ -180,15 +181,16 @@ Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
     const auto& skin = upside_down ? shell.inner : shell.outer;
     const auto& far = upside_down ? shell.outer : shell.inner;
     c.surface.push_back(skin);
-    for (const double share : shares) {
+    for (const std::vector<double>& share : shares) {
         // Every surface begins as the skin, so that a pillar without length keeps its bits: the sum
         // could turn a -0 into 0.
         c.surface.push_back(skin);
         std::vector<Vec3s>& cut = c.surface.back();
         for_each_index(cut.size(), [&](std::size_t v) {
             const Vec3d from(skin[v]), to(far[v]);
+            // A share of 1 is the end to the bit, where the layers below are pinned.
             if (skin[v] != far[v])
-                cut[v] = Vec3s(from + share * (to - from));
+                cut[v] = share[v] < 1 ? Vec3s(from + share[v] * (to - from)) : far[v];
         });
     }
     c.surface.push_back(far);

@@ -26,9 +26,10 @@ struct Columns {
     std::size_t layers() const { return surface.size() - 1; }
 };
 
-/// Every pillar cut at the shares, from the skin, rounded to the nearest floats.
+/// Every pillar cut at its shares, by cut and vertex, from the skin, rounded to the nearest floats.
 Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
-                    const std::vector<double>& shares, bool upside_down, PrismTest test);
+                    const std::vector<std::vector<double>>& shares, bool upside_down,
+                    PrismTest test);
 
 /// Moves points between the layers while that leaves fewer tets that are not positive.
 void mend_columns(Columns& columns, const StageProgress& progress);

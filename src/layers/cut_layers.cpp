@@ -13,6 +13,7 @@
 #include "vdb_shell/options/option.h"
 
 #include "core/stage_progress.h"
+#include "layers/auto_shares.h"
 #include "layers/columns.h"
 
 #include <algorithm>
@@ -50,6 +51,19 @@ std::vector<double> shares_of(const LayerOptions& options)
     return sums;
 }
 
+/// By cut and vertex.
+std::vector<std::vector<double>> shares_of(const PrismShell& whole, bool above_skin,
+                                           const LayerOptions& options)
+{
+    if (options.layers == 0)
+        return auto_shares(whole, above_skin,
+                           options.grading == 1 ? kAutoGrading : options.grading);
+    std::vector<std::vector<double>> shares;
+    for (const double share : shares_of(options))
+        shares.emplace_back(whole.outer.size(), share);
+    return shares;
+}
+
 /// Appends the layers that one layer of the input was cut into. Stacks run from the outermost to
 /// the innermost layer, columns from the skin: above the skin the order is turned round.
 void append_layers(const PrismShell& whole, const PrismSplit& split, bool above_skin,
@@ -70,12 +84,20 @@ void append_layers(const PrismShell& whole, const PrismSplit& split, bool above_
 OptionList describe(LayerOptions& o)
 {
     return in_group("Layers",
-                    {option("layers", o.layers, "--layers", "Layers that each pillar is cut into")
+                    {option("layers", o.layers, "--layers",
+                            "Layers that each pillar is cut into; 0, or auto: as many as shape "
+                            "asks for, from place to place")
                          .in(Unit::count)
-                         .within(at_least(1).at_most(double(ShellStack::kMostLayers))),
+                         .within(at_least(0).at_most(double(ShellStack::kMostLayers)))
+                         .with_shorthand("--layers-auto", "0"),
                      option("grading", o.grading, "--layer-grading",
                             "Thickness of each layer over that of the one nearer to the surface")
                          .within(above(0))});
+}
+
+int most_layers(const LayerOptions& options)
+{
+    return options.layers == 0 ? kMostAutoLayers : options.layers;
 }
 
 void require_sensible(const LayerOptions& options)
@@ -87,7 +109,7 @@ LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, Pri
                        Interrupter* interrupter)
 {
     require_sensible(options);
-    const std::size_t total = std::size_t(options.layers) * stack.layers.size();
+    const std::size_t total = std::size_t(most_layers(options)) * stack.layers.size();
     if (total > ShellStack::kMostLayers)
         throw InvalidOption("layers: " + std::to_string(total) + " in all, must be at most " +
                             std::to_string(ShellStack::kMostLayers));
@@ -100,19 +122,20 @@ LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, Pri
         result.stack = stack;
         return result;
     }
-    const std::vector<double> shares = shares_of(options);
     for (std::size_t k = 0; k < stack.layers.size(); ++k) {
         progress.stop_if_interrupted(int(100 * k / stack.layers.size()));
         const PrismShell& whole = stack.layers[k];
         const bool above_skin = k < stack.skin;
-        Columns columns = cut_pillars(whole, stack.splits[k], shares, above_skin, test);
+        Columns columns = cut_pillars(whole, stack.splits[k], shares_of(whole, above_skin, options),
+                                      above_skin, test);
         const std::vector<std::vector<openvdb::Vec3s>> nominal = columns.surface;
         mend_columns(columns, progress);
         result.report.uncut += keep_whole_where_bad(columns);
         result.report.moved += points_that_differ(columns.surface, nominal);
         append_layers(whole, stack.splits[k], above_skin, std::move(columns), result.stack);
+        if (k + 1 == stack.skin)
+            result.stack.skin = result.stack.layers.size();
     }
-    result.stack.skin = stack.skin * std::size_t(options.layers);
     return result;
 }
 

@@ -144,6 +144,7 @@ void measure_result(ShellResult& result)
                  [&] {
                      report.signs = count_tet_signs(result.tets);
                      report.quality = measure_quality(result.tets);
+                     report.surface_bounds = measure_surface_bounds(result.surface, report.side);
                      measure_sides(result);
                  });
     report.solid_volume = signed_volume(result.surface.points, result.surface.triangles);

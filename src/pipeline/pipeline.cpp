@@ -16,6 +16,7 @@
 #include "pipeline/figures.h"
 #include "pipeline/resample.h"
 #include "pipeline/sides.h"
+#include "pipeline/taper_to_bounds.h"
 #include "report/stage_clock.h"
 #include "step/thickness.h"
 
@@ -56,7 +57,7 @@ void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* inter
 {
     LayerResult cut = cut_layers(r.stack, options.layers, prism_test(options), interrupter);
     r.stack = std::move(cut.stack);
-    if (options.layers.layers > 1)
+    if (options.layers.layers != 1)
         r.report.cut = cut.report;
 }
 
@@ -79,9 +80,8 @@ void taper_and_certify(ShellResult& r, const ShellOptions& options,
     }
     ShellStack untapered = r.stack;
     clock.run("taper", [&] {
-        const std::vector<double> cap =
-            largest_lengths(r.surface, options.line_step, thickness_grid);
-        r.report.taper = taper_shell(r.stack, cap, options.taper, interrupter, r.core_vertices);
+        taper_to_bounds(r, options, largest_lengths(r.surface, options.line_step, thickness_grid),
+                        interrupter);
     });
     certify();
     if (r.report.certificate->certified() && !shares_core_point(r.stack, r.core_vertices))
@@ -117,6 +117,7 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
         r.surface = turn_outward(std::move(r.surface), r.report.mesh);
     });
     resample_surface(r, options, clock, interrupter);
+    require_enough_tets(r.surface, options.wanted);
 }
 
 /// Makes the level set that the lines step through; a given one is taken where it is fit for that.
@@ -177,7 +178,10 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     // surfaces that cross themselves, and the raw method.
     if (!r.report.certificate->certified())
         clock.run("overlaps", [&] { r.report.overlaps = find_overlaps(r.tets, interrupter); });
-    clock.run("figures", [&] { measure_result(r); });
+    clock.run("figures", [&] {
+        measure_result(r);
+        judge_result(r, options, largest_lengths(r.surface, options.line_step, thickness_grid));
+    });
     clock.run("coverage", [&] {
         // Layers outside are held against what the outermost surface encloses, since the input's
         // own volume holds none of them.

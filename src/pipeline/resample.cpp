@@ -29,7 +29,7 @@ std::size_t most_triangles(const ShellOptions& options)
     if (!options.refine.max_tets)
         return std::numeric_limits<std::size_t>::max();
     const std::size_t sides = options.side == Side::both ? 2 : 1;
-    const std::size_t layers = sides * static_cast<std::size_t>(options.layers.layers);
+    const std::size_t layers = sides * static_cast<std::size_t>(most_layers(options.layers));
     return *options.refine.max_tets / (3 * layers);
 }
 
@@ -45,7 +45,7 @@ RefineRound figures_of(const ShellResult& result, const ShellOptions& options)
     round.triangles = result.surface.triangles.size();
     // Layers are cut later, each into as many tets.
     round.tets =
-        make_tets(result.stack).tets.size() * static_cast<std::size_t>(options.layers.layers);
+        make_tets(result.stack).tets.size() * static_cast<std::size_t>(most_layers(options.layers));
     // Of the layer inside alone: layers outside do not fill the solid.
     const double shell = tet_volume(make_tets(inward_layer(result), result.stack.splits.back()));
     round.fill = shell / signed_volume(result.surface.points, result.surface.triangles);

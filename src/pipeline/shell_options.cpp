@@ -49,6 +49,18 @@ void require_taper_possible(const ShellOptions& options)
         throw InvalidOption(std::string("taper: --taper is not for ") + hindrance);
 }
 
+/// What no surface can have. Tets of the raw method may be inverted or lie in each other, so that
+/// neither their shape nor their fill says anything.
+void require_wishes_possible(const ShellOptions& options)
+{
+    if (options.wanted.any() && options.grow.method == Method::raw)
+        throw InvalidOption("want: bounds (--want-...) are not for the raw method, whose tets may "
+                            "be inverted (--method)");
+    if (options.wanted.fill && options.side == Side::outward)
+        throw InvalidOption("want: fill (--want-fill) is a share of the solid, and a shell outside "
+                            "(--side) has no solid to fill");
+}
+
 } // namespace
 
 OptionSections describe(ShellOptions& o)
@@ -76,6 +88,7 @@ OptionSections describe(ShellOptions& o)
             {"scale", describe(o.scale)},
             {"layers", describe(o.layers)},
             {"taper", describe(o.taper)},
+            {"want", describe(o.wanted)},
             {"split", describe(o.split)},
             {"coverage", describe(o.coverage)}};
 }
@@ -97,6 +110,7 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     require_taper_possible(options);
+    require_wishes_possible(options);
     // A line outward always has a thickness: a tenth of the diagonal where the user gives none
     // (shell/sides.h).
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&

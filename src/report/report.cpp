@@ -17,10 +17,9 @@
 #include "mesh/placement_json.h"
 #include "report/cores_report.h"
 #include "report/resample_report.h"
+#include "report/shape_report.h"
 
 #include <nlohmann/json.hpp>
-
-#include <openvdb/Types.h>
 
 #include <limits>
 
@@ -30,23 +29,6 @@ namespace
 {
 
 using nlohmann::ordered_json;
-
-/// Code and options have radians throughout, reports have degrees (docs/conventions.md).
-double degrees(double radians)
-{
-    return radians * 180.0 / openvdb::math::pi<double>();
-}
-
-/// The distribution of a figure over all tets or pillars, `convert` put to each of its values. That
-/// keeps their order only if it rises, as a change of unit does.
-ordered_json spread_json(const Spread& spread, double (*convert)(double) = nullptr)
-{
-    const auto in_unit = [&](double value) { return convert ? convert(value) : value; };
-    return {{"min", in_unit(spread.min)},  {"p1", in_unit(spread.p1)},
-            {"p5", in_unit(spread.p5)},    {"median", in_unit(spread.median)},
-            {"p95", in_unit(spread.p95)},  {"max", in_unit(spread.max)},
-            {"mean", in_unit(spread.mean)}};
-}
 
 /// All are counted but only the first few by index are named (Defect::kFirstShown), so that a
 /// report stays short however bad the surface is. A pair becomes a list of two.
@@ -167,14 +149,6 @@ ordered_json conformity_json(const Conformity& conformity)
             {"missing_triangles", defect_json(conformity.missing_triangles)}};
 }
 
-ordered_json quality_json(const QualityReport& quality)
-{
-    return {{"mean_ratio", spread_json(quality.mean_ratio)},
-            {"min_dihedral_degrees", spread_json(quality.min_dihedral_radians, degrees)},
-            {"max_dihedral_degrees", spread_json(quality.max_dihedral_radians, degrees)},
-            {"aspect", spread_json(quality.aspect)}};
-}
-
 /// Points in no tet, in one and in several add up to the samples. Those outside are apart: they
 /// were drawn on the way and belong to no share of the solid.
 ordered_json coverage_json(const Coverage& coverage)
@@ -209,7 +183,8 @@ ordered_json cut_json(const LayerReport& cut)
 
 ordered_json taper_json(const TaperReport& taper)
 {
-    return {{"rounds", taper.rounds},
+    return {{"runs", taper.runs},
+            {"rounds", taper.rounds},
             {"merges", taper.merges},
             {"moves", taper.moves},
             {"handed_over", taper.handed_over},
@@ -360,6 +335,8 @@ void add_checks(ordered_json& json, const ShellReport& report)
 {
     json["conformity"] = conformity_json(report.conformity);
     json["quality"] = quality_json(report.quality);
+    json["surface_bounds"] = bounds_json(report.surface_bounds);
+    json["wanted"] = report.wanted ? wanted_json(*report.wanted) : ordered_json();
     json["volume"] = {{"solid", report.solid_volume},
                       {"shell", report.shell_volume},
                       {"outside", report.outside_volume},

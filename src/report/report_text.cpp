@@ -10,6 +10,7 @@
 
 #include "report/cores_report.h"
 #include "report/resample_report.h"
+#include "report/shape_report.h"
 #include "report/surface_text.h"
 #include "report/text_lines.h"
 
@@ -256,9 +257,12 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
     line(out, "dihedral",
          "smallest " + number(kDegrees * report.quality.min_dihedral_radians.min) +
              " degrees, largest " + number(kDegrees * report.quality.max_dihedral_radians.max));
+    shape_lines(out, report);
     line(out, "volume",
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
              volume_shares(report));
+    if (report.wanted)
+        wanted_lines(out, *report.wanted);
 }
 
 void proof_lines(std::ostringstream& out, const ShellReport& report)

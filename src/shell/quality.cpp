@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: tets in float32. Gives: order statistics of four measures of their shape, computed in
+// Takes: tets in float32. Gives: order statistics of six measures of their shape, computed in
 // doubles. Nothing is decided by them: an angle or a ratio near its limit is a matter of opinion,
 // and whether a tet is inverted is for the exact signs (certify/tet_signs.h). The mean ratio is
 // that of Liu and Joe, "On the shape of tetrahedra from bisection", 1994; the aspect is the usual
@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace vdb_shell
 {
@@ -72,6 +73,26 @@ DihedralRange dihedral_range(const Corners& p)
     const auto [most, least] = std::minmax_element(rank.begin(), rank.end());
     return {at[std::size_t(least - rank.begin())].angle(),
             at[std::size_t(most - rank.begin())].angle()};
+}
+
+double ratio_of_edges(const Corners& p)
+{
+    double longest = 0, shortest = std::numeric_limits<double>::infinity();
+    for (const auto& edge : kEdges) {
+        const double squared = (p[edge[1]] - p[edge[0]]).lengthSqr();
+        longest = std::max(longest, squared);
+        shortest = std::min(shortest, squared);
+    }
+    return shortest > 0 ? std::sqrt(longest / shortest) : std::numeric_limits<double>::infinity();
+}
+
+/// A spread is of finite values.
+Spread spread_of_finite(std::vector<double> values)
+{
+    values.erase(std::remove_if(values.begin(), values.end(),
+                                [](double value) { return !std::isfinite(value); }),
+                 values.end());
+    return spread_of(std::move(values));
 }
 
 double height_ratio(const Corners& p)
@@ -140,22 +161,49 @@ double mean_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d
     return std::copysign(12 * root * root, half_six_volumes) / squared_edges;
 }
 
+TetShape shape_of(const std::array<Vec3d, 4>& p)
+{
+    const double ratio = mean_ratio(p[0], p[1], p[2], p[3]);
+    const DihedralRange range = dihedral_range(p);
+    return {ratio,
+            range.min,
+            range.max,
+            height_ratio(p),
+            ratio > 0 ? 3 / ratio : std::numeric_limits<double>::infinity(),
+            ratio_of_edges(p)};
+}
+
+TetShape shape_of(const TetMesh& mesh, std::size_t t)
+{
+    Corners p;
+    for (int corner = 0; corner < 4; ++corner)
+        p[static_cast<std::size_t>(corner)] = Vec3d(mesh.points[mesh.tets[t][corner]]);
+    return shape_of(p);
+}
+
 QualityReport measure_quality(const TetMesh& mesh)
 {
     const std::size_t count = mesh.tets.size();
-    std::vector<double> ratio(count), smallest(count), largest(count), aspect(count);
-    for_each_index(count, [&](std::size_t i) {
-        Corners p;
-        for (int corner = 0; corner < 4; ++corner)
-            p[static_cast<std::size_t>(corner)] = Vec3d(mesh.points[mesh.tets[i][corner]]);
-        ratio[i] = mean_ratio(p[0], p[1], p[2], p[3]);
-        const DihedralRange range = dihedral_range(p);
-        smallest[i] = range.min;
-        largest[i] = range.max;
-        aspect[i] = height_ratio(p);
-    });
-    return {spread_of(std::move(ratio)), spread_of(std::move(smallest)),
-            spread_of(std::move(largest)), spread_of(std::move(aspect))};
+    std::vector<TetShape> shape(count);
+    for_each_index(count, [&](std::size_t i) { shape[i] = shape_of(mesh, i); });
+    const auto all = [&](double TetShape::*figure) {
+        std::vector<double> values(count);
+        std::transform(shape.begin(), shape.end(), values.begin(),
+                       [figure](const TetShape& s) { return s.*figure; });
+        return values;
+    };
+    QualityReport report;
+    report.mean_ratio = spread_of(all(&TetShape::mean_ratio));
+    report.min_dihedral_radians = spread_of(all(&TetShape::min_dihedral_radians));
+    report.max_dihedral_radians = spread_of(all(&TetShape::max_dihedral_radians));
+    report.aspect = spread_of(all(&TetShape::aspect));
+    report.amips = spread_of_finite(all(&TetShape::amips));
+    report.edge_ratio = spread_of_finite(all(&TetShape::edge_ratio));
+    for (const TetShape& s : shape) {
+        report.slivers += s.min_dihedral_radians < kSliverRadians;
+        report.sofa_bad += s.sofa_bad();
+    }
+    return report;
 }
 
 } // namespace vdb_shell

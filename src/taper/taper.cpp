@@ -78,19 +78,24 @@ OptionList describe(TaperOptions& o)
          option("tet_cost", o.tet_cost, "--taper-tet-cost",
                 "What a tet costs besides its distortion, which is 1 for a regular tet: the "
                 "larger, the fewer tets")
-             .within(at_least(0)),
+             .within(at_least(0))
+             .needing("--taper"),
          option("shape_power", o.shape_power, "--taper-shape-power",
                 "Power of the distortion that counts: the larger, the more the worst tets count")
-             .within(at_least(1).at_most(8)),
+             .within(at_least(1).at_most(8))
+             .needing("--taper"),
          option("void_cost", o.void_cost, "--taper-void-cost",
                 "What the empty solid would cost for each triangle: the larger, the fuller")
-             .within(at_least(0)),
+             .within(at_least(0))
+             .needing("--taper"),
          option("worst_amips", o.worst_amips, "--taper-worst-amips",
                 "No change makes a tet of a larger AMIPS, 3 for a regular tet")
-             .within(at_least(3)),
+             .within(at_least(3))
+             .needing("--taper"),
          option("rounds", o.rounds, "--taper-rounds", "Rounds at most")
              .in(Unit::count)
-             .within(at_least(1).at_most(1000)),
+             .within(at_least(1).at_most(1000))
+             .needing("--taper"),
          option("core", o.core, "--core",
                 "Parts of the inner surface that come close: stay free, or are stitched")});
 }

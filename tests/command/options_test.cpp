@@ -257,5 +257,41 @@ TEST_F(Options, BashCompletesCommandsFlagsAndChoices)
     expect_refusal("options --complete fish", ExitCode::usage_error, {"fish", "bash"});
 }
 
+TEST_F(Options, ABoundThatIsNotMetIsReportedAndTheShellIsWritten)
+{
+    const std::string box = mesh_file("box.obj", test::box(openvdb::Vec3d(-1), openvdb::Vec3d(1)));
+    const std::string build = "build " + box + kCoarse + " --taper -o " + file("b.vdb");
+    // Two tets share the right angle at an edge of a box.
+    const Outcome missed = run(build + " --want-dihedral 0.8");
+    EXPECT_EQ(missed.status, ExitCode::bound_not_met) << missed.err;
+    EXPECT_NE(missed.out.find("NOT MET"), std::string::npos) << missed.out;
+    EXPECT_NE(missed.out.find("surface-edge"), std::string::npos) << missed.out;
+    EXPECT_EQ(run("check " + file("b.vdb")).status, ExitCode::success);
+    const Outcome met = run(build + " --want-dihedral 0.78 --want-fill 0.999 --want-tets 12");
+    EXPECT_EQ(met.status, ExitCode::success) << met.out << met.err;
+}
+
+TEST_F(Options, ContradictoryWishesAreRefusedByNameAndLeaveTheOutputAlone)
+{
+    const std::string box = mesh_file("box.obj", test::box(openvdb::Vec3d(-1), openvdb::Vec3d(1)));
+    ASSERT_EQ(run("build " + box + kCoarse + " -o " + file("b.vdb")).status, ExitCode::success);
+    const std::string before = read_bytes(folder / "b.vdb");
+    const auto refused = [&](const std::string& wishes, const std::vector<std::string>& words) {
+        expect_refusal("build " + box + " " + wishes + " -o " + file("b.vdb"),
+                       ExitCode::usage_error, words);
+        EXPECT_EQ(read_bytes(folder / "b.vdb"), before) << wishes;
+    };
+    refused("--for fewest-tets --layers 6", {"--for fewest-tets", "--layers"});
+    refused("--for fewest-tets --layers auto", {"--for fewest-tets", "--layers"});
+    refused("--for fewest-tets --subdivide 1", {"--for fewest-tets", "--subdivide"});
+    refused("--for simulation --no-taper", {"--for simulation", "--no-taper"});
+    refused("--for thickness --method raw", {"--for thickness", "--method"});
+    refused("--for thickness --taper-tet-cost 4", {"--taper-tet-cost", "--taper"});
+    refused("--want-amips 5 --method raw", {"--want", "--method"});
+    refused("--want-fill 0.9 --side outward", {"--want-fill", "--side"});
+    refused("--want-dihedral 1.24", {"--want-dihedral"});
+    refused("--want-tets 11", {"--want-tets", "12 triangles"});
+}
+
 } // namespace
 } // namespace vdb_shell::test

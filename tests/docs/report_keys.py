@@ -21,6 +21,8 @@ import tempfile
 
 BOTH_SIDES = ["--side", "both", "--layers", "2", "--thickness-scale", "0.5"]
 
+BOUND_NOT_MET = 6
+
 
 def surfaces(samples, folder):
     """Of the sample box: with a hole, with a copy that crosses it, and small."""
@@ -43,14 +45,16 @@ def reports(command, samples, folder):
             [folder / "open.obj", "--repair"],
             [samples / "torus.obj", "--wrap", "--wrap-resolution", "32"],
             [samples / "sphere.obj", "--decimate-to", "200", "--refine-rounds", "1"],
-            [box, "--subdivide", "1"],
+            [box, "--subdivide", "1", "--want-amips", "3.01"],
             [samples / "sphere.obj", "--core", folder / "core.obj"],
             [samples / "torus.obj", "--remesh-to", "1000", "--taper"],
             [folder / "crossing.obj", "--allow-self-intersections"],
             [folder / "0.vdb"]]):
         out = folder / f"{number}.json"
-        subprocess.run([command, "build", surface, "--resolution", "24", "-q", *options,
-                        "--report", out, "-o", folder / f"{number}.vdb"], check=True)
+        done = subprocess.run([command, "build", surface, "--resolution", "24", "-q", *options,
+                               "--report", out, "-o", folder / f"{number}.vdb"])
+        if done.returncode not in (0, BOUND_NOT_MET):
+            done.check_returncode()
         yield json.loads(out.read_text())
 
 

@@ -296,9 +296,9 @@ TEST(CutLayers, RefusesBadOptionsByName)
     const auto refusal = [&](const ShellStack& stack, const LayerOptions& options) {
         return test::refusal_of([&] { cut_layers(stack, options, PrismTest::twelve_tets); });
     };
-    for (const int count : {0, -3, 251})
+    for (const int count : {-1, -3, 251})
         EXPECT_EQ(refusal(whole, layers(count)),
-                  "layers: layers is " + std::to_string(count) + ", must be 1 to 250");
+                  "layers: layers is " + std::to_string(count) + ", must be 0 to 250");
     test::expect_positive_finite("layers: grading", [&](double grading) {
         cut_layers(whole, layers(2, grading), PrismTest::twelve_tets);
     });

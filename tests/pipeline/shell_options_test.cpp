@@ -194,9 +194,9 @@ TEST(ShellOptions, UnknownKeysAndWrongKindsAreNamed)
     EXPECT_EQ(said(R"({"grow": {"flips": 1}})"), "a.json: grow.flips is 1, must be true or false");
     EXPECT_EQ(said(R"({"grow": 3})"), "a.json: grow is 3, must be an object");
     EXPECT_EQ(said(R"({"layers": {"layers": 2.5}})"),
-              "a.json: layers.layers is 2.5, must be a whole number, 1 to 250");
+              "a.json: layers.layers is 2.5, must be a whole number, 0 to 250");
     EXPECT_EQ(said(R"({"layers": {"layers": null}})"),
-              "a.json: layers.layers is null, must be a whole number, 1 to 250");
+              "a.json: layers.layers is null, must be a whole number, 0 to 250");
     EXPECT_NE(said("[1]"), "accepted");
     EXPECT_NE(said("{"), "accepted");
 }

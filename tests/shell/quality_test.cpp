@@ -52,6 +52,36 @@ TEST(Quality, OfTheRegularTetIsPerfect)
     EXPECT_NEAR(report.min_dihedral_radians.min, std::acos(1.0 / 3), 1e-15);
     EXPECT_NEAR(report.max_dihedral_radians.max, std::acos(1.0 / 3), 1e-15);
     EXPECT_NEAR(report.aspect.min, 1, 1e-15);
+    EXPECT_NEAR(report.min_dihedral_radians.min * 180 / M_PI, 70.53, 5e-3);
+    EXPECT_NEAR(report.edge_ratio.max, 1, 1e-15);
+    EXPECT_EQ(report.slivers, 0U);
+    EXPECT_EQ(report.sofa_bad, 0U);
+}
+
+TEST(Quality, AmipsIsThreeForTheRegularTetAtAnySize)
+{
+    const Vec3d a(1, 1, 1), b(1, -1, -1), c(-1, 1, -1), d(-1, -1, 1);
+    for (const double size : {1e-6, 1.0, 1e6}) {
+        const TetShape shape = shape_of({size * a, size * c, size * b, size * d});
+        EXPECT_NEAR(shape.amips, 3, 1e-12);
+        EXPECT_FALSE(shape.sofa_bad());
+    }
+    EXPECT_TRUE(std::isinf(shape_of({a, b, c, d}).amips)); // inverted
+}
+
+TEST(Quality, SliversAndWhatSofaWarnsOfAreCounted)
+{
+    // Four points near a square: two dihedral angles are next to 180 degrees, four next to 0.
+    const QualityReport sliver = measure_quality(
+        one_tet(Vec3s(0, 0, 0), Vec3s(1, 0, 0.01F), Vec3s(1, 1, 0), Vec3s(0, 1, 0.01F)));
+    EXPECT_EQ(sliver.slivers, 1U);
+    EXPECT_EQ(sliver.sofa_bad, 1U);
+    // Well shaped but for its length: the rule has a bound for that.
+    const QualityReport spike = measure_quality(
+        one_tet(Vec3s(0, 0, 0), Vec3s(1, 0, 0), Vec3s(0.5F, 0.87F, 0), Vec3s(0.5F, 0.3F, 11)));
+    EXPECT_EQ(spike.slivers, 0U);
+    EXPECT_EQ(spike.sofa_bad, 1U);
+    EXPECT_GT(spike.edge_ratio.min, 10);
 }
 
 TEST(Quality, OfFlatTetsIsFinite)

@@ -12,15 +12,24 @@ namespace vdb_shell
 {
 
 struct LayerOptions {
-    int layers = 1; ///< layers that each pillar is cut into
+    /// Layers that each pillar is cut into. 0: as many as shape asks for, from place to place: the
+    /// first is as high as its triangles are long, the others are graded, and a pillar that is too
+    /// short for a layer has none of it.
+    int layers = 1;
     /// Thickness of each layer over that of the one nearer to the surface: 1 gives equal layers, 2
-    /// layers of 1/3 and 2/3.
+    /// layers of 1/3 and 2/3. Where the number follows the shape, 1 stands for kAutoGrading.
     double grading = 1.0;
 };
+/// Of layers = 0: a fifth layer would begin 12 edges below the skin, which pillars seldom reach.
+inline constexpr int kMostAutoLayers = 4;
+/// Tapering about halves the number of edges along a line, so triangles below are twice as long.
+inline constexpr double kAutoGrading = 2;
+/// The most layers that a pillar may be cut into.
+int most_layers(const LayerOptions& options);
 OptionList describe(LayerOptions& options);
 
-/// Throws InvalidOption for fewer than one layer, more than ShellStack::kMostLayers, or a grading
-/// that is not positive and finite.
+/// Throws InvalidOption for a negative number of layers, more than ShellStack::kMostLayers, or a
+/// grading that is not positive and finite.
 void require_sensible(const LayerOptions& options);
 
 struct LayerReport {
@@ -45,8 +54,8 @@ struct LayerResult {
 /// certified shell is cut into certified layers, always: at worst with no cut at all, and the
 /// report tells how many pillars that concerns. A prism that failed `test` before cutting keeps its
 /// failure. Same bits for any number of threads. Precondition: as certify_stack. Throws
-/// InvalidOption for fewer than one layer, more than ShellStack::kMostLayers in all, or a grading
-/// that is not positive and finite; Cancelled.
+/// InvalidOption for a negative number of layers, more than ShellStack::kMostLayers in all, or a
+/// grading that is not positive and finite; Cancelled.
 LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, PrismTest test,
                        Interrupter* interrupter = nullptr);
 

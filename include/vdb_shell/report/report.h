@@ -21,8 +21,10 @@
 #include "vdb_shell/resample/remesh.h"
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/shell/sides.h"
+#include "vdb_shell/shell/surface_bounds.h"
 #include "vdb_shell/step/line_step.h"
 #include "vdb_shell/taper/taper.h"
+#include "vdb_shell/taper/wanted_bounds.h"
 
 #include <array>
 #include <cstdint>
@@ -106,6 +108,8 @@ struct ShellReport {
     TetSigns signs;
     Conformity conformity;
     QualityReport quality;
+    SurfaceBounds surface_bounds;
+    std::optional<BoundsReport> wanted; ///< absent where nothing was
     double solid_volume = 0;   ///< of the surface, less that of the cores
     double shell_volume = 0;   ///< sum of signed tet volumes
     double outside_volume = 0; ///< the part of it in layers outside the surface

@@ -3,6 +3,8 @@
 
 #include "vdb_shell/shell/tessellate.h"
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace vdb_shell
@@ -25,7 +27,33 @@ struct QualityReport {
     /// Smallest height / longest edge, scaled to 1 for the regular tet; 0 = flat. (The usual aspect
     /// ratio turned over, so that flat tets have a finite value.)
     Spread aspect;
+    /// 3 / mean ratio: 3 for the regular tet, larger for every other. Of positive tets alone.
+    Spread amips;
+    Spread edge_ratio;        ///< longest edge / shortest edge; of tets whose edges have length
+    std::size_t slivers = 0;  ///< tets with a dihedral angle under kSliverRadians
+    std::size_t sofa_bad = 0; ///< tets that SOFA's mesh checks warn of (TetShape::sofa_bad)
 };
+
+/// 5 degrees: tets under it are what shape.md counts.
+constexpr double kSliverRadians = 0.087266462599716474;
+/// SOFA's rule, as its mesh checks state it: 20 and 160 degrees, and edges of 1 to 10.
+constexpr double kSofaSmallRadians = 0.3490658503988659;
+constexpr double kSofaLargeRadians = 2.7925268031909272;
+constexpr double kSofaEdgeRatio = 10;
+
+/// All figures of one tet. AMIPS and edge ratio are infinite where their divisor is not positive.
+struct TetShape {
+    double mean_ratio, min_dihedral_radians, max_dihedral_radians, aspect, amips, edge_ratio;
+
+    bool sofa_bad() const
+    {
+        return min_dihedral_radians < kSofaSmallRadians ||
+               max_dihedral_radians > kSofaLargeRadians || edge_ratio > kSofaEdgeRatio;
+    }
+};
+TetShape shape_of(const std::array<openvdb::Vec3d, 4>& corners);
+/// Of tet t.
+TetShape shape_of(const TetMesh& tets, std::size_t t);
 
 /// Mean ratio of one tet, signed by its orientation (in double; exact signs are count_tet_signs').
 double mean_ratio(const openvdb::Vec3d& a, const openvdb::Vec3d& b, const openvdb::Vec3d& c,

@@ -40,7 +40,8 @@ struct TaperOptions {
 OptionList describe(TaperOptions& options);
 
 struct TaperReport {
-    std::size_t rounds = 0;
+    std::size_t runs = 1;   ///< with other costs each, where bounds are wanted (build_shell)
+    std::size_t rounds = 0; ///< of the run that was kept
     std::size_t merges = 0, moves = 0, handed_over = 0, turned = 0; ///< changes made
     std::size_t inner_points = 0;                                   ///< points below the surface
     /// Prisms of 0 (three pins), 1, 2 and 3 tets, over all layers.

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: the tets of a shell and what was asked of them. Gives: for each wish what was reached,
+// which tets fall short, and why as far as the surface or the thickness tell. The causes are
+// necessary ones only where they name the surface: no shell of it does better there
+// (docs/theory.md, "What the surface bounds"). In doubles, on the float32 that are written.
+
+#include "vdb_shell/taper/wanted_bounds.h"
+
+#include "mesh/topology.h"
+#include "vdb_shell/options/option.h"
+#include "vdb_shell/shell/quality.h"
+#include "vdb_shell/shell/surface_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+
+// A pillar that has this share of its cap is held by it: growth ends a little below.
+constexpr double kAtCap = 0.999;
+
+/// What the causes are looked up in.
+struct Place {
+    const ShellStack& stack;
+    const TetMesh& tets;
+    const TriangleMesh& surface;
+    const std::vector<double>& cap;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> edge_angle;
+};
+
+Place look_around(const ShellStack& stack, const TetMesh& tets, const TriangleMesh& surface,
+                  Side side, const std::vector<double>& cap, const WantedBounds& wanted)
+{
+    Place place{stack, tets, surface, cap, {}};
+    if (!wanted.dihedral)
+        return place;
+    for (const EdgeAngle& at : edge_angles(surface, side))
+        place.edge_angle[{at.edge[0], at.edge[1]}] = at.radians;
+    return place;
+}
+
+/// The vertices of the skin among the corners of a tet.
+std::vector<std::uint32_t> corners_on_skin(const Place& at, std::size_t t)
+{
+    std::vector<std::uint32_t> vertices;
+    for (int i = 0; i < 4; ++i)
+        if (const std::uint32_t p = at.tets.tets[t][i]; at.tets.layer[p] == at.stack.skin)
+            vertices.push_back(at.tets.source_vertex[p]);
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+}
+
+bool held_by_triangle(const Place& at, const std::vector<std::uint32_t>& skin, std::size_t t,
+                      const WantedBound& bound)
+{
+    const openvdb::Vec3I& triangle = at.surface.triangles[at.tets.prism[t]];
+    std::array<Vec3d, 3> p;
+    for (int i = 0; i < 3; ++i) {
+        if (!std::binary_search(skin.begin(), skin.end(), triangle[i]))
+            return false;
+        p[std::size_t(i)] = Vec3d(at.surface.points[triangle[i]]);
+    }
+    return (bound.kind == BoundKind::amips && least_amips(p[0], p[1], p[2]) > bound.asked) ||
+           (bound.kind == BoundKind::edge_ratio &&
+            least_edge_ratio(p[0], p[1], p[2]) > bound.asked);
+}
+
+bool held_by_edge(const Place& at, const std::vector<std::uint32_t>& skin, const WantedBound& bound)
+{
+    if (bound.kind != BoundKind::dihedral)
+        return false;
+    for (std::size_t i = 0; i < skin.size(); ++i)
+        for (std::size_t j = i + 1; j < skin.size(); ++j) {
+            const auto found = at.edge_angle.find({skin[i], skin[j]});
+            if (found != at.edge_angle.end() && found->second < 2 * bound.asked)
+                return true;
+        }
+    return false;
+}
+
+bool at_cap(const Place& at, std::uint32_t vertex)
+{
+    const double cap = at.cap[vertex];
+    const Vec3d from(at.stack.surface(at.stack.skin)[vertex]);
+    return std::isfinite(cap) &&
+           (Vec3d(at.stack.surface(at.stack.layers.size())[vertex]) - from).length() >=
+               kAtCap * cap;
+}
+
+ShortCause cause_of(const Place& at, std::size_t t, const WantedBound& bound)
+{
+    const std::vector<std::uint32_t> skin = corners_on_skin(at, t);
+    if (held_by_triangle(at, skin, t, bound))
+        return ShortCause::surface_triangle;
+    if (held_by_edge(at, skin, bound))
+        return ShortCause::surface_edge;
+    const openvdb::Vec3I& triangle = at.surface.triangles[at.tets.prism[t]];
+    for (int i = 0; i < 3; ++i)
+        if (at_cap(at, triangle[i]))
+            return ShortCause::thickness;
+    return ShortCause::room;
+}
+
+/// Of a figure that each tet has by itself. `larger`: the larger the better.
+WantedBound judge_shapes(const Place& at, const std::vector<TetShape>& shapes, BoundKind kind,
+                         double TetShape::*figure, double asked, bool larger)
+{
+    WantedBound bound;
+    bound.kind = kind;
+    bound.asked = asked;
+    bound.reached = shapes.empty() ? asked : shapes[0].*figure;
+    for (std::size_t t = 0; t < shapes.size(); ++t) {
+        const double value = shapes[t].*figure;
+        bound.reached = larger ? std::min(bound.reached, value) : std::max(bound.reached, value);
+        if (larger ? value >= asked : value <= asked)
+            continue;
+        const ShortCause cause = cause_of(at, t, bound);
+        ++bound.short_tets;
+        ++bound.causes[std::size_t(cause)];
+        if (bound.first.size() < WantedBound::kFirstShown)
+            bound.first.push_back(
+                {std::uint32_t(t), at.tets.prism[t], at.tets.prism_layer[t], value, cause});
+    }
+    bound.met = bound.short_tets == 0;
+    if (!bound.met)
+        bound.shortfall = double(bound.short_tets) / double(shapes.size());
+    return bound;
+}
+
+WantedBound judge_whole(BoundKind kind, double asked, double reached, bool larger)
+{
+    WantedBound bound;
+    bound.kind = kind;
+    bound.asked = asked;
+    bound.reached = reached;
+    bound.met = larger ? reached >= asked : reached <= asked;
+    if (!bound.met)
+        bound.shortfall = std::abs(asked - reached) / asked;
+    return bound;
+}
+
+double fill_of(const TetMesh& tets, const ShellStack& stack, const TriangleMesh& surface)
+{
+    double volume = 0;
+    for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+        if (tets.prism_layer[t] < stack.skin)
+            continue; // outside, no part of the solid
+        const openvdb::Vec4I& tet = tets.tets[t];
+        const Vec3d a(tets.points[tet[0]]);
+        volume += (Vec3d(tets.points[tet[1]]) - a)
+                      .cross(Vec3d(tets.points[tet[2]]) - a)
+                      .dot(Vec3d(tets.points[tet[3]]) - a);
+    }
+    return volume / 6 / signed_volume(surface.points, surface.triangles);
+}
+
+} // namespace
+
+const NameTable<BoundKind>& names(BoundKind)
+{
+    static const NameTable<BoundKind> table{{"dihedral", BoundKind::dihedral},
+                                            {"amips", BoundKind::amips},
+                                            {"edge-ratio", BoundKind::edge_ratio},
+                                            {"fill", BoundKind::fill},
+                                            {"tets", BoundKind::tets}};
+    return table;
+}
+
+const NameTable<ShortCause>& names(ShortCause)
+{
+    static const NameTable<ShortCause> table{{"surface-triangle", ShortCause::surface_triangle},
+                                             {"surface-edge", ShortCause::surface_edge},
+                                             {"thickness", ShortCause::thickness},
+                                             {"room", ShortCause::room}};
+    return table;
+}
+
+OptionList describe(WantedBounds& o)
+{
+    constexpr double kRegularDihedral = 1.2309594173407747; // arccos(1/3)
+    return in_group("Bounds", {option("dihedral", o.dihedral, "--want-dihedral",
+                                      "Want no dihedral angle smaller than this, radians")
+                                   .in(Unit::radians)
+                                   .within(above(0).at_most(kRegularDihedral)),
+                               option("amips", o.amips, "--want-amips",
+                                      "Want no tet of a larger AMIPS, 3 for a regular tet")
+                                   .within(at_least(3)),
+                               option("edge_ratio", o.edge_ratio, "--want-edge-ratio",
+                                      "Want no tet whose longest edge is more times its shortest")
+                                   .within(at_least(1)),
+                               option("fill", o.fill, "--want-fill",
+                                      "Want this share of the solid filled, 0 to 1")
+                                   .in(Unit::share)
+                                   .within(above(0).at_most(1)),
+                               option("tets", o.tets, "--want-tets", "Want no more tets than this")
+                                   .in(Unit::count)
+                                   .within(at_least(4))});
+}
+
+bool BoundsReport::met() const
+{
+    return std::all_of(bounds.begin(), bounds.end(), [](const WantedBound& b) { return b.met; });
+}
+
+double BoundsReport::shortfall() const
+{
+    double sum = 0;
+    for (const WantedBound& bound : bounds)
+        sum += bound.met ? 0 : 1 + bound.shortfall;
+    return sum;
+}
+
+BoundsReport judge_bounds(const ShellStack& stack, const TetMesh& tets, const TriangleMesh& surface,
+                          Side side, const std::vector<double>& cap, const WantedBounds& wanted)
+{
+    const Place at = look_around(stack, tets, surface, side, cap, wanted);
+    std::vector<TetShape> shapes;
+    for (std::size_t t = 0; t < tets.tets.size(); ++t)
+        shapes.push_back(shape_of(tets, t));
+    BoundsReport report;
+    const auto add = [&](WantedBound bound) { report.bounds.push_back(std::move(bound)); };
+    if (wanted.dihedral)
+        add(judge_shapes(at, shapes, BoundKind::dihedral, &TetShape::min_dihedral_radians,
+                         *wanted.dihedral, true));
+    if (wanted.amips)
+        add(judge_shapes(at, shapes, BoundKind::amips, &TetShape::amips, *wanted.amips, false));
+    if (wanted.edge_ratio)
+        add(judge_shapes(at, shapes, BoundKind::edge_ratio, &TetShape::edge_ratio,
+                         *wanted.edge_ratio, false));
+    if (wanted.fill)
+        add(judge_whole(BoundKind::fill, *wanted.fill, fill_of(tets, stack, surface), true));
+    if (wanted.tets)
+        add(judge_whole(BoundKind::tets, double(*wanted.tets), double(tets.tets.size()), false));
+    return report;
+}
+
+} // namespace vdb_shell
