@@ -222,7 +222,7 @@ OptionList describe(CoreOptions& o)
     return in_group(
         "Cores",
         {option("distance", o.distance, "--core-distance",
-                "The shell stays at least so far from the surfaces that --core FILE gives")
+                "The shell stays at least so far from the surfaces of --core FILE, world units")
              .in(Unit::world_length)
              .within(at_least(0)),
          option("reach", o.reach, "--core-reach",
