@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""How full the default's shells are on large surfaces that nobody made for a textbook, for docs/measurements/scans.md.
+
+    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST]
+
+LIST has a line "tuning NAME" or "judging NAME" for each mesh, found as NAME.obj or NAME.off in one of the folders; what
+is not there is left out and named. --before is a binary of an older version. Each build is one run on one thread; times
+are processor times, so other work on the machine matters little. Where TetGen is installed its time is measured too.
+"""
+import argparse
+import pathlib
+import resource
+import shutil
+import statistics
+import subprocess
+import tempfile
+
+from runs import build, replace_tables, table
+from shape_figures import read_list
+
+EXTENSIONS = [".obj", ".off"]
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command")
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("folders", type=pathlib.Path, nargs="+")
+    parser.add_argument("--before", help="the binary of an older version")
+    parser.add_argument("--meshes", type=pathlib.Path,
+                        default=pathlib.Path(__file__).parent.parent / "measurements/scan_meshes.txt")
+    return parser.parse_args()
+
+
+def find(name, folders):
+    places = [folder / (name + extension) for folder in folders for extension in EXTENSIONS]
+    return next((place for place in places if place.exists()), None)
+
+
+def tetgen_seconds(mesh):
+    """Processor time of tetgen -pY on the same surface; nothing where it is not installed or fails."""
+    if not shutil.which("tetgen"):
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        surface = pathlib.Path(folder) / "surface.off"
+        points, faces = [], []
+        for words in (line.split() for line in mesh.read_text().splitlines() if mesh.suffix == ".obj"):
+            if words[:1] == ["v"]:
+                points.append(" ".join(words[1:4]))
+            elif words[:1] == ["f"]:
+                corners = [int(word.split("/")[0]) - 1 for word in words[1:]]
+                faces += [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:])]
+        if mesh.suffix == ".obj":
+            lines = ["OFF", f"{len(points)} {len(faces)} 0", *points, *(f"3 {a} {b} {c}" for a, b, c in faces)]
+            surface.write_text("\n".join(lines) + "\n")
+        else:
+            shutil.copy(mesh, surface)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run(["tetgen", "-pYQ", surface.name], cwd=folder, capture_output=True, check=False)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if done.returncode != 0:
+            return None
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def row_of(mesh, command, before):
+    now = build(command, mesh, [])
+    if now["exit"] != 0:
+        raise SystemExit(f"{mesh}: {now['message']}")
+    return {"now": now, "then": build(before, mesh, []) if before else None, "tetgen": tetgen_seconds(mesh)}
+
+
+def cells(name, half, row):
+    now, then, tetgen = row["now"], row["then"], row["tetgen"]
+    made = [name, half, f"{now['triangles']:,}", f"{now['fill']:.4f}", str(now["pinned"]),
+            "yes" if now["certified"] else "no",
+            f"{now['seconds'] / tetgen:.2f}" if tetgen else "-"]
+    if then:
+        made += [f"{then['fill']:.4f}", str(then["pinned"]), f"{now['seconds'] / then['seconds']:.2f}"]
+    return made
+
+
+def means(half, rows):
+    now = [row["now"]["fill"] for row in rows]
+    made = [f"mean of {half}", half, "", f"{statistics.mean(now):.4f}", "", "", ""]
+    if rows[0]["then"]:
+        made += [f"{statistics.mean(row['then']['fill'] for row in rows):.4f}", "",
+                 f"{statistics.mean(row['now']['seconds'] / row['then']['seconds'] for row in rows):.2f}"]
+    return made
+
+
+def main():
+    options = arguments()
+    head = ["mesh", "half", "triangles", "fill", "pins", "certified", "time / TetGen -pY"]
+    if options.before:
+        head += ["fill before", "pins before", "time / before"]
+    lines, missing, by_half = [], [], {}
+    for name, half in read_list(options.meshes).items():
+        mesh = find(name, options.folders)
+        if mesh is None:
+            missing.append(name)
+            continue
+        row = row_of(mesh, options.command, options.before)
+        by_half.setdefault(half, []).append(row)
+        lines.append(cells(name, half, row))
+        print(" ".join(lines[-1]), flush=True)
+    lines += [means(half, rows) for half, rows in by_half.items()]
+    note = [f"Not there when this was measured: {', '.join(missing)}.", ""] if missing else []
+    replace_tables(options.page, note + table(head, lines))
+
+
+if __name__ == "__main__":
+    main()
