@@ -8,6 +8,7 @@
 #include "vdb_shell/field/narrow_band.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
+#include "vdb_shell/fill/fill_core.h"
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/growth/refine.h"
 #include "vdb_shell/layers/cut_layers.h"
@@ -62,6 +63,7 @@ struct ShellOptions {
     ScaleOptions scale;
     LayerOptions layers;
     TaperOptions taper;
+    CoreFillOptions core_fill;
     SplitOptions split;
     CoverageOptions coverage;
 };
@@ -94,6 +96,7 @@ struct ShellResult {
     std::optional<SideLines> outside; ///< the lines outward, where the shell lies on both sides
     ShellStack stack;                 ///< one layer a side unless more were asked for
     TetMesh tets;
+    std::optional<CoreTets> core; ///< what fills the rest of the solid, where it was asked for
     ShellReport report;
 };
 

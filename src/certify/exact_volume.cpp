@@ -86,4 +86,19 @@ int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& tria
     return sum > 0 ? 1 : sum < 0 ? -1 : 0;
 }
 
+bool same_volume(const std::vector<Vec3s>& points, const std::vector<openvdb::Vec4I>& tets,
+                 const std::vector<Vec3s>& surface_points, const std::vector<Vec3I>& triangles)
+{
+    using Sum = CGAL::Exact_rational;
+    Sum difference(0);
+    for (const openvdb::Vec4I& t : tets)
+        difference += cone<Sum>(points[t[0]], points[t[1]], points[t[2]], points[t[3]]);
+    // A closed surface encloses the same volume from every apex.
+    const Vec3s apex(0);
+    for (const Vec3I& t : triangles)
+        difference -=
+            cone<Sum>(apex, surface_points[t[0]], surface_points[t[1]], surface_points[t[2]]);
+    return difference == 0;
+}
+
 } // namespace vdb_shell::exact

@@ -99,6 +99,8 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     ShellFile file;
     file.stack = std::move(result.stack);
     file.tets = std::move(result.tets);
+    if (result.core)
+        file.core = std::move(*result.core);
     if (result.report.read)
         file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);
@@ -124,6 +126,8 @@ void require_sensible(const BuildArguments& arguments)
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
+    if (arguments.shell.core_fill.wanted())
+        require_places_for_core(arguments.outputs);
     require_possible(arguments.outputs, {split_grid_name(arguments.mesh.string()).file});
     // The report is written last, because it is the only output that can tell how long the others
     // took.

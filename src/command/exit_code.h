@@ -14,7 +14,8 @@ enum ExitCode {
     geometry_error = 4,
     write_error = 5,
     check_failed = 7,
-    signal_base = 128, ///< plus the signal's number
+    program_failed = 8, ///< an outside program (--core-fill)
+    signal_base = 128,  ///< plus the signal's number
 };
 
 } // namespace vdb_shell::command

@@ -49,6 +49,22 @@ void require_taper_possible(const ShellOptions& options)
         throw InvalidOption(std::string("taper: --taper is not for ") + hindrance);
 }
 
+/// What is filled lies inside of a certified shell that itself lies inside of the surface.
+void require_core_fill_possible(const ShellOptions& options)
+{
+    if (!options.core_fill.wanted())
+        return;
+    const char* hindrance = nullptr;
+    if (options.side != Side::inward)
+        hindrance = "a shell outside the surface (--side)";
+    else if (options.grow.method == Method::raw)
+        hindrance = "the raw method, whose shells may overlap (--method)";
+    else if (options.check.allow_self_intersections)
+        hindrance = "a surface that may cross itself (--allow-self-intersections)";
+    if (hindrance)
+        throw InvalidOption(std::string("core_fill: --core-fill is not for ") + hindrance);
+}
+
 } // namespace
 
 OptionSections describe(ShellOptions& o)
@@ -75,6 +91,7 @@ OptionSections describe(ShellOptions& o)
             {"scale", describe(o.scale)},
             {"layers", describe(o.layers)},
             {"taper", describe(o.taper)},
+            {"core_fill", describe(o.core_fill)},
             {"split", describe(o.split)},
             {"coverage", describe(o.coverage)}};
 }
@@ -96,6 +113,7 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     require_taper_possible(options);
+    require_core_fill_possible(options);
     // A line outward always has a thickness: a tenth of the diagonal where the user gives none
     // (shell/sides.h).
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&

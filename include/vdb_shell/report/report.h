@@ -9,6 +9,7 @@
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
+#include "vdb_shell/fill/fill_core.h"
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/growth/refine.h"
 #include "vdb_shell/io/read_mesh.h"
@@ -97,9 +98,10 @@ struct ShellReport {
     std::optional<ScaleReport> scale;   ///< absent unless the shell was scaled after growth
     std::optional<RefineReport> refine; ///< absent unless rounds of refinement were asked for
     std::optional<OutsideReport> outside;
-    std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
-    std::optional<TaperReport> taper; ///< absent unless it was asked for
-    std::vector<LayerFigures> layers; ///< empty for a single layer
+    std::optional<LayerReport> cut;          ///< absent unless the pillars were cut into layers
+    std::optional<TaperReport> taper;        ///< absent unless it was asked for
+    std::optional<CoreFillReport> core_fill; ///< likewise
+    std::vector<LayerFigures> layers;        ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     TetSigns signs;
     Conformity conformity;

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// What is done with a mesher's tets before they are held against the shell: those outside the void
+// are left out, and points get float32 coordinates. Nothing here decides whether the tets are
+// sound; certify_core does.
+
+#include "fill/mesher_result.h"
+
+#include "vdb_shell/shell/quality.h"
+
+#include "certify/tet_faces.h"
+#include "core/bucket_sort.h"
+#include "core/exact.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <tuple>
+
+namespace vdb_shell::fill
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+using openvdb::Vec4I;
+
+struct Face {
+    std::array<std::uint32_t, 3> turned; ///< the smallest corner first, in the face's direction
+    bool wall;
+    std::uint32_t owner;
+    /// The same for both directions.
+    std::array<std::uint32_t, 3> corners() const
+    {
+        return {turned[0], std::min(turned[1], turned[2]), std::max(turned[1], turned[2])};
+    }
+};
+
+bool operator<(const Face& x, const Face& y)
+{
+    return std::make_tuple(x.corners(), x.wall, x.turned, x.owner) <
+           std::make_tuple(y.corners(), y.wall, y.turned, y.owner);
+}
+
+Face face_of(const Vec3I& f, bool wall, std::uint32_t owner)
+{
+    const int k = f[0] < f[1] ? (f[0] < f[2] ? 0 : 2) : (f[1] < f[2] ? 1 : 2);
+    return {{f[k], f[(k + 1) % 3], f[(k + 2) % 3]}, wall, owner};
+}
+
+std::vector<Face> sorted_faces(const MesherTets& made, const TriangleMesh& surface)
+{
+    std::vector<Face> faces;
+    for (std::uint32_t t = 0; t < made.tets.size(); ++t)
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            faces.push_back(face_of(tet_face(made.tets[t], corner), false, t));
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+        faces.push_back(face_of(surface.triangles[t], true, t));
+    const auto smallest = [](const Face& face) { return face.turned[0]; };
+    const std::size_t points = std::max(made.points.size(), surface.points.size());
+    return bucket_sort<Face>(std::array{std::move(faces)}, points, smallest, std::less<>());
+}
+
+/// A few directions of a cube: its faces and its corners.
+const std::vector<Vec3d>& directions()
+{
+    static const std::vector<Vec3d> all = [] {
+        std::vector<Vec3d> made;
+        for (int i = 0; i < 27; ++i) {
+            const Vec3d d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+            const double length = d.lengthSqr();
+            if (length == 1 || length == 3)
+                made.push_back(d.unit());
+        }
+        return made;
+    }();
+    return all;
+}
+
+/// Moves single points until all tets are positive.
+class Untangling
+{
+public:
+    Untangling(std::vector<Vec3s>& points, std::size_t fixed, const std::vector<Vec4I>& tets)
+        : points_(points), fixed_(fixed), tets_(tets), around_(points.size())
+    {
+        for (std::uint32_t t = 0; t < tets.size(); ++t)
+            for (int corner = 0; corner < 4; ++corner)
+                around_[tets[t][corner]].push_back(t);
+    }
+
+    std::size_t run()
+    {
+        // A point that stands in the way of another is moved in the round after.
+        constexpr int kRounds = 8;
+        std::vector<char> moved(points_.size(), 0);
+        for (int round = 0; round < kRounds; ++round) {
+            bool all_positive = true;
+            for (const Vec4I& tet : tets_) {
+                if (positive(tet))
+                    continue;
+                all_positive = false;
+                for (int corner = 0; corner < 4; ++corner)
+                    if (tet[corner] >= fixed_ && improve(tet[corner]))
+                        moved[tet[corner]] = 1;
+            }
+            if (all_positive)
+                break;
+        }
+        return std::size_t(std::count(moved.begin(), moved.end(), 1));
+    }
+
+private:
+    bool positive(const Vec4I& t) const
+    {
+        return exact::orient3d(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]) > 0;
+    }
+
+    /// Tets around the point that are not positive, and the worst shape among them all: fewer are
+    /// better, then a better shape is.
+    std::pair<std::size_t, double> badness(std::uint32_t point) const
+    {
+        std::size_t bad = 0;
+        double worst = 1;
+        for (const std::uint32_t t : around_[point]) {
+            const Vec4I& c = tets_[t];
+            bad += positive(c) ? 0 : 1;
+            worst = std::min(worst, mean_ratio(Vec3d(points_[c[0]]), Vec3d(points_[c[1]]),
+                                               Vec3d(points_[c[2]]), Vec3d(points_[c[3]])));
+        }
+        return {bad, -worst};
+    }
+
+    double shortest_edge(std::uint32_t point) const
+    {
+        double shortest = std::numeric_limits<double>::max();
+        for (const std::uint32_t t : around_[point])
+            for (int corner = 0; corner < 4; ++corner)
+                if (tets_[t][corner] != point)
+                    shortest = std::min(
+                        shortest,
+                        (Vec3d(points_[tets_[t][corner]]) - Vec3d(points_[point])).length());
+        return shortest;
+    }
+
+    /// Takes the best of a few places about the point, near ones and farther ones.
+    bool improve(std::uint32_t point)
+    {
+        const Vec3d here(points_[point]);
+        Vec3s best = points_[point];
+        auto least = badness(point);
+        const std::size_t before = least.first;
+        // From the shortest edge down to 1e-6 of it, where float32 end.
+        constexpr int kSteps = 10;
+        double step = shortest_edge(point);
+        for (int i = 0; i < kSteps; ++i, step /= 4)
+            for (const Vec3d& direction : directions()) {
+                points_[point] = Vec3s(here + step * direction);
+                const auto badness_there = badness(point);
+                if (badness_there < least) {
+                    least = badness_there;
+                    best = points_[point];
+                }
+            }
+        points_[point] = best;
+        return least.first < before;
+    }
+
+    std::vector<Vec3s>& points_;
+    std::size_t fixed_;
+    const std::vector<Vec4I>& tets_;
+    std::vector<std::vector<std::uint32_t>> around_;
+};
+
+} // namespace
+
+std::vector<Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surface)
+{
+    const std::vector<Face> faces = sorted_faces(made, surface);
+    std::vector<std::vector<std::uint32_t>> across(made.tets.size());
+    std::vector<char> inside(made.tets.size(), 0);
+    std::vector<std::uint32_t> open;
+    for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
+        std::size_t walls = 0;
+        while (last < faces.size() && faces[last].corners() == faces[first].corners())
+            walls += faces[last++].wall ? 1 : 0;
+        const std::size_t owners = last - first - walls;
+        for (std::size_t i = first; i < first + owners; ++i) {
+            const std::uint32_t tet = faces[i].owner;
+            // Seen from the tet, the triangle runs as it does seen from outside the void.
+            if (walls > 0 && faces[i].turned == faces[last - 1].turned && !inside[tet]) {
+                inside[tet] = 1;
+                open.push_back(tet);
+            }
+            if (walls == 0 && owners == 2)
+                across[tet].push_back(faces[first + (i == first ? 1 : 0)].owner);
+        }
+    }
+    while (!open.empty()) {
+        const std::uint32_t tet = open.back();
+        open.pop_back();
+        for (const std::uint32_t next : across[tet])
+            if (!inside[next]) {
+                inside[next] = 1;
+                open.push_back(next);
+            }
+    }
+    std::vector<Vec4I> kept;
+    for (std::size_t t = 0; t < inside.size(); ++t)
+        if (inside[t])
+            kept.push_back(made.tets[t]);
+    return kept;
+}
+
+std::vector<Vec3s> rounded_points(const std::vector<Vec3d>& points, std::size_t fixed,
+                                  const std::vector<Vec4I>& tets, std::size_t& moved)
+{
+    std::vector<Vec3s> rounded;
+    for (const Vec3d& point : points)
+        rounded.emplace_back(point);
+    moved = Untangling(rounded, fixed, tets).run();
+    return rounded;
+}
+
+} // namespace vdb_shell::fill

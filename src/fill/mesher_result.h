@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/mesh/triangle_mesh.h"
+
+#include "fill/mesher_files.h"
+
+namespace vdb_shell::fill
+{
+
+/// The tets that lie inside the surface: those behind one of its triangles, and those that hang
+/// together with them by other faces. A mesher fills a cavity of the void as well, and may fill
+/// what is between the surface and its convex hull.
+std::vector<openvdb::Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surface);
+
+/// The points in float32, the first `fixed` of them as they are. Where rounding has turned tets
+/// over, points behind the first `fixed` are moved until none is, if that can be done by moving
+/// single points. `moved` counts them.
+std::vector<openvdb::Vec3s> rounded_points(const std::vector<openvdb::Vec3d>& points,
+                                           std::size_t fixed,
+                                           const std::vector<openvdb::Vec4I>& tets,
+                                           std::size_t& moved);
+
+} // namespace vdb_shell::fill
