@@ -23,7 +23,7 @@ from tet_shapes import dihedral_degrees
 
 WAYS = [[], ["--for", "fewest-tets"], ["--for", "simulation"]]
 SIZE = 520
-LARGEST_SHOWN = 40
+LARGEST_SHOWN = 30
 # Red is a sliver, blue a good tet; sand between.
 COLOURS = [(0, (.70, .09, .13)), (5, (.93, .45, .32)), (15, (.97, .86, .70)), (LARGEST_SHOWN, (.22, .45, .70))]
 # From where the cut is seen: mostly along its axis, and a little from above.
@@ -89,7 +89,7 @@ def view(renderer, points, axis):
     camera.SetViewUp(*((0, 0, 1) if axis == "y" else (0, 1, 0)))
     camera.ParallelProjectionOn()
     renderer.ResetCamera()
-    camera.Zoom(1.35)
+    camera.Zoom(1.2)
     renderer.ResetCameraClippingRange()
 
 

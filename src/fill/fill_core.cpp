@@ -101,7 +101,8 @@ MesherTets run_mesher(const TriangleMesh& surface, const CoreFillOptions& option
         return fill::read_tetgen(stem);
     }
     const fs::path geo = stem.string() + ".geo", filled = folder.path() / "filled.msh";
-    fill::write_gmsh_input(geo, stem.string() + ".msh", surface, options.edge_length);
+    fill::write_gmsh_input(geo, stem.string() + ".msh", surface, options.edge_length,
+                           options.radius_edge_ratio > 0);
     // One thread: the same tets on every machine.
     run({"-3", "-nt", "1", geo.string(), "-o", filled.string()});
     return fill::read_gmsh_output(filled);

@@ -177,7 +177,7 @@ MesherTets read_tetgen(const fs::path& stem)
 }
 
 void write_gmsh_input(const fs::path& geo, const fs::path& msh, const TriangleMesh& surface,
-                      std::optional<double> edge_length)
+                      std::optional<double> edge_length, bool optimise)
 {
     std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" +
                        std::to_string(surface.points.size()) + "\n";
@@ -197,9 +197,10 @@ void write_gmsh_input(const fs::path& geo, const fs::path& msh, const TriangleMe
     // the void's sheets may come closer to each other than gmsh's default takes for sound.
     std::string script = "Merge \"" + msh.filename().string() +
                          "\";\nSurface Loop(1) = {1};\nVolume(1) = {1};\nMesh.Algorithm3D = 1;\n"
-                         "Mesh.Optimize = 1;\nMesh.Renumber = 0;\nMesh.SaveAll = 1;\n"
+                         "Mesh.Renumber = 0;\nMesh.SaveAll = 1;\n"
                          "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\n"
                          "Mesh.AngleToleranceFacetOverlap = 1e-12;\n";
+    script += optimise ? "Mesh.Optimize = 1;\n" : "Mesh.Optimize = 0;\n";
     if (edge_length) {
         script += "Mesh.MeshSizeMax = ";
         append(script, *edge_length);

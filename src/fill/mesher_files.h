@@ -25,9 +25,11 @@ void write_poly(const std::filesystem::path& path, const TriangleMesh& surface);
 MesherTets read_tetgen(const std::filesystem::path& stem);
 
 /// Gmsh's .msh (format 2.2) with the triangles of one discrete surface, and the .geo that reads it
-/// from the same folder and has it filled. `edge_length`: the longest wanted. Throws WriteError.
+/// from the same folder and has it filled. `edge_length`: the longest wanted; `optimise`: shapes
+/// are made better afterwards. Throws WriteError.
 void write_gmsh_input(const std::filesystem::path& geo, const std::filesystem::path& msh,
-                      const TriangleMesh& surface, std::optional<double> edge_length);
+                      const TriangleMesh& surface, std::optional<double> edge_length,
+                      bool optimise);
 /// The tets of a .msh of format 2.2. Throws ProgramError as read_tetgen.
 MesherTets read_gmsh_output(const std::filesystem::path& msh);
 

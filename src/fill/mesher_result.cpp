@@ -174,43 +174,85 @@ private:
     std::vector<std::vector<std::uint32_t>> around_;
 };
 
-} // namespace
+/// A tet, as it is or turned over.
+struct Oriented {
+    std::uint32_t tet;
+    bool turned;
+};
 
-std::vector<Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surface)
+struct Neighbours {
+    /// By tet: those across faces that are no walls, turned where the two lie on one side of the
+    /// face as they stand.
+    std::vector<std::vector<Oriented>> across;
+    /// By tet, for each of its faces that is a wall: whether it stands behind that wall.
+    std::vector<std::vector<bool>> walls;
+};
+
+Neighbours neighbours_of(const MesherTets& made, const TriangleMesh& surface)
 {
     const std::vector<Face> faces = sorted_faces(made, surface);
-    std::vector<std::vector<std::uint32_t>> across(made.tets.size());
-    std::vector<char> inside(made.tets.size(), 0);
-    std::vector<std::uint32_t> open;
+    Neighbours neighbours;
+    neighbours.across.resize(made.tets.size());
+    neighbours.walls.resize(made.tets.size());
     for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
         std::size_t walls = 0;
         while (last < faces.size() && faces[last].corners() == faces[first].corners())
             walls += faces[last++].wall ? 1 : 0;
         const std::size_t owners = last - first - walls;
-        for (std::size_t i = first; i < first + owners; ++i) {
-            const std::uint32_t tet = faces[i].owner;
-            // Seen from the tet, the triangle runs as it does seen from outside the void.
-            if (walls > 0 && faces[i].turned == faces[last - 1].turned && !inside[tet]) {
-                inside[tet] = 1;
-                open.push_back(tet);
+        for (std::size_t i = first; walls > 0 && i < first + owners; ++i)
+            // Seen from its tet, the triangle runs as it does seen from outside the void.
+            neighbours.walls[faces[i].owner].push_back(faces[i].turned == faces[last - 1].turned);
+        if (walls > 0 || owners != 2)
+            continue;
+        const Face &x = faces[first], &y = faces[first + 1];
+        neighbours.across[x.owner].push_back({y.owner, x.turned == y.turned});
+        neighbours.across[y.owner].push_back({x.owner, x.turned == y.turned});
+    }
+    return neighbours;
+}
+
+/// All that hang together with the root, oriented as it is: a mesher tells the orientation of a
+/// flat tet by a rounded volume, which may be wrong, and its neighbours know better.
+std::vector<Oriented> piece_of(const Neighbours& neighbours, Oriented root, std::vector<char>& seen)
+{
+    std::vector<Oriented> piece{root};
+    seen[root.tet] = 1;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+        const Oriented here = piece[i];
+        for (const Oriented& next : neighbours.across[here.tet])
+            if (!seen[next.tet]) {
+                seen[next.tet] = 1;
+                piece.push_back({next.tet, here.turned != next.turned});
             }
-            if (walls == 0 && owners == 2)
-                across[tet].push_back(faces[first + (i == first ? 1 : 0)].owner);
+    }
+    return piece;
+}
+
+} // namespace
+
+std::vector<Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surface)
+{
+    const Neighbours neighbours = neighbours_of(made, surface);
+    std::vector<char> seen(made.tets.size(), 0);
+    std::vector<Vec4I> kept;
+    for (std::uint32_t root = 0; root < made.tets.size(); ++root) {
+        if (seen[root] || neighbours.walls[root].empty())
+            continue;
+        // Inside the void the root runs as its wall says.
+        const std::vector<Oriented> piece =
+            piece_of(neighbours, {root, !neighbours.walls[root].front()}, seen);
+        std::ptrdiff_t votes = 0;
+        for (const Oriented& one : piece)
+            for (const bool agrees : neighbours.walls[one.tet])
+                votes += agrees ? 1 : -1;
+        if (votes <= 0)
+            continue;
+        for (const Oriented& one : piece) {
+            kept.push_back(made.tets[one.tet]);
+            if (one.turned)
+                std::swap(kept.back()[2], kept.back()[3]);
         }
     }
-    while (!open.empty()) {
-        const std::uint32_t tet = open.back();
-        open.pop_back();
-        for (const std::uint32_t next : across[tet])
-            if (!inside[next]) {
-                inside[next] = 1;
-                open.push_back(next);
-            }
-    }
-    std::vector<Vec4I> kept;
-    for (std::size_t t = 0; t < inside.size(); ++t)
-        if (inside[t])
-            kept.push_back(made.tets[t]);
     return kept;
 }
 

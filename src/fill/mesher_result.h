@@ -8,9 +8,10 @@
 namespace vdb_shell::fill
 {
 
-/// The tets that lie inside the surface: those behind one of its triangles, and those that hang
-/// together with them by other faces. A mesher fills a cavity of the void as well, and may fill
-/// what is between the surface and its convex hull.
+/// The tets that lie inside the surface: of the pieces that hang together by faces which are no
+/// triangles of it, those that are behind most of theirs. A mesher fills a cavity of the void as
+/// well, and may fill what is between the surface and its convex hull. In a piece all tets are
+/// oriented alike.
 std::vector<openvdb::Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surface);
 
 /// The points in float32, the first `fixed` of them as they are. Where rounding has turned tets

@@ -241,16 +241,31 @@ TEST_F(Pretended, ALostTetIsRefused)
     expect_refused({"missing_triangles 1", "stray_faces 3"});
 }
 
-TEST_F(Pretended, AnInvertedTetIsRefused)
+TEST_F(Pretended, ASingleTetTheOtherWayRoundIsTurnedAsItsNeighbours)
 {
-    // Beyond a face, so that one tet has no volume of its own; the others hold the point in place.
-    points.back() = Vec3s(5, 5, 5);
-    put_files();
-    EXPECT_EQ(message(), "taken") << "a point that can be moved back is moved";
-    EXPECT_EQ(made.report.moved_points, 1U);
     std::swap(corners[7][0], corners[7][1]);
     put_files();
-    expect_refused({"misoriented_faces"});
+    EXPECT_EQ(message(), "taken");
+}
+
+TEST_F(Pretended, APointThatTurnsTetsOverIsMovedIfThatHelps)
+{
+    points.back() = Vec3s(5, 5, 5);
+    put_files();
+    EXPECT_EQ(message(), "taken");
+    EXPECT_EQ(made.report.moved_points, 1U);
+}
+
+TEST_F(Pretended, ATetThatIsFlatOrThereTwiceIsRefused)
+{
+    corners.push_back(corners.front());
+    put_files();
+    expect_refused({"crowded_faces"});
+    corners.pop_back();
+    // All corners on the surface, which nobody moves; the last one is a corner twice.
+    corners[0][3] = corners[0][2];
+    put_files();
+    expect_refused({"bad_tets"});
 }
 
 TEST_F(Pretended, APointOfTheSurfaceThatMovedIsRefused)
