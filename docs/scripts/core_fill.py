@@ -23,7 +23,7 @@ from runs import replace_tables, table
 from tet_files import read_obj, read_tets
 from tet_shapes import amips, dihedral_degrees
 
-MESHES = ["artist/cow", "paper/bunny_low_resolution", "artist/fandisk", "paper/knot"]
+MESHES = ["paper/cow", "paper/bunny_low_resolution", "artist/fandisk", "paper/knot"]
 OPTIONS = ["--for simulation", "--layers 2 --thickness-scale 0.4"]
 PROGRAMS = ["tetgen", "gmsh"]
 

@@ -245,6 +245,7 @@ CoreFill fill_core(const ShellStack& stack, const TetMesh& tets, const CoreFillO
         require_same_points(mesher, handed.surface, name);
         turn_positive(mesher);
         mesher.tets = fill::tets_inside(mesher, handed.surface);
+        fill::close_cut_triangles(mesher, handed.surface);
         const std::vector<openvdb::Vec3s> points = fill::rounded_points(
             mesher.points, handed.index.size(), mesher.tets, made.report.moved_points);
         made.core = core_of(mesher, points, handed, surface);

@@ -15,6 +15,8 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
+#include <map>
 #include <tuple>
 
 namespace vdb_shell::fill
@@ -79,7 +81,7 @@ const std::vector<Vec3d>& directions()
     return all;
 }
 
-/// Moves single points until all tets are positive.
+/// Moves single points until no tet is flat, or none can be made better.
 class Untangling
 {
 public:
@@ -97,16 +99,14 @@ public:
         constexpr int kRounds = 8;
         std::vector<char> moved(points_.size(), 0);
         for (int round = 0; round < kRounds; ++round) {
-            bool all_positive = true;
-            for (const Vec4I& tet : tets_) {
-                if (positive(tet))
-                    continue;
-                all_positive = false;
-                for (int corner = 0; corner < 4; ++corner)
-                    if (tet[corner] >= fixed_ && improve(tet[corner]))
+            bool changed = false;
+            for (const Vec4I& tet : tets_)
+                for (int corner = 0; corner < 4 && flat(tet); ++corner)
+                    if (tet[corner] >= fixed_ && improve(tet[corner])) {
                         moved[tet[corner]] = 1;
-            }
-            if (all_positive)
+                        changed = true;
+                    }
+            if (!changed)
                 break;
         }
         return std::size_t(std::count(moved.begin(), moved.end(), 1));
@@ -118,6 +118,20 @@ private:
         return exact::orient3d(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]) > 0;
     }
 
+    double shape(const Vec4I& t) const
+    {
+        return mean_ratio(Vec3d(points_[t[0]]), Vec3d(points_[t[1]]), Vec3d(points_[t[2]]),
+                          Vec3d(points_[t[3]]));
+    }
+
+    /// Not positive, or so close to it that a solver cannot use it; the regular tet has 1. Of a tet
+    /// between four points of one surface nothing can be moved.
+    bool flat(const Vec4I& t) const
+    {
+        constexpr double kFlat = 0.02;
+        return shape(t) < kFlat || !positive(t);
+    }
+
     /// Tets around the point that are not positive, and the worst shape among them all: fewer are
     /// better, then a better shape is.
     std::pair<std::size_t, double> badness(std::uint32_t point) const
@@ -127,8 +141,7 @@ private:
         for (const std::uint32_t t : around_[point]) {
             const Vec4I& c = tets_[t];
             bad += positive(c) ? 0 : 1;
-            worst = std::min(worst, mean_ratio(Vec3d(points_[c[0]]), Vec3d(points_[c[1]]),
-                                               Vec3d(points_[c[2]]), Vec3d(points_[c[3]])));
+            worst = std::min(worst, shape(c));
         }
         return {bad, -worst};
     }
@@ -151,7 +164,7 @@ private:
         const Vec3d here(points_[point]);
         Vec3s best = points_[point];
         auto least = badness(point);
-        const std::size_t before = least.first;
+        const Vec3s before = best;
         // From the shortest edge down to 1e-6 of it, where float32 end.
         constexpr int kSteps = 10;
         double step = shortest_edge(point);
@@ -165,7 +178,7 @@ private:
                 }
             }
         points_[point] = best;
-        return least.first < before;
+        return best != before;
     }
 
     std::vector<Vec3s>& points_;
@@ -254,6 +267,42 @@ std::vector<Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surfa
         }
     }
     return kept;
+}
+
+void close_cut_triangles(MesherTets& inside, const TriangleMesh& surface)
+{
+    const std::vector<Face> faces = sorted_faces(inside, surface);
+    // Of the faces that should not be there: the new points, by each pair of other corners.
+    std::multimap<std::array<std::uint32_t, 2>, std::uint32_t> cuts;
+    std::vector<std::uint32_t> missing;
+    for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
+        while (last < faces.size() && faces[last].corners() == faces[first].corners())
+            ++last;
+        const auto corners = faces[first].corners();
+        if (last - first != 1)
+            continue;
+        if (faces[first].wall)
+            missing.push_back(faces[first].owner);
+        // Ascending, and new points have the largest numbers.
+        else if (corners[2] >= surface.points.size() && corners[1] < surface.points.size())
+            cuts.insert({{corners[0], corners[1]}, corners[2]});
+    }
+    for (const std::uint32_t wall : missing) {
+        const Vec3I& t = surface.triangles[wall];
+        std::map<std::uint32_t, int> sides;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+            const auto [begin, end] = cuts.equal_range({std::min(a, b), std::max(a, b)});
+            for (auto cut = begin; cut != end; ++cut)
+                ++sides[cut->second];
+        }
+        // A point on an edge makes faces with the other two, one inside with all three.
+        for (const auto& [point, count] : sides)
+            if (count >= 2) {
+                inside.tets.emplace_back(t[0], t[2], t[1], point);
+                break;
+            }
+    }
 }
 
 std::vector<Vec3s> rounded_points(const std::vector<Vec3d>& points, std::size_t fixed,

@@ -14,9 +14,14 @@ namespace vdb_shell::fill
 /// oriented alike.
 std::vector<openvdb::Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surface);
 
-/// The points in float32, the first `fixed` of them as they are. Where rounding has turned tets
-/// over, points behind the first `fixed` are moved until none is, if that can be done by moving
-/// single points. `moved` counts them.
+/// Where a mesher has cut triangles of the surface by one new point each, on an edge or inside, a
+/// tet between triangle and point is added, so that the triangle is whole again. Its volume is
+/// about nothing until the point is moved inward (rounded_points).
+void close_cut_triangles(MesherTets& inside, const TriangleMesh& surface);
+
+/// The points in float32, the first `fixed` of them as they are. Where tets are flat or
+/// rounding has turned them over, points behind the first `fixed` are moved until none is, if that
+/// can be done by moving single points. `moved` counts them.
 std::vector<openvdb::Vec3s> rounded_points(const std::vector<openvdb::Vec3d>& points,
                                            std::size_t fixed,
                                            const std::vector<openvdb::Vec4I>& tets,

@@ -44,7 +44,7 @@ struct CoreFillReport {
     CoreFillProgram program = CoreFillProgram::none;
     std::size_t void_triangles = 0; ///< of the surface that was filled; 0: nothing was left to fill
     std::size_t points = 0;         ///< of the core's inside
-    std::size_t moved_points = 0;   ///< of those: moved, as rounding to float32 turned a tet over
+    std::size_t moved_points = 0;   ///< of those: moved, as tets there were flat or turned over
     std::size_t tets = 0;
     double volume = 0;
     double min_dihedral_radians = 0; ///< of the core's tets
