@@ -24,7 +24,7 @@ from tet_files import read_obj, read_tets
 from tet_shapes import amips, dihedral_degrees
 
 MESHES = ["paper/cow", "paper/bunny_low_resolution", "artist/fandisk", "paper/knot"]
-OPTIONS = ["--for simulation", "--layers 2 --thickness-scale 0.4"]
+OPTIONS = ["--for simulation --core free", "--for simulation", "--layers 2 --thickness-scale 0.4"]
 PROGRAMS = ["tetgen", "gmsh"]
 
 
@@ -55,7 +55,7 @@ def rows_of(command, mesh, options, program, folder):
     made = subprocess.run([command, "build", mesh, *shlex.split(options), "--core-fill", program, "-q", "--report",
                            report, "-o", tets], capture_output=True, text=True)
     if made.returncode:
-        return [made.stderr.strip().splitlines()[-1].split(": ", 1)[-1]]
+        return ["refused: " + made.stderr.strip().splitlines()[-1].split(": ", 1)[-1].split("; ")[0].split(",")[0]]
     figures = json.loads(report.read_text())
     points, corners = read_tets(tets)
     surface, triangles = read_obj(mesh)

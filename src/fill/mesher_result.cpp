@@ -96,7 +96,7 @@ public:
     std::size_t run()
     {
         // A point that stands in the way of another is moved in the round after.
-        constexpr int kRounds = 8;
+        constexpr int kRounds = 20;
         std::vector<char> moved(points_.size(), 0);
         for (int round = 0; round < kRounds; ++round) {
             bool changed = false;
@@ -132,18 +132,19 @@ private:
         return shape(t) < kFlat || !positive(t);
     }
 
-    /// Tets around the point that are not positive, and the worst shape among them all: fewer are
-    /// better, then a better shape is.
+    /// Tets around the point that are not positive, and by how much tets fall short of a modest
+    /// shape: fewer are better, then less is. A sum and not the worst, which may be of a tet that
+    /// this point cannot help.
     std::pair<std::size_t, double> badness(std::uint32_t point) const
     {
+        constexpr double kModest = 0.1;
         std::size_t bad = 0;
-        double worst = 1;
+        double lacking = 0;
         for (const std::uint32_t t : around_[point]) {
-            const Vec4I& c = tets_[t];
-            bad += positive(c) ? 0 : 1;
-            worst = std::min(worst, shape(c));
+            bad += positive(tets_[t]) ? 0 : 1;
+            lacking += std::max(0.0, kModest - shape(tets_[t]));
         }
-        return {bad, -worst};
+        return {bad, lacking};
     }
 
     double shortest_edge(std::uint32_t point) const
