@@ -114,6 +114,14 @@ void check_signs(const TetMesh& all, std::size_t first, CoreCertificate& certifi
     certificate.bad_tets = raised(bad);
 }
 
+/// Zeros of either sign differ, as they do in files.
+std::array<std::uint32_t, 3> bits_of(const Vec3s& point)
+{
+    std::array<std::uint32_t, 3> bits{};
+    std::memcpy(bits.data(), point.asPointer(), sizeof bits);
+    return bits;
+}
+
 /// Own points are the lone vertices, each with its very bits, and then points of the inside.
 void check_points(const VoidSurface& surface, std::size_t shell_points, const CoreTets& core,
                   CoreCertificate& certificate)
@@ -121,11 +129,10 @@ void check_points(const VoidSurface& surface, std::size_t shell_points, const Co
     const std::size_t lone = surface.lone_vertices.size();
     for (std::uint32_t i = 0; i < std::max(lone, core.points.size()); ++i) {
         const bool own = i < core.points.size();
-        const bool sound = i < lone ? own && core.source_vertex[i] == surface.lone_vertices[i] &&
-                                          std::memcmp(core.points[i].asPointer(),
-                                                      surface.points[shell_points + i].asPointer(),
-                                                      3 * sizeof(float)) == 0
-                                    : core.source_vertex[i] == CoreTets::kNoVertex;
+        const bool sound =
+            i < lone ? own && core.source_vertex[i] == surface.lone_vertices[i] &&
+                           bits_of(core.points[i]) == bits_of(surface.points[shell_points + i])
+                     : core.source_vertex[i] == CoreTets::kNoVertex;
         if (!sound)
             add_to(certificate.foreign_points, i);
     }

@@ -128,6 +128,7 @@ void require_sensible(const BuildArguments& arguments)
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
     if (arguments.shell.core_fill.wanted())
         require_places_for_core(arguments.outputs);
+    require_program(arguments.shell.core_fill);
     require_possible(arguments.outputs, {split_grid_name(arguments.mesh.string()).file});
     // The report is written last, because it is the only output that can tell how long the others
     // took.

@@ -70,12 +70,11 @@ const std::vector<Vec3d>& directions()
 {
     static const std::vector<Vec3d> all = [] {
         std::vector<Vec3d> made;
-        for (int i = 0; i < 27; ++i) {
-            const Vec3d d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-            const double length = d.lengthSqr();
-            if (length == 1 || length == 3)
-                made.push_back(d.unit());
-        }
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z)
+                    if (const int square = x * x + y * y + z * z; square == 1 || square == 3)
+                        made.push_back(Vec3d(x, y, z).unit());
         return made;
     }();
     return all;
@@ -309,9 +308,7 @@ void close_cut_triangles(MesherTets& inside, const TriangleMesh& surface)
 std::vector<Vec3s> rounded_points(const std::vector<Vec3d>& points, std::size_t fixed,
                                   const std::vector<Vec4I>& tets, std::size_t& moved)
 {
-    std::vector<Vec3s> rounded;
-    for (const Vec3d& point : points)
-        rounded.emplace_back(point);
+    std::vector<Vec3s> rounded(points.begin(), points.end());
     moved = Untangling(rounded, fixed, tets).run();
     return rounded;
 }

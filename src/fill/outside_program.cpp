@@ -68,6 +68,7 @@ struct Spawn {
 std::vector<char*> pointers_to(std::vector<std::string>& words)
 {
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words)
         pointers.push_back(word.data());
     pointers.push_back(nullptr);
@@ -154,7 +155,7 @@ fs::path find_program(const std::string& name)
         // An empty entry means the present folder to a shell, a well known trap; here it is none.
         if (folder.empty())
             continue;
-        const fs::path candidate = fs::path(folder) / name;
+        fs::path candidate = fs::path(folder) / name;
         std::error_code ignored;
         if (fs::is_regular_file(candidate, ignored) && ::access(candidate.c_str(), X_OK) == 0)
             return candidate;
@@ -198,7 +199,7 @@ std::string run_program(const fs::path& program, const std::vector<std::string>&
         // Short beside any meshing, and long enough to cost nothing.
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    const std::string said = text_of(output);
+    std::string said = text_of(output);
     if (WIFSIGNALED(status))
         fail(program, "was ended by signal " + std::to_string(WTERMSIG(status)), said);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
