@@ -24,7 +24,7 @@ from tet_files import read_obj, read_tets
 from tet_shapes import amips, dihedral_degrees
 
 MESHES = ["paper/cow", "paper/bunny_low_resolution", "artist/fandisk", "paper/knot"]
-OPTIONS = ["--for simulation --core free", "--for simulation", "--layers 2 --thickness-scale 0.4"]
+OPTIONS = ["--layers 2 --thickness-scale 0.4", "--for simulation --core free", "--for simulation"]
 PROGRAMS = ["tetgen", "gmsh"]
 
 
@@ -93,7 +93,8 @@ def main():
                 rows.append([name, program, *cells, *[""] * (len(HEAD) - 2 - len(cells))])
                 print(*rows[-1], flush=True)
         lines += [f"`vdb_shell build {options}`", "", *table(HEAD, rows), ""]
-    replace_tables(given.page, lines)
+        # After each part, as all of them take minutes.
+        replace_tables(given.page, lines)
 
 
 if __name__ == "__main__":

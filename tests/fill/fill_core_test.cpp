@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/fill/fill_core.h"
 
-#include "support/cores.h"
 #include "support/files.h"
+#include "support/filled.h"
 #include "support/stacks.h"
 #include "vdb_shell/certify/tet_signs.h"
 

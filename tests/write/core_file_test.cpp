@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/vdb_file.h"
 
-#include "support/cores.h"
 #include "support/files.h"
+#include "support/filled.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
