@@ -6,6 +6,7 @@
 // of any result. Messages go to standard error, so that figures on standard output can be piped.
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/fill/fill_core.h"
 
 #include "command/build_command.h"
 #include "command/exit_code.h"
@@ -143,6 +144,8 @@ int status_of(const std::exception& error)
         return geometry_error;
     if (dynamic_cast<const WriteError*>(&error))
         return write_error;
+    if (dynamic_cast<const ProgramError*>(&error))
+        return program_failed;
     return internal_error;
 }
 

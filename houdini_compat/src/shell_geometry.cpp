@@ -370,6 +370,9 @@ void require_readable(const ShellStack& stack)
 
 HoudiniGeometry shell_geometry(const ShellFile& file)
 {
+    if (!file.core.empty())
+        throw InvalidOption("the shell cannot be written as Houdini geometry: it has no place for "
+                            "the tets of a core");
     vdb_shell::require_consistent(file.stack, file.tets);
     require_readable(file.stack);
     const ShellPoints points = number_points(file.stack, file.tets);

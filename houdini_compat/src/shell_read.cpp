@@ -71,9 +71,9 @@ void require_primitives(const HoudiniGeometry& geometry, const Counts& counts,
 Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const std::string& name)
 {
     const std::int32_t schema = detail.integers(kSchema)[0];
-    if (schema < 1 || schema > kShellSchema)
+    if (schema < 1 || schema > kTaperedSchema)
         detail.fail(kSchema, "is " + std::to_string(schema) + ", schemas 1 to " +
-                                 std::to_string(kShellSchema) + " can be read");
+                                 std::to_string(kTaperedSchema) + " can be read");
     // Each count is bounded by the elements that the geometry has, before memory is taken by it.
     Counts counts;
     counts.vertices = detail.count(kVertices, geometry.points);

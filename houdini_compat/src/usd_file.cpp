@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <list>
 
 namespace vdb_shell
 {
@@ -64,7 +65,10 @@ const std::vector<Vec3s>& skin_of(const UsdSample& sample)
 bool has_layers(const Samples& samples)
 {
     const ShellStack& stack = samples.front().shell->stack;
-    return stack.layers.size() > 1 || stack.skin > 0;
+    // A core has no layer, and has to say so.
+    return stack.layers.size() > 1 || stack.skin > 0 ||
+           std::any_of(samples.begin(), samples.end(),
+                       [](const UsdSample& s) { return has_core(s.shell->tets); });
 }
 
 void write_stops(UsdStage& stage, const Samples& samples)
@@ -152,17 +156,22 @@ template <typename Value> std::string per_point(const UsdSample& sample, const V
 void write_tet_primvars(UsdStage& stage)
 {
     stage.primvar("float[] primvars:depth", [](const UsdSample& s) {
-        const double layers = double(s.shell->stack.layers.size());
-        return per_point(s, [&](std::size_t i) { return float(s.shell->tets.layer[i] / layers); });
+        const auto layers = std::uint8_t(s.shell->stack.layers.size());
+        // All of the core is as deep as the innermost surface.
+        return per_point(s, [&](std::size_t i) {
+            return float(double(std::min(s.shell->tets.layer[i], layers)) / layers);
+        });
     });
     stage.primvar("int[] primvars:layer", [](const UsdSample& s) {
-        return per_point(s, [&](std::size_t i) { return std::int32_t(s.shell->tets.layer[i]); });
+        return usd_array(signed_numbers(s.shell->tets.layer));
     });
-    stage.primvar("int[] primvars:sourceVertex",
-                  [](const UsdSample& s) { return usd_array(s.shell->tets.source_vertex); });
+    stage.primvar("int[] primvars:sourceVertex", [](const UsdSample& s) {
+        return usd_array(signed_numbers(s.shell->tets.source_vertex));
+    });
     stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
         return per_point(s, [&](std::size_t i) {
-            return thickness_of(s.shell->stack, s.shell->tets.source_vertex[i]);
+            const std::uint32_t vertex = s.shell->tets.source_vertex[i];
+            return vertex == CoreTets::kNoVertex ? 0.0f : thickness_of(s.shell->stack, vertex);
         });
     });
 }
@@ -173,15 +182,15 @@ void write_tet_properties(UsdStage& stage, const Samples& samples)
 {
     if (has_layers(samples)) {
         stage.attribute("custom int[] userProperties:layer", [](const UsdSample& s) {
-            const std::vector<std::uint8_t>& layers = s.shell->tets.prism_layer;
-            return usd_array(std::vector<std::int32_t>(layers.begin(), layers.end()));
+            return usd_array(signed_numbers(s.shell->tets.prism_layer));
         });
         stage.attribute("custom int userProperties:layers", [](const UsdSample& s) {
             return std::to_string(s.shell->stack.layers.size());
         });
     }
-    stage.attribute("custom int[] userProperties:prism",
-                    [](const UsdSample& s) { return usd_array(s.shell->tets.prism); });
+    stage.attribute("custom int[] userProperties:prism", [](const UsdSample& s) {
+        return usd_array(signed_numbers(s.shell->tets.prism));
+    });
     if (has_layers(samples))
         stage.attribute("custom int userProperties:skin",
                         [](const UsdSample& s) { return std::to_string(s.shell->stack.skin); });
@@ -292,6 +301,19 @@ void require_fitting(const fs::path& path, const Samples& samples)
     }
 }
 
+/// The samples, with the core among the tets of those that have one; `filled` keeps them.
+Samples with_cores(Samples samples, std::list<ShellFile>& filled)
+{
+    for (UsdSample& sample : samples) {
+        if (sample.shell->core.empty())
+            continue;
+        filled.push_back(*sample.shell);
+        filled.back().tets = joined_tets(sample.shell->tets, sample.shell->core);
+        sample.shell = &filled.back();
+    }
+    return samples;
+}
+
 } // namespace
 
 std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
@@ -331,9 +353,11 @@ std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
     return boundary;
 }
 
-void write_usd(const fs::path& path, const Samples& samples, const UsdOptions& options)
+void write_usd(const fs::path& path, const std::vector<UsdSample>& given, const UsdOptions& options)
 {
-    require_fitting(path, samples);
+    require_fitting(path, given);
+    std::list<ShellFile> filled;
+    const Samples samples = with_cores(given, filled);
     require_positive(path, "metres per unit", options.meters_per_unit);
     require_positive(path, "frames per second", options.frames_per_second);
     write_stream_atomically(path, [&](std::ostream& out) {

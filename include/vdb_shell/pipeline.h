@@ -8,6 +8,7 @@
 #include "vdb_shell/field/narrow_band.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
+#include "vdb_shell/fill/fill_core.h"
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/growth/refine.h"
 #include "vdb_shell/layers/cut_layers.h"
@@ -70,6 +71,7 @@ struct ShellOptions {
     TaperOptions taper;
     /// Tapering is run towards them; without it they are only checked.
     WantedBounds wanted;
+    CoreFillOptions core_fill;
     SplitOptions split;
     CoverageOptions coverage;
 };
@@ -110,6 +112,7 @@ struct ShellResult {
     /// Up to the certificate surface, directions, lengths and stack have the cores too, as vertices
     /// that are pinned; in the result they have not, and this is empty.
     VertexRange core_vertices;
+    std::optional<CoreTets> core; ///< what fills the rest of the solid, where it was asked for
     ShellReport report;
 };
 

@@ -6,6 +6,7 @@
 
 #include <vdb_shell/core/error.h>
 #include <vdb_shell/io/read_file.h>
+#include <vdb_shell/shell/core_tets.h>
 #include <vdb_shell/write/vdb_file.h>
 
 #include <Eigen/Geometry>
@@ -30,7 +31,7 @@ Solid from_shell(const vdb_shell::TetMesh& mesh)
             solid.points(k, Eigen::Index(i)) = double(mesh.points[i][k]);
     for (const openvdb::Vec4I& t : mesh.tets)
         solid.tets.push_back({int(t[0]), int(t[1]), int(t[2]), int(t[3])});
-    solid.layer.assign(mesh.layer.begin(), mesh.layer.end());
+    solid.layer = vdb_shell::signed_numbers(mesh.layer);
     return solid;
 }
 
@@ -208,9 +209,10 @@ Solid read_solid(const fs::path& path)
 {
     const std::string extension = path.extension().string();
     Solid solid;
-    if (extension == ".vdb")
-        solid = from_shell(vdb_shell::read_shell_vdb(path).tets);
-    else if (extension == ".node" || extension == ".ele")
+    if (extension == ".vdb") {
+        const vdb_shell::ShellFile file = vdb_shell::read_shell_vdb(path);
+        solid = from_shell(vdb_shell::joined_tets(file.tets, file.core));
+    } else if (extension == ".node" || extension == ".ele")
         solid = read_tetgen(path);
     else if (extension == ".vtk")
         solid = read_vtk(path);

@@ -16,9 +16,9 @@ using Triangle = std::array<int, 3>;
 
 struct Solid {
     Points points;
-    std::vector<Tet> tets; ///< det(b-a, c-a, d-a) > 0
-    std::vector<int>
-        layer; ///< per point, 0 on the outer surface; empty where the file does not say
+    std::vector<Tet> tets;  ///< det(b-a, c-a, d-a) > 0
+    std::vector<int> layer; ///< per point, 0 on the outer surface, -1 in a filled core; empty where
+                            ///< the file does not say
 };
 
 /// Reads a shell's .vdb by the library's reader; .node with its .ele, of this project (then with

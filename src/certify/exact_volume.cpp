@@ -9,10 +9,13 @@
 
 #include "certify/exact_volume.h"
 
+#include <CGAL/Exact_integer.h>
 #include <CGAL/Exact_rational.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace vdb_shell::exact
 {
@@ -53,6 +56,34 @@ double cone_bound(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s
     return product;
 }
 
+/// The exponent of a power of two of which all coordinates are multiples.
+int lowest_bit(const std::vector<Vec3s>& points)
+{
+    int lowest = 0;
+    for (const Vec3s& point : points)
+        for (int k = 0; k < 3; ++k)
+            if (point[k] != 0)
+                lowest =
+                    std::min(lowest, std::ilogb(point[k]) - std::numeric_limits<float>::digits);
+    return lowest;
+}
+
+/// Six volumes of the cone, in units of 2^(-3 shift).
+CGAL::Exact_integer whole_cone(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s& c,
+                               int shift)
+{
+    using Number = CGAL::Exact_integer;
+    std::array<std::array<Number, 3>, 3> m;
+    const std::array<const Vec3s*, 3> corner{&a, &b, &c};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            m[i][k] = Number(std::ldexp(double((*corner[i])[int(k)]), shift)) -
+                      Number(std::ldexp(double(apex[int(k)]), shift));
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
+           m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
+           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
 } // namespace
 
 int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& triangles,
@@ -84,6 +115,22 @@ int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& tria
     CGAL::Exact_rational sum(0);
     sum_over(sum, cone<CGAL::Exact_rational>);
     return sum > 0 ? 1 : sum < 0 ? -1 : 0;
+}
+
+bool same_volume(const std::vector<Vec3s>& points, const std::vector<openvdb::Vec4I>& tets,
+                 const std::vector<Vec3s>& surface_points, const std::vector<Vec3I>& triangles)
+{
+    // Whole numbers, as rationals spend most of their time on common divisors. One scale for all.
+    const int shift = -std::min(lowest_bit(points), lowest_bit(surface_points));
+    CGAL::Exact_integer difference(0);
+    for (const openvdb::Vec4I& t : tets)
+        difference += whole_cone(points[t[0]], points[t[1]], points[t[2]], points[t[3]], shift);
+    // A closed surface encloses the same volume from every apex.
+    const Vec3s apex(0);
+    for (const Vec3I& t : triangles)
+        difference -= whole_cone(apex, surface_points[t[0]], surface_points[t[1]],
+                                 surface_points[t[2]], shift);
+    return difference == 0;
 }
 
 } // namespace vdb_shell::exact

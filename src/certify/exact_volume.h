@@ -14,4 +14,10 @@ int volume_sign(const std::vector<openvdb::Vec3s>& points,
                 const std::vector<openvdb::Vec3I>& triangles,
                 const std::vector<std::uint32_t>& chosen);
 
+/// Whether the signed volumes of the tets sum up to the volume that the triangles enclose, which
+/// close up: always right, in whole numbers of any size.
+bool same_volume(const std::vector<openvdb::Vec3s>& points, const std::vector<openvdb::Vec4I>& tets,
+                 const std::vector<openvdb::Vec3s>& surface_points,
+                 const std::vector<openvdb::Vec3I>& triangles);
+
 } // namespace vdb_shell::exact

@@ -86,6 +86,8 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     file.stack = std::move(result.stack);
     file.tets = std::move(result.tets);
     file.core_feet = std::move(result.core_feet);
+    if (result.core)
+        file.core = std::move(*result.core);
     if (result.report.read)
         file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);
@@ -115,6 +117,9 @@ void require_sensible(const BuildArguments& arguments)
     for (const std::string& core : arguments.cores)
         inputs.emplace_back(split_grid_name(core).file);
     require_fit(arguments.purpose, arguments.shell);
+    if (arguments.shell.core_fill.wanted())
+        require_places_for_core(arguments.outputs);
+    require_program(arguments.shell.core_fill);
     require_possible(arguments.outputs, inputs);
     if (!arguments.cores.empty())
         require_cores_possible(arguments.shell);

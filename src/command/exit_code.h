@@ -15,7 +15,8 @@ enum ExitCode {
     write_error = 5,
     bound_not_met = 6,
     check_failed = 7,
-    signal_base = 128, ///< plus the signal's number
+    program_failed = 8, ///< an outside program (--core-fill)
+    signal_base = 128,  ///< plus the signal's number
 };
 
 } // namespace vdb_shell::command

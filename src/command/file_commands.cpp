@@ -90,6 +90,9 @@ int run_info(const FileArguments& arguments)
               << " surface vertices, " << layers << (layers == 1 ? " layer, " : " layers, ")
               << layers * file.stack.triangles().size() << " prisms, " << file.tets.points.size()
               << " points, " << file.tets.tets.size() << " tets\n";
+    if (!file.core.empty())
+        std::cout << "  core: " << file.core.points.size() << " points, " << file.core.tets.size()
+                  << " tets\n";
     for (const openvdb::FloatGrid::Ptr& grid : {file.surface, file.depth})
         if (grid)
             print_grid(*grid);

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace vdb_shell::command
 {
@@ -60,6 +61,20 @@ fs::path first_vdb(const Outputs& outputs)
         if (kind_of(path) == Kind::vdb)
             return path;
     return {};
+}
+
+/// The shell and what fills it, as one mesh of tets; flags of the core's are all set, as a core is
+/// proven or not there.
+struct Solid {
+    TetMesh tets;
+    std::vector<std::uint8_t> certified;
+};
+Solid solid_of(const ShellFile& file, std::vector<std::uint8_t> certified)
+{
+    Solid solid{joined_tets(file.tets, file.core), std::move(certified)};
+    if (!solid.certified.empty())
+        solid.certified.resize(solid.tets.tets.size(), 1);
+    return solid;
 }
 
 /// The surface that was grown: the inner one, or the outermost if the whole shell lies outside of
@@ -111,6 +126,15 @@ void require_possible(const Outputs& outputs, const std::vector<fs::path>& input
     }
 }
 
+void require_places_for_core(const Outputs& outputs)
+{
+    for (const fs::path& path : outputs.paths)
+        if (kind_of(path) == Kind::houdini)
+            throw InvalidOption(path.string() +
+                                ": Houdini's geometry has no place for the tets of a core "
+                                "(--core-fill); write .vdb, .usda, or tets");
+}
+
 bool wants_vdb(const Outputs& outputs)
 {
     return std::any_of(outputs.paths.begin(), outputs.paths.end(),
@@ -126,6 +150,9 @@ bool wants_flags(const Outputs& outputs)
 void write_outputs(const Outputs& outputs, const ShellFile& file,
                    const std::vector<std::uint8_t>& certified)
 {
+    if (!file.core.empty())
+        require_places_for_core(outputs);
+    const Solid solid = wants_flags(outputs) ? solid_of(file, certified) : Solid{};
     for (const fs::path& path : outputs.paths) {
         switch (kind_of(path)) {
         case Kind::vdb:
@@ -135,8 +162,8 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             houdini::write_shell_geometry(path, file);
             break;
         case Kind::tets:
-            write_tets(path, file.tets, certified, file.placement,
-                       feet_of_tet_points(file.stack, file.tets, file.core_feet));
+            write_tets(path, solid.tets, solid.certified, file.placement,
+                       feet_of_tet_points(file.stack, solid.tets, file.core_feet));
             break;
         case Kind::surface:
             write_mesh(path, grown_surface(file.stack), file.placement);
@@ -144,7 +171,8 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
         // The picture shows the outermost and the innermost surface; surfaces between layers show
         // by the edges of the tets.
         case Kind::picture:
-            write_cross_section(path, hull_of(file.stack), file.tets, outputs.picture);
+            write_cross_section(path, hull_of(file.stack), joined_tets(file.tets, file.core),
+                                outputs.picture);
             break;
         case Kind::usd:
             write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd);

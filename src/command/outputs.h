@@ -28,6 +28,9 @@ OptionSections describe(Outputs& outputs);
 /// that cannot be written: tested before any work is done. `inputs` must not be overwritten.
 void require_possible(const Outputs& outputs, const std::vector<std::filesystem::path>& inputs);
 
+/// Throws InvalidOption where one of the formats cannot hold a core.
+void require_places_for_core(const Outputs& outputs);
+
 /// True when some output needs the grids of the file.
 bool wants_vdb(const Outputs& outputs);
 

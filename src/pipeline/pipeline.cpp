@@ -91,6 +91,24 @@ void taper_and_certify(ShellResult& r, const ShellOptions& options,
     certify();
 }
 
+/// Fills what the shell leaves empty, when asked. Only a certified shell has a void of which
+/// anything is known.
+void fill_when_asked(ShellResult& r, const ShellOptions& options, StageClock& clock,
+                     Interrupter* interrupter)
+{
+    if (!options.core_fill.wanted())
+        return;
+    if (!r.report.certificate->certified())
+        throw GeometryError(r.report.source + ": its shell is not certified, so that --core-fill " +
+                            name_in_table(options.core_fill.program) +
+                            " has nothing sound to fill");
+    clock.run("core fill", [&] {
+        CoreFill made = fill_core(r.stack, r.tets, options.core_fill, interrupter);
+        r.core = std::move(made.core);
+        r.report.core_fill = std::move(made.report);
+    });
+}
+
 /// Puts the surface to work with into r.surface: repaired if the options say so, checked and found
 /// usable, and resampled.
 void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
@@ -174,6 +192,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     clock.run("layers", [&] { make_layers(r, options, interrupter); });
     taper_and_certify(r, options, thickness_grid, clock, interrupter);
     part_from_cores(r, options, clock);
+    fill_when_asked(r, options, clock, interrupter);
     // What is certified as a whole has no overlaps, so the search would only cost time. It serves
     // surfaces that cross themselves, and the raw method.
     if (!r.report.certificate->certified())
@@ -201,6 +220,7 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     require_sensible(options, thickness_grid != nullptr);
     if (!cores.empty())
         require_cores_possible(options);
+    require_program(options.core_fill);
     ShellResult r;
     r.report.source = name;
     if (!options.wrap.wanted) {
@@ -224,6 +244,7 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
     require_sensible(options, thickness_grid != nullptr);
     if (!cores.empty())
         require_cores_possible(options);
+    require_program(options.core_fill);
     if (options.wrap.wanted)
         throw InvalidOption(name + ": a wrap is for triangles; the surface of a level set is "
                                    "closed, manifold and embedded as it is");

@@ -61,6 +61,22 @@ void require_wishes_possible(const ShellOptions& options)
                             "(--side) has no solid to fill");
 }
 
+/// What is filled lies inside of a certified shell that itself lies inside of the surface.
+void require_core_fill_possible(const ShellOptions& options)
+{
+    if (!options.core_fill.wanted())
+        return;
+    const char* hindrance = nullptr;
+    if (options.side != Side::inward)
+        hindrance = "a shell outside the surface (--side)";
+    else if (options.grow.method == Method::raw)
+        hindrance = "the raw method, whose shells may overlap (--method)";
+    else if (options.check.allow_self_intersections)
+        hindrance = "a surface that may cross itself (--allow-self-intersections)";
+    if (hindrance)
+        throw InvalidOption(std::string("core_fill: --core-fill is not for ") + hindrance);
+}
+
 } // namespace
 
 OptionSections describe(ShellOptions& o)
@@ -89,6 +105,7 @@ OptionSections describe(ShellOptions& o)
             {"layers", describe(o.layers)},
             {"taper", describe(o.taper)},
             {"want", describe(o.wanted)},
+            {"core_fill", describe(o.core_fill)},
             {"split", describe(o.split)},
             {"coverage", describe(o.coverage)}};
 }
@@ -111,6 +128,7 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
     require_taper_possible(options);
     require_wishes_possible(options);
+    require_core_fill_possible(options);
     // A line outward always has a thickness: a tenth of the diagonal where the user gives none
     // (shell/sides.h).
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&
@@ -128,6 +146,8 @@ void require_cores_possible(const ShellOptions& options)
         hindrance = "the raw method, which looks at no obstacle (--method)";
     else if (options.check.allow_self_intersections)
         hindrance = "a surface that may cross itself (--allow-self-intersections)";
+    else if (options.core_fill.wanted())
+        hindrance = "a filled core: the tets between would reach into the surfaces (--core-fill)";
     if (hindrance)
         throw InvalidOption(std::string("cores: --core FILE is not for ") + hindrance);
 }

@@ -181,6 +181,17 @@ ordered_json cut_json(const LayerReport& cut)
     return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}};
 }
 
+ordered_json core_fill_json(const CoreFillReport& fill)
+{
+    return {{"program", name_in_table(fill.program)},
+            {"void_triangles", fill.void_triangles},
+            {"points", fill.points},
+            {"moved_points", fill.moved_points},
+            {"tets", fill.tets},
+            {"volume", fill.volume},
+            {"min_dihedral_degrees", degrees(fill.min_dihedral_radians)}};
+}
+
 ordered_json taper_json(const TaperReport& taper)
 {
     return {{"runs", taper.runs},
@@ -323,6 +334,7 @@ void add_shell(ordered_json& json, const ShellReport& report)
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
     json["taper"] = report.taper ? taper_json(*report.taper) : ordered_json();
     json["cores"] = report.cores ? cores_json(*report.cores) : ordered_json();
+    json["core_fill"] = report.core_fill ? core_fill_json(*report.core_fill) : ordered_json();
     json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},

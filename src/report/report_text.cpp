@@ -265,6 +265,22 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
         wanted_lines(out, *report.wanted);
 }
 
+void core_line(std::ostringstream& out, const ShellReport& report)
+{
+    if (!report.core_fill)
+        return;
+    const CoreFillReport& fill = *report.core_fill;
+    constexpr double kDegrees = 57.29577951308232;
+    const std::string& program = name_in_table(fill.program);
+    line(out, "core",
+         fill.void_triangles == 0
+             ? "nothing was left for " + program + " to fill"
+             : number(fill.tets, 12) + " tets by " + program + ", " + number(fill.points, 12) +
+                   " points, volume " + number(fill.volume, 6) + ", smallest dihedral " +
+                   number(kDegrees * fill.min_dihedral_radians) +
+                   " degrees; with the shell one solid, proven");
+}
+
 void proof_lines(std::ostringstream& out, const ShellReport& report)
 {
     line(out, "coverage", coverage_text(report.coverage, report.side));
@@ -284,6 +300,7 @@ std::string report_text(const ShellReport& report)
     field_lines(out, report.field);
     stage_lines(out, report);
     tet_lines(out, report);
+    core_line(out, report);
     proof_lines(out, report);
     if (!report.stages.empty())
         cost_lines(out, report.stages);

@@ -39,9 +39,11 @@ const Vec3f background_colour(1.0f, 1.0f, 1.0f), void_colour(0.90f, 0.90f, 0.90f
     overlap_colour(0.88f, 0.07f, 0.07f);
 const Vec3f edge_colour(0.16f, 0.20f, 0.26f), outer_colour(0.07f, 0.09f, 0.13f),
     inner_colour(0.05f, 0.25f, 0.60f);
-const std::array<Vec3f, kTintCount> tint_colours{
+/// By prism, and the core's.
+const std::array<Vec3f, kTintCount + 1> tint_colours{
     Vec3f(0.62f, 0.79f, 0.90f), Vec3f(0.98f, 0.87f, 0.62f), Vec3f(0.70f, 0.87f, 0.72f),
-    Vec3f(0.86f, 0.80f, 0.92f), Vec3f(0.96f, 0.78f, 0.70f), Vec3f(0.78f, 0.88f, 0.88f)};
+    Vec3f(0.86f, 0.80f, 0.92f), Vec3f(0.96f, 0.78f, 0.70f), Vec3f(0.78f, 0.88f, 0.88f),
+    Vec3f(0.80f, 0.74f, 0.68f)};
 
 /// The layers of lines are kept apart from the fill and from each other, because each line has to
 /// lie over all fills whatever the order in which the shapes came.

@@ -8,6 +8,8 @@
 
 #include "write/plane_cut.h"
 
+#include "vdb_shell/shell/core_tets.h"
+
 #include "mesh/topology.h"
 
 #include <algorithm>
@@ -130,7 +132,7 @@ std::vector<CutPolygon> cut_tets(const TetMesh& tets, const std::vector<std::uin
     std::vector<CutPolygon> polygons;
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         CutPolygon polygon = cut_tet(tets, t, plane);
-        polygon.tint = tints[tets.prism[t]];
+        polygon.tint = tets.prism[t] == kCorePrism ? kCoreTint : tints[tets.prism[t]];
         if (polygon.corners > 0)
             polygons.push_back(polygon);
     }

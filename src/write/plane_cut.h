@@ -32,6 +32,7 @@ struct CutSegment {
 };
 
 inline constexpr std::uint8_t kTintCount = 6;
+inline constexpr std::uint8_t kCoreTint = kTintCount; ///< of tets that belong to no prism
 
 /// A tint per prism, never that of a prism across an edge; greedy, in the order of the prisms.
 std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangles);

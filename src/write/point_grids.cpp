@@ -242,7 +242,7 @@ ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
     return points;
 }
 
-ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets)
+ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets, const CoreTets& core)
 {
     const auto vertices = std::int64_t(stack.surface(0).size());
     std::int64_t points = vertices;
@@ -257,7 +257,9 @@ ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets)
             std::int64_t(tets.tets.size()),
             layers,
             std::int64_t(stack.skin),
-            stack.tapered};
+            stack.tapered,
+            std::int64_t(core.points.size()),
+            std::int64_t(core.tets.size())};
 }
 
 PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets,

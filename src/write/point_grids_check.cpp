@@ -223,7 +223,24 @@ void require_consistent(const ShellStack& stack, const TetMesh& tets)
     }
 }
 
-std::string checksum_of(const ShellStack& stack, const TetMesh& tets)
+void require_consistent_core(const ShellStack& stack, const TetMesh& tets, const CoreTets& core)
+{
+    require_size(core.source_vertex.size(), core.points.size(), "the core's list of vertices");
+    require_finite(core.points, "a point of the core is not finite");
+    require(core.tets.empty() || stack.skin == 0, "a core within a shell outside the surface", 0);
+    const std::size_t points = tets.points.size() + core.points.size();
+    const auto most = std::size_t(std::numeric_limits<std::int32_t>::max());
+    require(points <= most && core.tets.size() <= most, "more of the core than 32 bits number", 0);
+    for (std::size_t t = 0; t < core.tets.size(); ++t)
+        for (int corner = 0; corner < 4; ++corner)
+            require(core.tets[t][corner] < points, "a point of the core's tet is out of range", t);
+    for (std::size_t i = 0; i < core.points.size(); ++i)
+        require(core.source_vertex[i] == CoreTets::kNoVertex ||
+                    core.source_vertex[i] < stack.surface(0).size(),
+                "a vertex of the core is out of range", i);
+}
+
+std::string checksum_of(const ShellStack& stack, const TetMesh& tets, const CoreTets& core)
 {
     Fnv1a hash;
     // The order of the arrays is part of the format: another order gives another number, and all
@@ -247,6 +264,11 @@ std::string checksum_of(const ShellStack& stack, const TetMesh& tets)
     // Only where it is set, for the same reason.
     if (stack.tapered)
         hash.add(std::vector<std::uint8_t>{1});
+    if (!core.empty()) {
+        hash.add(core.points);
+        hash.add(core.source_vertex);
+        hash.add(core.tets);
+    }
     return hash.hex();
 }
 

@@ -6,6 +6,7 @@
 // at 1 for Medit and Gmsh. What stands where is in docs/file_format.md.
 
 #include "vdb_shell/mesh/triangle_mesh.h"
+#include "vdb_shell/shell/core_tets.h"
 
 #include "vdb_shell/write/text_out.h"
 #include "write/tet_formats.h"
@@ -31,13 +32,12 @@ openvdb::Vec3d placed(const Placement& placement, const openvdb::Vec3s& point)
 /// One named scalar per node or element, tags from 1. The numbers between the name and the values
 /// are Gmsh's tags: one string, one real (the time, 0), three integers (the step, the number of
 /// components, the number of values).
-template <typename T>
 void write_gmsh_data(TextOut& text, const char* section, const char* name,
-                     const std::vector<T>& values)
+                     const std::vector<std::int32_t>& values)
 {
     text << '$' << section << "\n1\n\"" << name << "\"\n1\n0\n3\n0\n1\n" << values.size() << '\n';
     for (std::size_t i = 0; i < values.size(); ++i)
-        text << i + 1 << ' ' << unsigned(values[i]) << '\n';
+        text << i + 1 << ' ' << values[i] << '\n';
     text << "$End" << section << '\n';
 }
 
@@ -59,9 +59,11 @@ void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& 
 {
     TextOut text(out);
     text << "# index x y z source_vertex layer\n" << tets.points.size() << " 3 2 0\n";
+    const std::vector<std::int32_t> vertex = signed_numbers(tets.source_vertex);
+    const std::vector<std::int32_t> layer = signed_numbers(tets.layer);
     for (std::size_t i = 0; i < tets.points.size(); ++i)
-        text << i << ' ' << placed(placement, tets.points[i]) << ' ' << tets.source_vertex[i] << ' '
-             << int(tets.layer[i]) << '\n';
+        text << i << ' ' << placed(placement, tets.points[i]) << ' ' << vertex[i] << ' ' << layer[i]
+             << '\n';
 }
 
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets)
@@ -70,12 +72,14 @@ void write_tetgen_ele(std::ostream& out, const TetMesh& tets)
     const bool layers = has_layers(tets);
     text << "# index a b c d prism" << (layers ? " layer\n" : "\n") << tets.tets.size()
          << (layers ? " 4 2\n" : " 4 1\n");
+    const std::vector<std::int32_t> prism = signed_numbers(tets.prism);
+    const std::vector<std::int32_t> layer = signed_numbers(tets.prism_layer);
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         text << t;
         write_corners(text, tets.tets[t], 0);
-        text << ' ' << tets.prism[t];
+        text << ' ' << prism[t];
         if (layers)
-            text << ' ' << int(tets.prism_layer[t]);
+            text << ' ' << layer[t];
         text << '\n';
     }
 }
@@ -85,15 +89,16 @@ void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placem
     TextOut text(out);
     // Version 2: coordinates are read as doubles.
     text << "MeshVersionFormatted 2\nDimension 3\nVertices\n" << tets.points.size() << '\n';
+    const std::vector<std::int32_t> layer = signed_numbers(tets.layer);
     for (std::size_t i = 0; i < tets.points.size(); ++i)
-        text << placed(placement, tets.points[i]) << ' ' << int(tets.layer[i]) << '\n';
+        text << placed(placement, tets.points[i]) << ' ' << layer[i] << '\n';
     text << "Tetrahedra\n" << tets.tets.size() << '\n';
-    for (const openvdb::Vec4I& tet : tets.tets) {
+    for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         for (int corner = 0; corner < 4; ++corner)
-            text << tet[corner] + 1u << ' ';
-        // One region for all tets: remeshers keep the borders between different references, and
-        // faces between prisms must not become such borders.
-        text << "1\n";
+            text << tets.tets[t][corner] + 1u << ' ';
+        // One region for all tets of the shell: remeshers keep the borders between different
+        // references, and faces between prisms must not become such borders.
+        text << (tets.prism_layer[t] == kCoreLayer ? "2\n" : "1\n");
     }
     text << "End\n";
 }
@@ -119,11 +124,11 @@ void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placeme
         text << '\n';
     }
     text << "$EndElements\n";
-    write_gmsh_data(text, "NodeData", "source_vertex", tets.source_vertex);
-    write_gmsh_data(text, "NodeData", "layer", tets.layer);
-    write_gmsh_data(text, "ElementData", "prism", tets.prism);
+    write_gmsh_data(text, "NodeData", "source_vertex", signed_numbers(tets.source_vertex));
+    write_gmsh_data(text, "NodeData", "layer", signed_numbers(tets.layer));
+    write_gmsh_data(text, "ElementData", "prism", signed_numbers(tets.prism));
     if (has_layers(tets))
-        write_gmsh_data(text, "ElementData", "layer", tets.prism_layer);
+        write_gmsh_data(text, "ElementData", "layer", signed_numbers(tets.prism_layer));
 }
 
 } // namespace vdb_shell

@@ -18,6 +18,7 @@
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/io/vdb_header.h"
 #include "write/core_feet_grid.h"
+#include "write/core_grids.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 
@@ -120,12 +121,21 @@ typename Grid::Ptr read_grid(openvdb::io::File& file, const std::string& where, 
     return typed;
 }
 
-PointGrids read_points_of(openvdb::io::File& file, const std::string& where)
+/// All that lies in the file of the points; the core's only where there is one.
+struct AllPoints {
+    PointGrids shell;
+    CoreGrids core;
+};
+
+AllPoints read_points_of(openvdb::io::File& file, const std::string& where, bool with_core)
 {
     using openvdb::points::PointDataGrid;
-    return {read_grid<PointDataGrid>(file, where, kPointsGrid),
-            read_grid<PointDataGrid>(file, where, kPrismsGrid),
-            read_grid<PointDataGrid>(file, where, kTetsGrid)};
+    return {{read_grid<PointDataGrid>(file, where, kPointsGrid),
+             read_grid<PointDataGrid>(file, where, kPrismsGrid),
+             read_grid<PointDataGrid>(file, where, kTetsGrid)},
+            with_core ? CoreGrids{read_grid<PointDataGrid>(file, where, kCorePointsGrid),
+                                  read_grid<PointDataGrid>(file, where, kCoreTetsGrid)}
+                      : CoreGrids{}};
 }
 
 /// Runs `read`, turning what OpenVDB and the allocator throw at damaged data into ReadError. Errors
@@ -154,15 +164,16 @@ void require_same_shell(const ShellInfo& main, const fs::path& points)
                         beside.checksum + ", expected " + main.checksum);
 }
 
-PointGrids find_points(openvdb::io::File& main, const ShellInfo& info, const fs::path& path)
+AllPoints find_points(openvdb::io::File& main, const ShellInfo& info, const fs::path& path)
 {
+    const bool with_core = info.core_tets > 0;
     if (info.points_at == path)
-        return read_points_of(main, path.string());
+        return read_points_of(main, path.string(), with_core);
     return guarded(info.points_at, [&] {
         require_same_shell(info, info.points_at);
         openvdb::io::File file(info.points_at.string());
         open_file(file);
-        return read_points_of(file, info.points_at.string());
+        return read_points_of(file, info.points_at.string(), with_core);
     });
 }
 
@@ -189,6 +200,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
 {
     openvdb::initialize();
     require_consistent(file.stack, file.tets);
+    require_consistent_core(file.stack, file.tets, file.core);
     const bool beside = options.points == PointPlacement::beside;
     openvdb::MetaMap metadata;
     PointGrids made;
@@ -201,6 +213,12 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
     openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
                                std::move(made.tets)};
+    if (!file.core.empty()) {
+        const CoreGrids core =
+            make_core_grids(number_points(file.stack, file.tets), file.tets, file.core);
+        points.push_back(core.points);
+        points.push_back(core.tets);
+    }
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
     // The grids of points were made for this call, so they may be changed in place.
@@ -246,19 +264,24 @@ ShellFile read_shell_vdb(const fs::path& path)
         // writer's step on the transform alone.
         put_in_place(*result.surface, -info.placement.shift());
         put_in_place(*result.depth, -info.placement.shift());
-        const ShellCounts counts{info.vertices, info.points, info.tet_points, info.prisms,
-                                 info.tets,     info.layers, info.skin,       info.tapered};
-        const PointGrids points = find_points(file, info, path);
-        read_point_grids(points, counts, info.points_at.string(), result.stack, result.tets);
-        result.core_feet = read_core_feet(*points.points, number_points(result.stack, {}),
-                                          info.points_at.string());
+        const ShellCounts counts{info.vertices,    info.points,   info.tet_points, info.prisms,
+                                 info.tets,        info.layers,   info.skin,       info.tapered,
+                                 info.core_points, info.core_tets};
+        const AllPoints points = find_points(file, info, path);
+        const std::string name = info.points_at.string();
+        read_point_grids(points.shell, counts, name, result.stack, result.tets);
+        if (points.core.tets)
+            result.core = read_core_grids(points.core, counts,
+                                          number_points(result.stack, result.tets), name);
+        result.core_feet =
+            read_core_feet(*points.shell.points, number_points(result.stack, {}), name);
         // The file has the sum over all layers; it is put into the first layer.
         result.stack.splits.front().ripples = std::size_t(info.ripples);
         result.parameters_json = info.parameters_json;
         result.report_json = info.report_json;
         // It comes last, because only whole arrays have a checksum. Damage that kept every index in
         // range is found here.
-        const std::string found = checksum_of(result.stack, result.tets);
+        const std::string found = checksum_of(result.stack, result.tets, result.core);
         if (found != info.checksum)
             throw ReadError(path.string() + ": the shell's arrays have checksum " + found +
                             ", the file says " + info.checksum);

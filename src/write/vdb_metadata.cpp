@@ -36,6 +36,8 @@ constexpr const char* kTetsKey = "vdb_shell_tets";
 constexpr const char* kLayersKey = "vdb_shell_layers";
 constexpr const char* kSkinKey = "vdb_shell_skin";
 constexpr const char* kTaperedKey = "vdb_shell_tapered";
+constexpr const char* kCorePointsKey = "vdb_shell_core_points";
+constexpr const char* kCoreTetsKey = "vdb_shell_core_tets";
 constexpr const char* kRipplesKey = "vdb_shell_ripples";
 constexpr const char* kOriginKey = "vdb_shell_origin";
 constexpr const char* kUnitKey = "vdb_shell_unit";
@@ -54,6 +56,7 @@ constexpr const char* kOrientationOfLayers =
     "triangles counter-clockwise seen from outside; tets (a,b,c,d) with det(b-a,c-a,d-a) > 0 "
     "unless inverted; surfaces and layers from 0, the outermost";
 constexpr const char* kGridNames = "surface depth shell_points shell_prisms shell_tets";
+constexpr const char* kCoreGridNames = " core_points core_tets";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what)
 {
@@ -125,6 +128,8 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
 /// of layers.
 int schema_for(const ShellCounts& counts)
 {
+    if (counts.core_tets > 0)
+        return kFilledSchema;
     if (counts.tapered)
         return kTaperedSchema;
     return counts.layers > 1 || counts.skin > 0 ? kLayeredSchema : 1;
@@ -150,6 +155,10 @@ void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellIn
         fail(path, std::string("metadata \"") + kTaperedKey + "\" is " + std::to_string(tapered) +
                        ", expected 0 or 1");
     info.tapered = tapered == 1;
+    if (info.schema < kFilledSchema)
+        return;
+    info.core_points = count_entry(metadata, path, kCorePointsKey);
+    info.core_tets = count_entry(metadata, path, kCoreTetsKey);
 }
 
 void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Placement& placement)
@@ -198,7 +207,7 @@ fs::path points_file_of(const fs::path& path)
 openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, PointPlacement points)
 {
     openvdb::MetaMap map;
-    const ShellCounts counts = counts_of(file.stack, file.tets);
+    const ShellCounts counts = counts_of(file.stack, file.tets, file.core);
     map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
     map.insertMeta(kSchemaKey, Int32Metadata(schema_for(counts)));
     // The casts are safe: require_consistent has bounded these counts by int32, and it runs before
@@ -214,15 +223,21 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
         map.insertMeta(kLayersKey, Int32Metadata(std::int32_t(counts.layers)));
         map.insertMeta(kSkinKey, Int32Metadata(std::int32_t(counts.skin)));
     }
-    if (counts.tapered)
-        map.insertMeta(kTaperedKey, Int32Metadata(1));
+    const bool filled = schema_for(counts) >= kFilledSchema;
+    if (counts.tapered || filled)
+        map.insertMeta(kTaperedKey, Int32Metadata(counts.tapered ? 1 : 0));
+    if (filled) {
+        map.insertMeta(kCorePointsKey, Int32Metadata(std::int32_t(counts.core_points)));
+        map.insertMeta(kCoreTetsKey, Int32Metadata(std::int32_t(counts.core_tets)));
+    }
     if (file.placement.moves()) {
         map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
         map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
     }
     map.insertMeta(kOrientationKey, StringMetadata(layered ? kOrientationOfLayers : kOrientation));
-    map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets)));
-    map.insertMeta(kGridsKey, StringMetadata(kGridNames));
+    map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets, file.core)));
+    map.insertMeta(kGridsKey,
+                   StringMetadata(std::string(kGridNames) + (filled ? kCoreGridNames : "")));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
                                                       : std::string()));
@@ -244,9 +259,10 @@ void add_volume_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 void add_points_metadata(openvdb::GridBase& grid, const openvdb::MetaMap& file)
 {
     grid.setCreator(creator_name());
-    const char* const kept[] = {
-        kSchemaKey,      kVerticesKey, kPointsKey, kTetPointsKey, kPrismsKey, kTetsKey, kRipplesKey,
-        kOrientationKey, kLayersKey,   kSkinKey,   kTaperedKey,   kOriginKey, kUnitKey};
+    const char* const kept[] = {kSchemaKey,   kVerticesKey, kPointsKey,  kTetPointsKey,
+                                kPrismsKey,   kTetsKey,     kRipplesKey, kOrientationKey,
+                                kLayersKey,   kSkinKey,     kTaperedKey, kCorePointsKey,
+                                kCoreTetsKey, kOriginKey,   kUnitKey};
     for (const char* key : kept)
         if (file[key])
             grid.insertMeta(std::string("global:") + key, *file[key]);

@@ -11,6 +11,7 @@
 #include "vdb_shell/write/verify_file.h"
 
 #include "vdb_shell/certify/conformity.h"
+#include "vdb_shell/certify/core_certificate.h"
 #include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
@@ -176,6 +177,29 @@ Verification verify_volume(const ShellFile& file, const json& report)
     return {"volume is as stated", found == claimed, compare(found, claimed)};
 }
 
+/// The core is proven anew, beside a shell that has just been.
+Verification verify_core(const ShellFile& file, const StackCertificate& shell, const json& report)
+{
+    const double tets = stated(report, "/core_fill/tets");
+    const double volume = stated(report, "/core_fill/volume");
+    TetMesh alone = joined_tets(file.tets, file.core);
+    alone.tets = file.core.tets;
+    const double found = tet_volume(alone);
+    bool fits = false;
+    std::string detail = "shell not certified";
+    if (shell.certified() && file.stack.skin == 0) {
+        const CoreCertificate core = certify_core(file.stack, file.tets, file.core);
+        fits = core.certified();
+        detail = fits ? "one complex with the shell, and the volume of the surface, exactly" : "";
+        for (const std::string& failure : core.failures())
+            detail += (detail.empty() ? "" : "; ") + failure;
+    }
+    return {"core fills the shell",
+            fits && double(file.core.tets.size()) == tets && found == volume,
+            detail + "; tets: " + compare(double(file.core.tets.size()), tets) +
+                "; volume: " + compare(found, volume)};
+}
+
 Verification verify_level_set(const ShellFile& file, const json& report)
 {
     const openvdb::FloatGrid& grid = *file.surface;
@@ -223,6 +247,8 @@ std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* inter
                                     verify_signs(file, report),
                                     verify_certificate(certificate, test, claim),
                                     verify_volume(file, report)};
+    if (!file.core.empty() || stated(report, "/core_fill/tets") > 0)
+        found.push_back(verify_core(file, certificate, report));
     // A certified shell has no overlap (docs/theory.md, "The whole shell"), so they are looked for,
     // tet by tet, only where the certificate leaves some to find, or where the file states a
     // number.

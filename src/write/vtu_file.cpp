@@ -6,6 +6,7 @@
 // placement moves them; else they are Float64, since the sum with the origin need not fit a float.
 // What the arrays hold is in docs/file_format.md.
 
+#include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/write/text_out.h"
 #include "write/tet_formats.h"
 
@@ -62,6 +63,17 @@ void write_array(TextOut& text, const char* type, const char* name, int componen
     text << base64(reinterpret_cast<const unsigned char*>(&size), sizeof size)
          << base64(reinterpret_cast<const unsigned char*>(values.data()), std::size_t(size))
          << "\n</DataArray>\n";
+}
+
+/// With a core there are numbers below 0.
+template <typename T>
+void write_numbers(TextOut& text, const TetMesh& tets, const char* type, const char* name,
+                   const std::vector<T>& values)
+{
+    if (has_core(tets))
+        write_array(text, "Int32", name, 1, signed_numbers(values));
+    else
+        write_array(text, type, name, 1, values);
 }
 
 void write_cells(TextOut& text, const TetMesh& tets)
@@ -124,13 +136,13 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
          << byte_order() << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece "
          << "NumberOfPoints=\"" << tets.points.size() << "\" NumberOfCells=\"" << tets.tets.size()
          << "\">\n<PointData>\n";
-    write_array(text, "UInt32", "source_vertex", 1, tets.source_vertex);
-    write_array(text, "UInt8", "layer", 1, tets.layer);
+    write_numbers(text, tets, "UInt32", "source_vertex", tets.source_vertex);
+    write_numbers(text, tets, "UInt8", "layer", tets.layer);
     write_feet(text, feet);
     text << "</PointData>\n<CellData>\n";
-    write_array(text, "UInt32", "prism", 1, tets.prism);
+    write_numbers(text, tets, "UInt32", "prism", tets.prism);
     if (has_layers(tets))
-        write_array(text, "UInt8", "layer", 1, tets.prism_layer);
+        write_numbers(text, tets, "UInt8", "layer", tets.prism_layer);
     if (!certified.empty())
         write_array(text, "UInt8", "certified", 1, certified);
     text << "</CellData>\n<Points>\n";

@@ -9,6 +9,7 @@
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/smooth.h"
 #include "vdb_shell/field/wrap.h"
+#include "vdb_shell/fill/fill_core.h"
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/growth/refine.h"
 #include "vdb_shell/io/read_mesh.h"
@@ -100,20 +101,21 @@ struct ShellReport {
     std::optional<ScaleReport> scale;   ///< absent unless the shell was scaled after growth
     std::optional<RefineReport> refine; ///< absent unless rounds of refinement were asked for
     std::optional<OutsideReport> outside;
-    std::optional<LayerReport> cut;   ///< absent unless the pillars were cut into layers
-    std::optional<TaperReport> taper; ///< absent unless it was asked for
-    std::optional<CoreReport> cores;  ///< absent unless there were some
-    std::vector<LayerFigures> layers; ///< empty for a single layer
+    std::optional<LayerReport> cut;          ///< absent unless the pillars were cut into layers
+    std::optional<TaperReport> taper;        ///< absent unless it was asked for
+    std::optional<CoreFillReport> core_fill; ///< likewise
+    std::optional<CoreReport> cores;         ///< absent unless there were some
+    std::vector<LayerFigures> layers;        ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     TetSigns signs;
     Conformity conformity;
     QualityReport quality;
     SurfaceBounds surface_bounds;
     std::optional<BoundsReport> wanted; ///< absent where nothing was
-    double solid_volume = 0;   ///< of the surface, less that of the cores
-    double shell_volume = 0;   ///< sum of signed tet volumes
-    double outside_volume = 0; ///< the part of it in layers outside the surface
-    double fill = 0;           ///< what of shell_volume lies in layers inside / solid_volume
+    double solid_volume = 0;            ///< of the surface, less that of the cores
+    double shell_volume = 0;            ///< sum of signed tet volumes
+    double outside_volume = 0;          ///< the part of it in layers outside the surface
+    double fill = 0; ///< what of shell_volume lies in layers inside / solid_volume
     /// The solid is the surface's own, or with layers outside what the outermost surface encloses.
     Coverage coverage;
     std::optional<StackCertificate> certificate; ///< nothing when it was not asked for

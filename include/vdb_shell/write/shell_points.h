@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/obstacles/core_feet.h"
+#include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <openvdb/Types.h>
@@ -23,8 +24,9 @@ struct ShellCounts {
     std::int64_t vertices = 0, points = 0, tet_points = 0, prisms = 0, tets = 0;
     std::int64_t layers = 1, skin = 0;
     bool tapered = false;
+    std::int64_t core_points = 0, core_tets = 0;
 };
-ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets);
+ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets, const CoreTets& core = {});
 
 /// The points of the file by id: all vertices of the outermost surface, then surface by surface
 /// those whose pillar in the layer above is not pinned. The tets number their points otherwise:
@@ -70,9 +72,12 @@ std::vector<openvdb::Vec3s> layer_normals(const std::vector<openvdb::Vec3s>& poi
 /// Throws InvalidOption unless the arrays fit together as make_tets leaves them and every
 /// coordinate is finite: what is refused here could not be read back.
 void require_consistent(const ShellStack& stack, const TetMesh& tets);
+/// The same of a core: corners in range, as many points as source vertices, and the shell inside of
+/// its surface where there is one. Precondition: that of the shell.
+void require_consistent_core(const ShellStack& stack, const TetMesh& tets, const CoreTets& core);
 
 /// FNV-1a over all arrays of the shell, as 16 hexadecimal digits: tells a damaged file, and points
 /// that belong to another file. Zeros of either sign differ.
-std::string checksum_of(const ShellStack& stack, const TetMesh& tets);
+std::string checksum_of(const ShellStack& stack, const TetMesh& tets, const CoreTets& core = {});
 
 } // namespace vdb_shell

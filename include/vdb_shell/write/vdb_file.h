@@ -6,6 +6,7 @@
 #include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/options/describe.h"
+#include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <cstdint>
@@ -18,10 +19,11 @@ namespace vdb_shell
 
 /// Version of the layout in docs/file_format.md. A reader refuses a larger one. A shell of one
 /// layer below its surface is written as schema 1, which has no words for layers; one that is not
-/// tapered as schema 2 at most.
-inline constexpr int kShellSchema = 3;
+/// tapered as schema 2 at most, one without a core as schema 3 at most.
+inline constexpr int kShellSchema = 4;
 inline constexpr int kLayeredSchema = 2; ///< the first that knows layers
 inline constexpr int kTaperedSchema = 3; ///< the first that knows pillars with a common end
+inline constexpr int kFilledSchema = 4;  ///< the first that knows tets of a core
 
 /// All that a shell's .vdb holds.
 struct ShellFile {
@@ -29,6 +31,7 @@ struct ShellFile {
     FloatGridPtr depth;   ///< see shell_depth_grid
     ShellStack stack;
     TetMesh tets;
+    CoreTets core; ///< empty where nothing fills the shell
     std::string parameters_json;
     std::string report_json;
     /// Of the surface that was read. In memory grids and points are about the mesh's origin; in the
@@ -59,9 +62,10 @@ struct ShellInfo {
     std::int64_t points = 0;   ///< vertices and, layer by layer, the lower ends of all pillars that
                                ///< have a length
     std::int64_t tet_points = 0, prisms = 0, tets = 0;
-    std::int64_t layers = 1;         ///< as many prisms stand on top of each other
-    std::int64_t skin = 0;           ///< ShellStack::skin
-    bool tapered = false;            ///< ShellStack::tapered
+    std::int64_t layers = 1; ///< as many prisms stand on top of each other
+    std::int64_t skin = 0;   ///< ShellStack::skin
+    bool tapered = false;    ///< ShellStack::tapered
+    std::int64_t core_points = 0, core_tets = 0;
     Placement placement;             ///< moves nothing where the file has none
     std::int64_t ripples = 0;        ///< PrismSplit::ripples, of all layers
     std::string creator;             ///< program and version that wrote it

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/shell/core_tets.h"
+#include "vdb_shell/write/shell_points.h"
+
+#include <openvdb/points/PointDataGrid.h>
+
+#include <string>
+
+namespace vdb_shell
+{
+
+inline constexpr const char* kCorePointsGrid = "core_points";
+inline constexpr const char* kCoreTetsGrid = "core_tets";
+
+/// What fills the shell, as two grids of points. Corners of tets are ids of the shell's points, and
+/// behind those ids the core's own points. Precondition: require_consistent, of both.
+struct CoreGrids {
+    openvdb::points::PointDataGrid::Ptr points, tets;
+};
+CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core);
+
+/// Throws ReadError, its message opened by `name`, unless every id is there once and in range.
+/// `shell` are the shell's points by id.
+CoreTets read_core_grids(const CoreGrids& grids, const ShellCounts& counts,
+                         const ShellPoints& shell, const std::string& name);
+
+} // namespace vdb_shell
