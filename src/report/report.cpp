@@ -12,6 +12,7 @@
 #include "vdb_shell/report/report.h"
 
 #include "certify/certificate_findings.h"
+#include "core/degrees.h"
 #include "mesh/components_json.h"
 #include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"

@@ -5,6 +5,7 @@
 
 #include "report/resample_report.h"
 
+#include "core/degrees.h"
 #include "report/text_lines.h"
 
 #include <nlohmann/json.hpp>
@@ -16,12 +17,6 @@ using nlohmann::ordered_json;
 
 namespace
 {
-
-double degrees(double radians)
-{
-    constexpr double kDegreesPerRadian = 57.29577951308232;
-    return kDegreesPerRadian * radians;
-}
 
 ordered_json figures_json(const TriangleFigures& figures)
 {

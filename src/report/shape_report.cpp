@@ -5,6 +5,7 @@
 
 #include "report/shape_report.h"
 
+#include "core/degrees.h"
 #include "report/text_lines.h"
 
 #include <openvdb/Types.h>
@@ -13,18 +14,8 @@
 
 namespace vdb_shell
 {
-namespace
-{
 
 using nlohmann::ordered_json;
-
-/// Code and options have radians throughout, reports have degrees (docs/conventions.md).
-double degrees(double radians)
-{
-    return radians * 180.0 / openvdb::math::pi<double>();
-}
-
-} // namespace
 
 ordered_json spread_json(const Spread& spread, double (*convert)(double))
 {

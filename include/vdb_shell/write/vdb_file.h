@@ -31,13 +31,13 @@ struct ShellFile {
     FloatGridPtr depth;   ///< see shell_depth_grid
     ShellStack stack;
     TetMesh tets;
-    CoreTets core; ///< empty where nothing fills the shell
     std::string parameters_json;
     std::string report_json;
     /// Of the surface that was read. In memory grids and points are about the mesh's origin; in the
     /// .vdb the transforms of the grids put them where the file has them, in the mesh's unit.
     Placement placement{};
     std::vector<CoreFoot> core_feet{}; ///< by vertex; empty where there were no cores
+    CoreTets core{}; ///< empty where nothing fills the shell
 };
 
 enum class PointPlacement {
