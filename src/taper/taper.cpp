@@ -9,6 +9,7 @@
 #include "vdb_shell/taper/taper.h"
 
 #include "core/stage_progress.h"
+#include "mesh/triangle_area.h"
 #include "taper/passes.h"
 #include "vdb_shell/options/option.h"
 
@@ -23,14 +24,27 @@ namespace
 
 using namespace taper;
 
+/// The triangles, or the prisms as high as edges are long that the solid would hold, whichever are
+/// more. Counted by triangles alone the void is the cheaper the finer the surface is: the scan
+/// boot, of six such prisms to a triangle, was filled to .94 instead of .98.
+double units_of_solid(const std::vector<openvdb::Vec3s>& points,
+                      const std::vector<openvdb::Vec3I>& triangles, double volume)
+{
+    const auto count = double(triangles.size());
+    const double area = surface_area(points, triangles) / count;
+    const double edge_if_equilateral = std::sqrt(4 / std::sqrt(3.0) * area);
+    return std::max(count, volume / (area * edge_if_equilateral));
+}
+
 CostWeights weights_of(const ShellStack& stack, const TaperOptions& options)
 {
     CostWeights weights;
     weights.tet = options.tet_cost;
     weights.power = options.shape_power;
     // The void is what of the solid has no tets, so a cost of the void is a gain of the tets.
-    weights.volume6 = options.void_cost * double(stack.triangles().size()) /
-                      (6 * std::abs(signed_volume(stack.surface(0), stack.triangles())));
+    const double solid = std::abs(signed_volume(stack.surface(0), stack.triangles()));
+    weights.volume6 = options.void_cost *
+                      units_of_solid(stack.surface(0), stack.triangles(), solid) / (6 * solid);
     weights.worst_distortion = distortion_of_amips(options.worst_amips);
     return weights;
 }
@@ -85,7 +99,8 @@ OptionList describe(TaperOptions& o)
              .within(at_least(1).at_most(8))
              .needing("--taper"),
          option("void_cost", o.void_cost, "--taper-void-cost",
-                "What the empty solid would cost for each triangle: the larger, the fuller")
+                "What the empty solid would cost for each triangle, or for each prism as high as "
+                "edges are long that it would hold, if those are more: the larger, the fuller")
              .within(at_least(0))
              .needing("--taper"),
          option("worst_amips", o.worst_amips, "--taper-worst-amips",

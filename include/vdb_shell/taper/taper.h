@@ -29,7 +29,8 @@ struct TaperOptions {
     double tet_cost = 4;
     /// The distortion counts to this power: the larger, the more the worst tets count.
     double shape_power = 1;
-    /// What an empty solid would cost for each triangle of the surface: the larger, the fuller.
+    /// What an empty solid would cost for each triangle of the surface, or for each prism as high
+    /// as edges are long that it would hold, if those are more: the larger, the fuller.
     double void_cost = 80;
     /// No change makes a tet of a larger AMIPS (3 for a regular tet), unless the tets that it
     /// replaces have one as bad.
