@@ -178,7 +178,8 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
             break;
         // Where the finer surface does not cross itself, it is the better start. Whether the mesh
         // does nobody has asked; if so, no level can be free of crossings.
-        if (!coarse.embedded && !levels.empty() && levels.back().embedded)
+        if (!coarse.embedded && !levels.empty() && levels.back().embedded &&
+            double(count) <= schedule.most_coarsest_triangles)
             break;
         levels.push_back(std::move(coarse));
     }

@@ -22,6 +22,8 @@ namespace
 
 // Each repeat costs as much as the first try.
 constexpr int kMostRepeats = 3;
+// Over the wanted number of triangles: a surface of more is no level that saves anything.
+constexpr double kMostOverWanted = 2;
 
 } // namespace
 
@@ -29,10 +31,14 @@ Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles)
 {
     CollapseLimits limits;
     limits.fewest_triangles = triangles;
-    EmbeddedCollapse collapsed = collapse_embedded(mesh, limits, kMostRepeats, Blind::avoided,
-                                                   StageProgress(nullptr, "coarsen"));
-    collapsed.result.embedded = collapsed.embedded;
-    return std::move(collapsed.result);
+    const StageProgress none(nullptr, "coarsen");
+    EmbeddedCollapse sound = collapse_embedded(mesh, limits, kMostRepeats, Blind::avoided, none);
+    // Two walls that are close together all over would stay as fine as they are.
+    if (sound.repeats > 0 &&
+        double(sound.result.mesh.triangles.size()) > kMostOverWanted * double(triangles))
+        sound = collapse_embedded(mesh, limits, 0, Blind::avoided, none);
+    sound.result.embedded = sound.embedded;
+    return std::move(sound.result);
 }
 
 } // namespace vdb_shell

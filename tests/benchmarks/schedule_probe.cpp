@@ -74,6 +74,7 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(pins, PinSchedule, lengths),
     VDB_SHELL_NUMBER(pins, PinSchedule, longest),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, coarsest_triangles),
+    VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, most_coarsest_triangles),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, greatest_ratio),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, end_weight),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, end_gain_of_void),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/resample/coarsen.h"
 
+#include "resample/edge_collapse.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -74,13 +75,29 @@ TEST(Coarsen, MakesNoSliversOfWhatIsFlat)
 
 TEST(Coarsen, KeepsTheSidesOfAThinWallApart)
 {
-    // A hollow ball. Spheres of so few triangles are flat by more than the wall is thick.
-    const TriangleMesh fine =
-        test::joined(test::icosphere(1.0, 4), test::reversed(test::icosphere(0.985, 4)));
-    const Coarsened coarse = coarsen(fine, fine.triangles.size() / 16);
+    // A ball with a round cavity that comes close to its surface in one place.
+    const TriangleMesh cavity =
+        test::translated(test::reversed(test::icosphere(0.5, 4)), Vec3d(0.497, 0, 0));
+    const TriangleMesh fine = test::joined(test::icosphere(1.0, 4), cavity);
+    const std::size_t wanted = fine.triangles.size() / 16;
+    CollapseLimits limits;
+    limits.fewest_triangles = wanted;
+    ASSERT_FALSE(check_mesh(collapse_edges(fine, limits).mesh).embedded());
+    const Coarsened coarse = coarsen(fine, wanted);
     EXPECT_TRUE(coarse.embedded);
-    EXPECT_LT(coarse.mesh.triangles.size(), fine.triangles.size() / 2);
+    EXPECT_LE(coarse.mesh.triangles.size(), 2 * wanted);
     EXPECT_TRUE(check_mesh(coarse.mesh).embedded());
+}
+
+TEST(Coarsen, SaysThatAWallWasTooThin)
+{
+    const TriangleMesh fine =
+        test::joined(test::icosphere(1.0, 4), test::reversed(test::icosphere(0.999, 4)));
+    const std::size_t wanted = fine.triangles.size() / 16;
+    const Coarsened coarse = coarsen(fine, wanted);
+    EXPECT_FALSE(coarse.embedded);
+    EXPECT_LE(coarse.mesh.triangles.size(), 2 * wanted);
+    EXPECT_FALSE(check_mesh(coarse.mesh).embedded());
 }
 
 TEST(Coarsen, EndsWhereNothingIsLeftToCollapse)

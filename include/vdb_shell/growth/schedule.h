@@ -69,6 +69,9 @@ struct PinSchedule {
 struct MultilevelSchedule {
     /// Triangles of the coarsest surface, about.
     double coarsest_triangles = 1200;
+    /// Triangles up to which a surface may be the coarsest where the next one would cross itself:
+    /// growth from lines costs by the triangle, and more of them than a crossing does harm.
+    double most_coarsest_triangles = 12000;
     /// Ratio of triangles between one surface and the next at most. Mending loses less on each the
     /// smaller the step is.
     double greatest_ratio = 4;

@@ -22,8 +22,9 @@ struct Coarsened {
 /// each other, until `triangles` are left or no collapse is left that turns no normal far and makes
 /// no sliver. Nothing bounds the distance. Closed and manifold like the input. Where it would cross
 /// itself, or no direction would see all triangles of a vertex, the vertices around are kept and
-/// all is done anew, three times at most; `embedded` says whether that was enough. For those who
-/// only want a hint, soon. Same result for any number of threads. Precondition: closed, manifold.
+/// all is done anew, three times at most. If more than twice as many triangles as wanted are left
+/// then, as of a thin wall, the first result is given back as it is. `embedded` says what became of
+/// it. For those who only want a hint, soon. Same result for any number of threads. Precondition: closed, manifold.
 Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles);
 
 } // namespace vdb_shell
