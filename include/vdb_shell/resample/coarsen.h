@@ -24,7 +24,8 @@ struct Coarsened {
 /// itself, or no direction would see all triangles of a vertex, the vertices around are kept and
 /// all is done anew, three times at most. If more than twice as many triangles as wanted are left
 /// then, as of a thin wall, the first result is given back as it is. `embedded` says what became of
-/// it. For those who only want a hint, soon. Same result for any number of threads. Precondition: closed, manifold.
+/// it. For those who only want a hint, soon. Same result for any number of threads. Precondition:
+/// closed, manifold.
 Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles);
 
 } // namespace vdb_shell

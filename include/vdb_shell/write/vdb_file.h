@@ -37,7 +37,7 @@ struct ShellFile {
     /// .vdb the transforms of the grids put them where the file has them, in the mesh's unit.
     Placement placement{};
     std::vector<CoreFoot> core_feet{}; ///< by vertex; empty where there were no cores
-    CoreTets core{}; ///< empty where nothing fills the shell
+    CoreTets core{};                   ///< empty where nothing fills the shell
 };
 
 enum class PointPlacement {
