@@ -74,13 +74,20 @@ Changes::Sum Changes::measured()
     Sum sum{0, 0, false};
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         PieceCost& c = cost_[i];
-        if (!measure_piece(s_, pieces_[i], c))
+        if (!measure_piece(s_, pieces_[i], c) || loses_last_tet(pieces_[i], c))
             return sum;
         sum.cost += s_.weights.tet * c.tets + c.distortion - s_.weights.volume6 * c.volume6;
         sum.worst = std::max(sum.worst, c.worst);
     }
     sum.valid = true;
     return sum;
+}
+
+/// A triangle of the surface without a tet would hang on nothing. Where the tets on it are bad at
+/// best, that would be cheaper than any change.
+bool Changes::loses_last_tet(int piece, const PieceCost& now) const
+{
+    return piece < s_.mesh->face_count() && now.tets == 0 && s_.cost[std::size_t(piece)].tets > 0;
 }
 
 bool Changes::better(const Sum& now) const

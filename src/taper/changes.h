@@ -38,6 +38,7 @@ private:
     void list_around(const std::vector<int>& places);
     Sum present() const;
     Sum measured();
+    bool loses_last_tet(int piece, const PieceCost& now) const;
     bool better(const Sum& now) const;
     void accept();
     void point_places(int from, int to);

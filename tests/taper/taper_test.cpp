@@ -186,6 +186,23 @@ TEST(Taper, IsRefusedWhereThereIsNoShellInside)
     expect_refused([](ShellOptions& o) { o.taper.worst_amips = 2; }, "worst_amips");
 }
 
+TEST(Taper, NoTriangleOfTheSurfaceLosesItsTets)
+{
+    // Narrow triangles, on which every tet is bad: none would be the cheapest.
+    ShellOptions options = tapered(CoreSurface::stitched);
+    options.layers.layers = 2;
+    options.taper.shape_power = 4;
+    for (const Vec3d& size : {Vec3d(4, 1, 0.3), Vec3d(9, 1, 1), Vec3d(5, 5, 0.2)}) {
+        const TriangleMesh mesh = test::box(Vec3d(0), size);
+        const ShellResult result = build_shell(mesh, options);
+        std::set<std::uint32_t> with_tets;
+        for (std::size_t t = 0; t < result.tets.tets.size(); ++t)
+            if (result.tets.prism_layer[t] == 0)
+                with_tets.insert(result.tets.prism[t]);
+        EXPECT_EQ(with_tets.size(), mesh.triangles.size());
+    }
+}
+
 TEST(Taper, RealMeshesAreCertified)
 {
     VDB_SHELL_NEEDS_REAL_MESHES();
