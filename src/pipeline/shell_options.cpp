@@ -30,20 +30,29 @@ OptionSection repair_section(ShellOptions& options)
     return section;
 }
 
+constexpr const char* kOverlaps = "the raw method, whose shells may overlap (--method)";
+
+/// Why the shell will be no certified one inside a surface that touches itself nowhere, in words of
+/// the command; null if it will. `raw`: what speaks against the raw method.
+const char* why_not_certified_inside(const ShellOptions& options, const char* raw)
+{
+    if (options.side != Side::inward)
+        return "a shell outside the surface (--side)";
+    if (options.grow.method == Method::raw)
+        return raw;
+    if (options.check.allow_self_intersections)
+        return "a surface that may cross itself (--allow-self-intersections)";
+    return nullptr;
+}
+
 /// Tapering goes on from a valid shell inside a surface that touches itself nowhere, and moves its
 /// inner points to wherever there is room.
 void require_taper_possible(const ShellOptions& options)
 {
     if (!options.taper.wanted)
         return;
-    const char* hindrance = nullptr;
-    if (options.side != Side::inward)
-        hindrance = "a shell outside the surface (--side)";
-    else if (options.grow.method == Method::raw)
-        hindrance = "the raw method, whose shells may overlap (--method)";
-    else if (options.check.allow_self_intersections)
-        hindrance = "a surface that may cross itself (--allow-self-intersections)";
-    else if (options.scale.factor < 1)
+    const char* hindrance = why_not_certified_inside(options, kOverlaps);
+    if (!hindrance && options.scale.factor < 1)
         hindrance = "shells scaled down (--thickness-scale); a bound is --thickness";
     if (hindrance)
         throw InvalidOption(std::string("taper: --taper is not for ") + hindrance);
@@ -66,13 +75,7 @@ void require_core_fill_possible(const ShellOptions& options)
 {
     if (!options.core_fill.wanted())
         return;
-    const char* hindrance = nullptr;
-    if (options.side != Side::inward)
-        hindrance = "a shell outside the surface (--side)";
-    else if (options.grow.method == Method::raw)
-        hindrance = "the raw method, whose shells may overlap (--method)";
-    else if (options.check.allow_self_intersections)
-        hindrance = "a surface that may cross itself (--allow-self-intersections)";
+    const char* hindrance = why_not_certified_inside(options, kOverlaps);
     if (hindrance)
         throw InvalidOption(std::string("core_fill: --core-fill is not for ") + hindrance);
 }
@@ -139,14 +142,9 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
 
 void require_cores_possible(const ShellOptions& options)
 {
-    const char* hindrance = nullptr;
-    if (options.side != Side::inward)
-        hindrance = "a shell outside the surface (--side)";
-    else if (options.grow.method == Method::raw)
-        hindrance = "the raw method, which looks at no obstacle (--method)";
-    else if (options.check.allow_self_intersections)
-        hindrance = "a surface that may cross itself (--allow-self-intersections)";
-    else if (options.core_fill.wanted())
+    const char* hindrance =
+        why_not_certified_inside(options, "the raw method, which looks at no obstacle (--method)");
+    if (!hindrance && options.core_fill.wanted())
         hindrance = "a filled core: the tets between would reach into the surfaces (--core-fill)";
     if (hindrance)
         throw InvalidOption(std::string("cores: --core FILE is not for ") + hindrance);

@@ -36,7 +36,7 @@ Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles)
     // Two walls that are close together all over would stay as fine as they are.
     if (sound.repeats > 0 &&
         double(sound.result.mesh.triangles.size()) > kMostOverWanted * double(triangles))
-        sound = collapse_embedded(mesh, limits, 0, Blind::avoided, none);
+        sound = collapse_embedded(mesh, limits, 0, Blind::allowed, none);
     sound.result.embedded = sound.embedded;
     return std::move(sound.result);
 }
