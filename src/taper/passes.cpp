@@ -2,20 +2,21 @@
 
 // Takes: a valid state. Leaves: a valid state that costs less, after one try of each change of a
 // kind. Pairs of nodes are merged shortest first, as the edges of a surface are by a decimator:
-// the shortest ones make the worst tets. One thread, in an order that depends on coordinates and
-// indices only.
+// the shortest ones make the worst tets. The order depends on coordinates and indices only.
 
 #include "taper/passes.h"
 
+#include "core/parallel.h"
 #include "growth/grow_state.h"
-#include "taper/changes.h"
 #include "taper/inner_contacts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace vdb_shell::taper
@@ -94,31 +95,59 @@ std::vector<Pair> pairs_to_merge(const TaperState& s, const MergeOptions& option
     return pairs;
 }
 
-/// Asks for an interrupt every so many tries: one takes some ten microseconds.
-class Tries
-{
-public:
-    Tries(const StageProgress& progress, int percent) : progress_(progress), percent_(percent) {}
-    void next()
-    {
-        constexpr unsigned kBetween = 1024;
-        if (++tries_ % kBetween == 0)
-            progress_.stop_if_interrupted(percent_);
-    }
-
-private:
-    const StageProgress& progress_;
-    int percent_;
-    unsigned tries_ = 0;
-};
+// Before everything that has changed.
+constexpr std::uint32_t kAlways = 0;
 
 } // namespace
 
-std::size_t merge_pass(TaperState& s, const MergeOptions& options, const StageProgress& progress,
-                       int percent)
+/// A block of changes is tried by all threads on the state as it is, without making any; then one
+/// thread makes them in their order. It leaves out those that did not pay, unless a tet beside them
+/// has changed since, and tries the others once more: they may also fail by the inner surface.
+/// `make(item, then)` has to do nothing where nothing has changed since then.
+template <class Item, class Trial, class Make>
+std::size_t Passes::in_blocks(const std::vector<Item>& items, int percent, const Trial& trial,
+                              const Make& make)
 {
-    Changes changes(s);
-    Tries tries(progress, percent);
+    // Long enough for two dozen threads, short enough that most of it is still true when its turn
+    // comes.
+    constexpr std::size_t kBlock = 256;
+    std::vector<std::uint8_t> pays(kBlock);
+    std::size_t made = 0;
+    for (std::size_t begin = 0; begin < items.size(); begin += kBlock) {
+        progress_.stop_if_interrupted(percent);
+        const std::size_t count = std::min(kBlock, items.size() - begin);
+        const std::uint32_t then = changes_.now();
+        for_each_range(
+            count,
+            [&](std::size_t first, std::size_t last) {
+                Trials& trials = trials_.local();
+                for (std::size_t i = first; i < last; ++i)
+                    pays[i] = trial(trials, items[begin + i]);
+            },
+            8);
+        for (std::size_t i = 0; i < count; ++i)
+            made += make(items[begin + i], pays[i] != 0 ? kAlways : then);
+    }
+    return made;
+}
+
+/// The tree of the inner surface is built anew where boxes have been widened often enough to make
+/// up for it.
+std::size_t Passes::renewed_after(std::size_t made)
+{
+    constexpr std::size_t kFacesToAChange = 64;
+    TaperState& s = changes_.state();
+    if ((widened_ += made) * kFacesToAChange > std::size_t(s.faces())) {
+        rebuild_inner_tree(s);
+        widened_ = 0;
+    }
+    return made;
+}
+
+std::size_t Passes::merge(int percent)
+{
+    TaperState& s = changes_.state();
+    const std::uint32_t last = std::exchange(last_.merge, changes_.now());
     // What a node has become part of in this pass.
     std::vector<int> now(s.point.size());
     std::iota(now.begin(), now.end(), 0);
@@ -127,68 +156,90 @@ std::size_t merge_pass(TaperState& s, const MergeOptions& options, const StagePr
             n = now[std::size_t(n)];
         return n;
     };
-    std::size_t made = 0;
-    for (const Pair& pair : pairs_to_merge(s, options)) {
-        tries.next();
+    // Of two that can move the one with fewer places changes its name.
+    const auto ends_of = [&](const Pair& pair) {
         int from = find(pair.high), to = find(pair.low);
-        if (from == to)
-            continue;
-        // Of two that can move the one with fewer places changes its name.
         if (s.fixed(from) ||
             (!s.fixed(to) && s.places[std::size_t(from)].size() > s.places[std::size_t(to)].size()))
             std::swap(from, to);
-        if (s.fixed(from) || !changes.merge(from, to))
-            continue;
-        now[std::size_t(from)] = to;
-        ++made;
-    }
-    rebuild_inner_tree(s);
-    return made;
+        return std::array{from, to};
+    };
+    std::vector<Pair> pairs = pairs_to_merge(s, options_);
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
+                               [&](const Pair& p) { return !changed_since(p.low, p.high, last); }),
+                pairs.end());
+    const std::size_t made = in_blocks(
+        pairs, percent,
+        [&](Trials& trials, const Pair& pair) {
+            const auto [from, to] = ends_of(pair);
+            return from != to && !s.fixed(from) && trials.merge(from, to);
+        },
+        [&](const Pair& pair, std::uint32_t then) {
+            const auto [from, to] = ends_of(pair);
+            if (from == to || s.fixed(from) || !changed_since(from, to, then) ||
+                !changes_.merge(from, to))
+                return false;
+            now[std::size_t(from)] = to;
+            return true;
+        });
+    return renewed_after(made);
 }
 
-std::size_t move_pass(TaperState& s, const StageProgress& progress, int percent)
+std::size_t Passes::move(int percent)
 {
-    Changes changes(s);
-    Tries tries(progress, percent);
-    std::size_t made = 0;
-    for (int n = s.vertices(); n < static_cast<int>(s.point.size()); ++n) {
-        tries.next();
-        made += s.used(n) && changes.move(n);
-    }
-    rebuild_inner_tree(s);
-    return made;
+    TaperState& s = changes_.state();
+    const std::uint32_t last = std::exchange(last_.move, changes_.now());
+    std::vector<int> nodes;
+    for (int n = s.vertices(); n < static_cast<int>(s.point.size()); ++n)
+        if (s.used(n) && changes_.changed_since(n, last))
+            nodes.push_back(n);
+    const std::size_t made = in_blocks(
+        nodes, percent, [](Trials& trials, int n) { return trials.move(n); },
+        [&](int n, std::uint32_t then) {
+            return changes_.changed_since(n, then) && changes_.move(n);
+        });
+    return renewed_after(made);
 }
 
-std::size_t hand_over_pass(TaperState& s, const StageProgress& progress, int percent)
+std::size_t Passes::hand_over(int percent)
 {
-    Changes changes(s);
-    Tries tries(progress, percent);
-    std::size_t made = 0;
+    TaperState& s = changes_.state();
+    const std::uint32_t last = std::exchange(last_.hand_over, changes_.now());
+    struct Handed {
+        int place, neighbour;
+    };
+    std::vector<Handed> items;
+    const auto may = [&](const Handed& h, std::uint32_t then) {
+        const int from = s.node[std::size_t(h.place)], to = s.node[std::size_t(h.neighbour)];
+        // Outer nodes have a place of their own, which no other node can take in.
+        return from != to && !s.fixed(from) && s.places[std::size_t(from)].size() > 1 &&
+               changed_since(from, to, then);
+    };
     for (int level = 1; level <= s.levels; ++level)
-        for (int v = 0; v < s.vertices(); ++v) {
-            tries.next();
-            const int place = s.place(level, v);
-            for (const int u : neighbours(*s.mesh, v)) {
-                const int from = s.node[std::size_t(place)], to = s.node_at(level, u);
-                // Outer nodes have a place of their own, which no other node can take in.
-                if (from != to && !s.fixed(from) && s.places[std::size_t(from)].size() > 1)
-                    made += changes.hand_over(place, to);
-            }
-        }
-    rebuild_inner_tree(s);
-    return made;
+        for (int v = 0; v < s.vertices(); ++v)
+            for (const int u : neighbours(*s.mesh, v))
+                if (const Handed h{s.place(level, v), s.place(level, u)}; may(h, last))
+                    items.push_back(h);
+    const std::size_t made = in_blocks(
+        items, percent,
+        [&](Trials& trials, const Handed& h) {
+            return trials.hand_over(h.place, s.node[std::size_t(h.neighbour)]);
+        },
+        [&](const Handed& h, std::uint32_t then) {
+            return may(h, then) && changes_.hand_over(h.place, s.node[std::size_t(h.neighbour)]);
+        });
+    return renewed_after(made);
 }
 
-std::size_t turn_pass(TaperState& s, const StageProgress& progress, int percent)
+std::size_t Passes::turn(int percent)
 {
-    Changes changes(s);
-    Tries tries(progress, percent);
+    const TaperState& s = changes_.state();
     std::size_t made = 0;
-    for (int layer = 0; layer < s.levels; ++layer)
-        for (int e = 0; e < static_cast<int>(s.edges.size()); ++e) {
-            tries.next();
-            made += changes.turn(layer, e);
-        }
+    for (int layer = 0; layer < s.levels; ++layer) {
+        progress_.stop_if_interrupted(percent);
+        for (int e = 0; e < static_cast<int>(s.edges.size()); ++e)
+            made += changes_.turn(layer, e);
+    }
     return made;
 }
 

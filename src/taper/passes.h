@@ -2,9 +2,15 @@
 #pragma once
 
 #include "core/stage_progress.h"
+#include "taper/changes.h"
 #include "taper/taper_state.h"
+#include "taper/trials.h"
+
+#include <tbb/enumerable_thread_specific.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace vdb_shell::taper
 {
@@ -16,12 +22,40 @@ struct MergeOptions {
     bool into_level_above = false; ///< also a place with the one above it: a layer ends there
 };
 
-/// One try of each change of a kind, in an order of its own; how many were made. Deterministic.
-/// Throws Cancelled between two tries.
-std::size_t merge_pass(TaperState& s, const MergeOptions& options, const StageProgress& progress,
-                       int percent);
-std::size_t move_pass(TaperState& s, const StageProgress& progress, int percent);
-std::size_t hand_over_pass(TaperState& s, const StageProgress& progress, int percent);
-std::size_t turn_pass(TaperState& s, const StageProgress& progress, int percent);
+/// Passes over a state: one try of each change of a kind, in an order of its own. Each gives how
+/// many were made. What has failed in the last pass of its kind is tried again only where a tet has
+/// changed since. Deterministic for any number of threads. Throws Cancelled between two blocks.
+class Passes
+{
+public:
+    Passes(TaperState& s, const MergeOptions& options, const StageProgress& progress)
+        : options_(options), progress_(progress), changes_(s), trials_([&s] { return Trials(s); })
+    {
+    }
+
+    std::size_t merge(int percent);
+    std::size_t move(int percent);
+    std::size_t hand_over(int percent);
+    std::size_t turn(int percent);
+
+private:
+    template <class Item, class Trial, class Make>
+    std::size_t in_blocks(const std::vector<Item>& items, int percent, const Trial& trial,
+                          const Make& make);
+    std::size_t renewed_after(std::size_t made);
+    bool changed_since(int p, int q, std::uint32_t then) const
+    {
+        return changes_.changed_since(p, then) || changes_.changed_since(q, then);
+    }
+
+    MergeOptions options_;
+    const StageProgress& progress_;
+    Changes changes_;
+    tbb::enumerable_thread_specific<Trials> trials_;
+    std::size_t widened_ = 0; ///< changes since the tree of the inner surface was built
+    struct {
+        std::uint32_t merge = 0, move = 0, hand_over = 0;
+    } last_; ///< when the last pass of its kind began
+};
 
 } // namespace vdb_shell::taper

@@ -50,18 +50,17 @@ CostWeights weights_of(const ShellStack& stack, const TaperOptions& options)
 }
 
 /// One round; how many changes it made.
-std::size_t make_round(TaperState& s, const MergeOptions& merge, const StageProgress& progress,
-                       int percent, TaperReport& report)
+std::size_t make_round(Passes& passes, int percent, TaperReport& report)
 {
     // Merges leave points where one of the two was, or halfway, and moves take them on from there.
     // Each sweep halves about what is left to win, and a round ends with other points anyhow.
     constexpr int kMoveSweeps = 3;
     const std::size_t before = report.merges + report.moves + report.handed_over + report.turned;
-    report.merges += merge_pass(s, merge, progress, percent);
+    report.merges += passes.merge(percent);
     for (int i = 0; i < kMoveSweeps; ++i)
-        report.moves += move_pass(s, progress, percent);
-    report.handed_over += hand_over_pass(s, progress, percent);
-    report.turned += turn_pass(s, progress, percent);
+        report.moves += passes.move(percent);
+    report.handed_over += passes.hand_over(percent);
+    report.turned += passes.turn(percent);
     ++report.rounds;
     return report.merges + report.moves + report.handed_over + report.turned - before;
 }
@@ -132,8 +131,9 @@ TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
     // A round that changes fewer than one edge in a hundred is not worth its time.
     const std::size_t few = s.edges.size() / 100;
     TaperReport report;
+    Passes passes(s, merge, progress);
     for (int i = 0; i < options.rounds; ++i)
-        if (make_round(s, merge, progress, 100 * i / options.rounds, report) <= few)
+        if (make_round(passes, 100 * i / options.rounds, report) <= few)
             break;
     put_back(s, stack);
     stack.tapered = true;

@@ -34,6 +34,7 @@ void index_edges(TaperState& s)
         return std::tie(a.low, a.high, a.face) < std::tie(b.low, b.high, b.face);
     });
     s.edges_of_face.resize(s.mesh->faces.size());
+    s.low_first.resize(s.mesh->faces.size());
     for (const Side& side : sides) {
         if (s.edges.empty() || s.edges.back() != std::array{side.low, side.high}) {
             s.edges.push_back({side.low, side.high});
@@ -42,6 +43,8 @@ void index_edges(TaperState& s)
         s.faces_of_edge.back()[1] = side.face;
         s.edges_of_face[std::size_t(side.face)][std::size_t(side.local)] =
             static_cast<int>(s.edges.size()) - 1;
+        const bool low_first = s.mesh->corner(side.face, side.local) == side.low;
+        s.low_first[std::size_t(side.face)] |= std::uint8_t(unsigned(low_first) << side.local);
     }
 }
 
@@ -76,8 +79,7 @@ void read_points(TaperState& s, const ShellStack& stack)
         }
 }
 
-/// By which of the three edges of a prism run forward, from corner i to the next: the order of the
-/// corners, or -1.
+/// See orders_by_diagonals().
 std::array<int, 8> make_orders()
 {
     std::array<int, 8> orders{};
@@ -100,6 +102,12 @@ std::array<int, 8> make_orders()
 
 } // namespace
 
+const std::array<int, 8>& orders_by_diagonals()
+{
+    static const std::array<int, 8> orders = make_orders();
+    return orders;
+}
+
 TaperState make_taper_state(const growth::Connectivity& mesh, const ShellStack& stack,
                             const std::vector<double>& cap, const CostWeights& weights)
 {
@@ -114,7 +122,7 @@ TaperState make_taper_state(const growth::Connectivity& mesh, const ShellStack& 
         read_diagonals(s, split);
     s.cost.resize(std::size_t(s.pieces()));
     for (int piece = 0; piece < s.pieces(); ++piece)
-        measure_piece(s, piece, s.cost[std::size_t(piece)]);
+        measure(s, piece_of(s, piece), s.cost[std::size_t(piece)]);
     build_trees(s);
     return s;
 }
@@ -135,45 +143,15 @@ void put_back(const TaperState& s, ShellStack& stack)
     }
 }
 
-PrismNodes nodes_of(const TaperState& s, int piece)
-{
-    const int layer = piece / s.faces();
-    const openvdb::Vec3I& face = s.mesh->faces[std::size_t(piece % s.faces())];
-    const int* above = s.node.data() + s.place(layer, 0);
-    const int* below = above + s.vertices();
-    return {above[face[0]], above[face[1]], above[face[2]],
-            below[face[0]], below[face[1]], below[face[2]]};
-}
-
-int order_of(const TaperState& s, int piece, const PrismNodes& n)
-{
-    static const std::array<int, 8> orders = make_orders();
-    const int layer = piece / s.faces();
-    const auto face = std::size_t(piece % s.faces());
-    unsigned forward = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto e = std::size_t(s.edges_of_face[face][i]);
-        const bool from_low = s.diagonal[std::size_t(layer) * s.edges.size() + e] != 0;
-        const bool low_first = s.mesh->corner(int(face), int(i)) == s.edges[e][0];
-        forward |= unsigned(from_low == low_first) << i;
-    }
-    if (orders[forward] >= 0)
-        return orders[forward];
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t j = (i + 1) % 3;
-        if (n[i] == n[j] || n[i + 3] == n[j + 3] || n[i] == n[i + 3] || n[j] == n[j + 3])
-            return orders[forward ^ (1U << i)];
-    }
-    return -1;
-}
-
-bool measure_piece(const TaperState& s, int piece, PieceCost& cost)
+bool measure(const TaperState& s, const Piece& piece, PieceCost& cost)
 {
     cost = {};
     bool positive = true;
-    const bool split = for_each_tet(s, piece, [&](const TetNodes& t) {
-        const TetCorners p = corners_of(s, t);
-        if (!positive || growth::orient(p[0], p[1], p[2], p[3]) <= 0) {
+    const bool split = for_each_tet(s, piece, [&](const auto& tet) {
+        if (!positive)
+            return;
+        const TetCorners p = corners_of(piece, tet);
+        if (growth::orient(p[0], p[1], p[2], p[3]) <= 0) {
             positive = false;
             return;
         }

@@ -57,6 +57,8 @@ struct TaperState {
     std::vector<std::uint8_t> diagonal;
     std::vector<std::array<int, 2>> edges;         ///< vertices, the smaller first
     std::vector<std::array<int, 3>> edges_of_face; ///< from local corner i to the next
+    std::vector<std::uint8_t>
+        low_first; ///< by face, bit i: corner i is the smaller end of its edge i
     std::vector<std::array<int, 2>> faces_of_edge;
 
     VertexRange obstacles; ///< among the fixed nodes: nothing becomes one with them
@@ -100,38 +102,111 @@ void put_back(const TaperState& s, ShellStack& stack);
 
 /// The nodes of a prism: three above, three below.
 using PrismNodes = std::array<int, 6>;
-PrismNodes nodes_of(const TaperState& s, int piece);
+inline PrismNodes nodes_of(const TaperState& s, int piece)
+{
+    const int layer = piece / s.faces();
+    const openvdb::Vec3I& face = s.mesh->faces[std::size_t(piece % s.faces())];
+    const int* above = s.node.data() + s.place(layer, 0);
+    const int* below = above + s.vertices();
+    return {above[face[0]], above[face[1]], above[face[2]],
+            below[face[0]], below[face[1]], below[face[2]]};
+}
+
+/// A change of points that is only thought of: places of node `from` belong to node `to`, which
+/// lies at `at`. With both the same a node has moved.
+struct Substitution {
+    static constexpr int kAllPlaces = -1;
+    int from, to;
+    Vec3d at;
+    int place = kAllPlaces; ///< the one place of `from` that it is about
+};
+
+/// A prism with what its nodes are and where.
+struct Piece {
+    int index;
+    PrismNodes nodes;
+    std::array<Vec3d, 6> corners;
+};
+inline Piece piece_of(const TaperState& s, int index)
+{
+    const PrismNodes n = nodes_of(s, index);
+    return {index, n, {s.at(n[0]), s.at(n[1]), s.at(n[2]), s.at(n[3]), s.at(n[4]), s.at(n[5])}};
+}
+inline Piece piece_of(const TaperState& s, int index, const Substitution& change)
+{
+    Piece piece = piece_of(s, index);
+    if (change.place != Substitution::kAllPlaces) {
+        const int level = s.level_of(change.place) - index / s.faces();
+        for (int k = 0; k < 3; ++k)
+            if (s.mesh->corner(index % s.faces(), k) == s.vertex_of(change.place)) {
+                const auto i = static_cast<std::size_t>(3 * level + k);
+                piece.nodes[i] = change.to;
+                piece.corners[i] = change.at;
+            }
+        return piece;
+    }
+    for (std::size_t i = 0; i < piece.nodes.size(); ++i)
+        if (piece.nodes[i] == change.from || piece.nodes[i] == change.to) {
+            piece.nodes[i] = change.to;
+            piece.corners[i] = change.at;
+        }
+    return piece;
+}
+
+/// By which of the three edges of a prism run forward, from corner i to the next: the order of the
+/// corners, or -1.
+const std::array<int, 8>& orders_by_diagonals();
 
 /// The order of the piece that its diagonals make, an index into PrismTables::order; -1 where they
 /// go round in a circle. A quad in which a node comes twice has no diagonal to keep to.
-int order_of(const TaperState& s, int piece, const PrismNodes& n);
+inline int order_of(const TaperState& s, int piece, const PrismNodes& n)
+{
+    static const std::array<int, 8>& orders = orders_by_diagonals();
+    const int layer = piece / s.faces();
+    const auto face = std::size_t(piece % s.faces());
+    const std::array<int, 3>& e = s.edges_of_face[face];
+    const std::uint8_t* from_low = s.diagonal.data() + std::size_t(layer) * s.edges.size();
+    // Forward where the diagonal starts at the smaller vertex and that comes first, or neither.
+    const unsigned forward =
+        7U & ~((from_low[e[0]] | from_low[e[1]] << 1U | from_low[e[2]] << 2U) ^ s.low_first[face]);
+    if (orders[forward] >= 0)
+        return orders[forward];
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        if (n[i] == n[j] || n[i + 3] == n[j + 3] || n[i] == n[i + 3] || n[j] == n[j + 3])
+            return orders[forward ^ (1U << i)];
+    }
+    return -1;
+}
 
 using TetNodes = std::array<int, 4>;
 
-/// Calls visit(nodes) for each tet of the piece, the nodes as its orientation wants them; false:
-/// its diagonals go round in a circle.
-template <class Visit> bool for_each_tet(const TaperState& s, int piece, const Visit& visit)
+/// Calls visit(corners) for each tet of the piece, the corners as indices into its nodes and as its
+/// orientation wants them; false: its diagonals go round in a circle.
+template <class Visit>
+bool for_each_tet(const TaperState& s, const Piece& piece, const Visit& visit)
 {
-    const PrismNodes n = nodes_of(s, piece);
-    const int order = order_of(s, piece, n);
+    const PrismNodes& n = piece.nodes;
+    const int order = order_of(s, piece.index, n);
     if (order < 0)
         return false;
     for (const growth::OrientedTet& tet : growth::tables().three[std::size_t(order)]) {
-        const TetNodes t{n[tet.corner[0]], n[tet.corner[1]], n[tet.corner[2]], n[tet.corner[3]]};
-        if (t[0] != t[1] && t[0] != t[2] && t[0] != t[3] && t[1] != t[2] && t[1] != t[3] &&
-            t[2] != t[3])
-            visit(t);
+        const auto& [a, b, c, d] = tet.corner;
+        if (n[a] != n[b] && n[a] != n[c] && n[a] != n[d] && n[b] != n[c] && n[b] != n[d] &&
+            n[c] != n[d])
+            visit(tet.corner);
     }
     return true;
 }
-inline TetCorners corners_of(const TaperState& s, const TetNodes& t)
+template <class TetOfPrism> TetCorners corners_of(const Piece& piece, const TetOfPrism& tet)
 {
-    return {s.at(t[0]), s.at(t[1]), s.at(t[2]), s.at(t[3])};
+    return {piece.corners[tet[0]], piece.corners[tet[1]], piece.corners[tet[2]],
+            piece.corners[tet[3]]};
 }
 
 /// What of a piece costs what. False: it has a tet that is not positive, by the exact sign, or
 /// diagonals in a circle.
-bool measure_piece(const TaperState& s, int piece, PieceCost& cost);
+bool measure(const TaperState& s, const Piece& piece, PieceCost& cost);
 
 /// Whether the pillars of these places, did they end at x, are as short as they have to be.
 bool within_caps(const TaperState& s, const std::vector<int>& places, const Vec3d& x);

@@ -94,10 +94,14 @@ inline Vec3d volume6_gradient(const TetCorners& p, std::size_t free)
 /// A power of the distortion: the larger, the more the worst tets count.
 inline double weighed(double distortion, double power)
 {
-    if (power == 1)
-        return distortion;
-    // That of --for simulation: a root is a tenth of the time of std::pow.
-    return power == 1.5 ? distortion * std::sqrt(distortion) : std::pow(distortion, power);
+    // A root and some products are a tenth of the time of std::pow.
+    const int halves = static_cast<int>(2 * power);
+    if (2 * power != halves)
+        return std::pow(distortion, power);
+    double result = halves % 2 == 0 ? 1 : std::sqrt(distortion);
+    for (int i = 0; i < halves / 2; ++i)
+        result *= distortion;
+    return result;
 }
 
 /// Adds gradient and Hessian of the distortion to the power given in corner `free`. A power of at
