@@ -11,6 +11,7 @@
 #include "growth/line_directions.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
+#include "growth/ray_hit.h"
 #include "growth/violations.h"
 
 #include <algorithm>
@@ -30,19 +31,6 @@ double smallest_altitude(const Corners& c)
     const double longest =
         std::max({(c[1] - c[0]).lengthSqr(), (c[2] - c[1]).lengthSqr(), (c[0] - c[2]).lengthSqr()});
     return longest > 0 ? (c[1] - c[0]).cross(c[2] - c[0]).length() / std::sqrt(longest) : 0;
-}
-
-/// Parameter where p + t d meets the triangle, or infinity. In plain doubles, for it is a hint for
-/// a first length: what is too long is shrunk.
-double ray_hit(const Vec3d& p, const Vec3d& d, const Corners& c)
-{
-    const Vec3d e1 = c[1] - c[0], e2 = c[2] - c[0], h = d.cross(e2);
-    const double det = e1.dot(h);
-    if (det == 0)
-        return kInfinity;
-    const Vec3d s = p - c[0], q = s.cross(e1);
-    const double u = s.dot(h) / det, v = d.dot(q) / det, t = e2.dot(q) / det;
-    return u < 0 || v < 0 || u + v > 1 || t <= 0 ? kInfinity : t;
 }
 
 /// Shrinks the pillars of violating prisms; marks the faces that this changes. False when there is

@@ -11,6 +11,7 @@
 
 #include "growth/initialise.h"
 #include "growth/mend_prolonged.h"
+#include "growth/move_groups.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "growth/relax_options.h"
@@ -93,7 +94,8 @@ struct LevelJob {
     const StageProgress& progress;
 };
 
-/// Prolongs the shell of a coarser surface onto the state of a finer one and mends it.
+/// Prolongs the shell of a coarser surface onto the state of a finer one, mends it, and fills the
+/// voids that mending has left by moves of as many vertices as the coarser surface has one for.
 std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
                                        const Directions& lines, const TriangleMesh& coarser,
                                        const std::vector<Vec3d>& coarser_inner, const LevelJob& job)
@@ -101,7 +103,9 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
     const Pillars pillars =
         prolonged_pillars(coarser, coarser_inner, mesh, lines,
                           bends_towards(job.triangles, s.schedule), s.schedule.multilevel);
-    return mend_prolonged(s, pillars.lines, pillars.length, job.progress);
+    std::vector<double> lost = mend_prolonged(s, pillars.lines, pillars.length, job.progress);
+    move_groups(s, group_shares(mesh, coarser, s.schedule.multilevel), job.progress);
+    return lost;
 }
 
 /// Grows on one level, from what start(state, lines) makes a valid shell. Gives back its inner

@@ -38,17 +38,15 @@ std::array<double, 3> weights_in(const std::array<Vec3d, 3>& corner, const Vec3d
     return weight;
 }
 
-/// Where the pillar of a point beside this coarse triangle ends: at the point with the same
+/// Where a pillar ends that starts at this point of the coarse surface: at the point with the same
 /// barycentric coordinates on the inner triangle.
 Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
-                   std::uint32_t triangle, const Vec3d& at)
+                   const CoarsePoint& at)
 {
-    const openvdb::Vec3I& t = coarse.triangles[triangle];
-    const std::array<Vec3d, 3> corner = triangle_corners(coarse, triangle);
-    const std::array<double, 3> weight = weights_in(corner, nearest_on_triangle(corner, at).point);
+    const openvdb::Vec3I& t = coarse.triangles[at.triangle];
     Vec3d end(0.0);
     for (std::size_t k = 0; k < 3; ++k)
-        end += weight[k] * inner[t[static_cast<int>(k)]];
+        end += at.weight[k] * inner[t[static_cast<int>(k)]];
     return end;
 }
 
@@ -91,20 +89,32 @@ Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Di
     return pillars;
 }
 
-Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
-                          const TriangleMesh& mesh, const Directions& lines, Bends bends,
-                          const MultilevelSchedule& schedule)
+std::vector<CoarsePoint> nearest_coarse_points(const TriangleMesh& mesh, const TriangleMesh& coarse,
+                                               const MultilevelSchedule& schedule)
 {
     // Each vertex looks for its own nearest triangle without a seed from another, so that the
     // result does not depend on how the vertices are shared among threads.
     const TriangleTree tree(coarse, diagonal_of(bounds_of(coarse.points)));
+    std::vector<CoarsePoint> points(mesh.points.size());
+    for_each_index(points.size(), [&](std::size_t v) {
+        const Vec3d at(mesh.points[v]);
+        // Within the tolerance any triangle will do: what is made of it is tested anyway.
+        TriangleTree::Seed seed = TriangleTree::kNoSeed;
+        const std::uint32_t t = tree.nearest(at, schedule.nearest_tolerance, seed).triangle;
+        const std::array<Vec3d, 3> corner = triangle_corners(coarse, t);
+        points[v] = {t, weights_in(corner, nearest_on_triangle(corner, at).point)};
+    });
+    return points;
+}
+
+Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
+                          const TriangleMesh& mesh, const Directions& lines, Bends bends,
+                          const MultilevelSchedule& schedule)
+{
+    const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarse, schedule);
     std::vector<Vec3s> inner(mesh.points.size());
     for_each_index(inner.size(), [&](std::size_t v) {
-        const Vec3d at(mesh.points[v]);
-        // Within the tolerance any triangle will do: the prolonged shell is mended anyway.
-        TriangleTree::Seed seed = TriangleTree::kNoSeed;
-        const auto nearest = tree.nearest(at, schedule.nearest_tolerance, seed);
-        inner[v] = Vec3s(end_in_prism(coarse, coarse_inner, nearest.triangle, at));
+        inner[v] = Vec3s(end_in_prism(coarse, coarse_inner, nearest[v]));
     });
     Pillars pillars =
         pillars_to(mesh, bends == Bends::smoothed ? smoothed(mesh, inner) : inner, lines);

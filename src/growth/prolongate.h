@@ -9,6 +9,8 @@
 
 #include <openvdb/Types.h>
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace vdb_shell::growth
@@ -29,6 +31,16 @@ Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& 
 /// the sheared prisms are: smoothed, there are fewer of them, but the inner surface takes on some
 /// of the outer one's roughness.
 enum class Bends { kept, smoothed };
+
+/// A point of a coarse surface.
+struct CoarsePoint {
+    std::uint32_t triangle;
+    std::array<double, 3> weight; ///< barycentric coordinates
+};
+
+/// The point of the coarse surface nearest each vertex, within the schedule's tolerance.
+std::vector<CoarsePoint> nearest_coarse_points(const TriangleMesh& mesh, const TriangleMesh& coarse,
+                                               const MultilevelSchedule& schedule);
 
 /// The pillars of a surface prolonged from the shell of a coarser one of about the same shape: each
 /// vertex goes along the prism in which its nearest point on the coarse surface lies. A pillar of
