@@ -15,16 +15,16 @@ namespace vdb_shell::taper
 
 using growth::FaceCorner;
 
-void Changes::accept()
+void Changes::accept(const Trial& trial)
 {
     ++now_;
-    for (std::size_t i = 0; i < trials_.pieces().size(); ++i) {
-        const int piece = trials_.pieces()[i];
-        s_.cost[std::size_t(piece)] = trials_.costs()[i];
+    for (std::size_t i = 0; i < trial.pieces.size(); ++i) {
+        const int piece = trial.pieces[i];
+        s_.cost[std::size_t(piece)] = trial.costs[i];
         for (const int n : nodes_of(s_, piece))
             changed_[std::size_t(n)] = now_;
     }
-    update_inner_tree(s_, trials_.pieces());
+    update_inner_tree(s_, trial.pieces);
 }
 
 /// Tells the places of node `from` that they belong to `to`, without telling `to`.
@@ -35,22 +35,22 @@ void Changes::point_places(int from, int to)
 }
 
 /// Asked after the change.
-bool Changes::inner_surface_allows(const Substitution& change)
+bool Changes::inner_surface_allows(const Trial& trial)
 {
+    const Substitution& change = trial.change;
     for (Swept& tet : swept_)
         tet.corners[3] = change.at;
-    return !passes_itself(s_, swept_, trials_.pieces(), {change.from, change.to}) &&
-           inner_triangles_clear(s_, trials_.pieces());
+    return !passes_itself(s_, swept_, trial.pieces, {change.from, change.to}) &&
+           inner_triangles_clear(s_, trial.pieces);
 }
 
-bool Changes::merge(int from, int to)
+bool Changes::make_merge(Trial& trial)
 {
-    if (!trials_.merge(from, to))
-        return false;
+    const int from = trial.change.from, to = trial.change.to;
     swept_.clear();
-    list_swept(s_, trials_.pieces(), from, swept_);
+    list_swept(s_, trial.pieces, from, swept_);
     const auto of_from = std::ptrdiff_t(swept_.size());
-    list_swept(s_, trials_.pieces(), to, swept_);
+    list_swept(s_, trial.pieces, to, swept_);
     // A triangle that has both is swept over once.
     swept_.erase(std::remove_if(swept_.begin() + of_from, swept_.end(),
                                 [from](const Swept& t) {
@@ -60,8 +60,8 @@ bool Changes::merge(int from, int to)
                  swept_.end());
     const Vec3d before = s_.at(to);
     point_places(from, to);
-    s_.point[std::size_t(to)] = trials_.change().at;
-    if (!inner_surface_allows(trials_.change())) {
+    s_.point[std::size_t(to)] = trial.change.at;
+    if (!inner_surface_allows(trial)) {
         point_places(from, from);
         s_.point[std::size_t(to)] = before;
         return false;
@@ -71,25 +71,26 @@ bool Changes::merge(int from, int to)
     places_to.insert(places_to.end(), places_from.begin(), places_from.end());
     std::inplace_merge(places_to.begin(), places_to.begin() + middle, places_to.end());
     places_from.clear();
-    accept();
+    accept(trial);
     return true;
 }
 
-bool Changes::move(int n)
+bool Changes::make_move(Trial& trial)
 {
-    bool passes = trials_.move(n);
-    if (!passes)
-        return false;
+    const int n = trial.change.to;
     swept_.clear();
-    list_swept(s_, trials_.pieces(), n, swept_);
+    list_swept(s_, trial.pieces, n, swept_);
     const Vec3d here = s_.at(n);
-    for (; passes; passes = trials_.move_less()) {
-        s_.point[std::size_t(n)] = trials_.change().at;
-        if (inner_surface_allows(trials_.change())) {
-            accept();
+    for (bool passes = true; passes;) {
+        s_.point[std::size_t(n)] = trial.change.at;
+        if (inner_surface_allows(trial)) {
+            accept(trial);
             return true;
         }
         s_.point[std::size_t(n)] = here;
+        passes = trials_.move_less(trial);
+        if (passes)
+            trials_.give(trial);
     }
     return false;
 }
@@ -108,14 +109,13 @@ void Changes::list_swept_by_place(int place, int to)
     }
 }
 
-bool Changes::hand_over(int place, int to)
+bool Changes::make_hand_over(Trial& trial)
 {
-    if (!trials_.hand_over(place, to))
-        return false;
+    const int place = trial.change.place, to = trial.change.to;
     list_swept_by_place(place, to);
     const int from = s_.node[std::size_t(place)];
     s_.node[std::size_t(place)] = to;
-    if (!inner_surface_allows(trials_.change())) {
+    if (!inner_surface_allows(trial)) {
         s_.node[std::size_t(place)] = from;
         return false;
     }
@@ -123,7 +123,7 @@ bool Changes::hand_over(int place, int to)
     left.erase(std::find(left.begin(), left.end(), place));
     auto& joined = s_.places[std::size_t(to)];
     joined.insert(std::upper_bound(joined.begin(), joined.end(), place), place);
-    accept();
+    accept(trial);
     return true;
 }
 
@@ -136,7 +136,7 @@ bool Changes::turn(int layer, int edge)
     std::uint8_t& diagonal = s_.diagonal_of(layer, edge);
     diagonal ^= 1U;
     if (trials_.turned_costs_less()) {
-        accept();
+        accept(own_trial());
         return true;
     }
     diagonal ^= 1U;

@@ -6,7 +6,7 @@
 
 #include "taper/passes.h"
 
-#include "core/parallel.h"
+#include "core/propose_in_blocks.h"
 #include "growth/grow_state.h"
 #include "taper/inner_contacts.h"
 
@@ -95,39 +95,43 @@ std::vector<Pair> pairs_to_merge(const TaperState& s, const MergeOptions& option
     return pairs;
 }
 
-// Before everything that has changed.
-constexpr std::uint32_t kAlways = 0;
-
 } // namespace
 
 /// A block of changes is tried by all threads on the state as it is, without making any; then one
-/// thread makes them in their order. It leaves out those that did not pay, unless a tet beside them
-/// has changed since, and tries the others once more: they may also fail by the inner surface.
-/// `make(item, then)` has to do nothing where nothing has changed since then.
-template <class Item, class Trial, class Make>
-std::size_t Passes::in_blocks(const std::vector<Item>& items, int percent, const Trial& trial,
-                              const Make& make)
+/// thread makes those that pay in their order, if the inner surface allows it, and tries a change
+/// once more if a tet beside it has changed since.
+///
+/// search(trials, item): whether it pays; stale(item, then): whether a tet beside it has changed;
+/// make(item, trial): makes what was found; again(item): tries it and makes it.
+template <class Item, class Search, class Stale, class Make, class Again>
+std::size_t Passes::in_blocks(const std::vector<Item>& items, int percent, const Search& search,
+                              const Stale& stale, const Make& make, const Again& again)
 {
     // Long enough for two dozen threads, short enough that most of it is still true when its turn
     // comes.
     constexpr std::size_t kBlock = 256;
+    std::vector<Trial> found(kBlock);
     std::vector<std::uint8_t> pays(kBlock);
+    std::uint32_t then = 0;
     std::size_t made = 0;
-    for (std::size_t begin = 0; begin < items.size(); begin += kBlock) {
-        progress_.stop_if_interrupted(percent);
-        const std::size_t count = std::min(kBlock, items.size() - begin);
-        const std::uint32_t then = changes_.now();
-        for_each_range(
-            count,
-            [&](std::size_t first, std::size_t last) {
-                Trials& trials = trials_.local();
-                for (std::size_t i = first; i < last; ++i)
-                    pays[i] = trial(trials, items[begin + i]);
-            },
-            8);
-        for (std::size_t i = 0; i < count; ++i)
-            made += make(items[begin + i], pays[i] != 0 ? kAlways : then);
-    }
+    propose_in_blocks(
+        items.size(), kBlock,
+        [&] {
+            progress_.stop_if_interrupted(percent);
+            then = changes_.now();
+        },
+        [&](std::size_t i, std::size_t slot) {
+            Trials& trials = trials_.local();
+            pays[slot] = search(trials, items[i]);
+            if (pays[slot] != 0)
+                trials.give(found[slot]);
+        },
+        [&](std::size_t i, std::size_t slot) {
+            if (stale(items[i], then))
+                made += again(items[i]);
+            else if (pays[slot] != 0)
+                made += make(items[i], found[slot]);
+        });
     return made;
 }
 
@@ -168,6 +172,11 @@ std::size_t Passes::merge(int percent)
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                                [&](const Pair& p) { return !changed_since(p.low, p.high, last); }),
                 pairs.end());
+    const auto joined = [&](int from, int to, bool made) {
+        if (made)
+            now[std::size_t(from)] = to;
+        return made;
+    };
     const std::size_t made = in_blocks(
         pairs, percent,
         [&](Trials& trials, const Pair& pair) {
@@ -176,11 +185,14 @@ std::size_t Passes::merge(int percent)
         },
         [&](const Pair& pair, std::uint32_t then) {
             const auto [from, to] = ends_of(pair);
-            if (from == to || s.fixed(from) || !changed_since(from, to, then) ||
-                !changes_.merge(from, to))
-                return false;
-            now[std::size_t(from)] = to;
-            return true;
+            return changed_since(from, to, then);
+        },
+        [&](const Pair&, Trial& trial) {
+            return joined(trial.change.from, trial.change.to, changes_.make_merge(trial));
+        },
+        [&](const Pair& pair) {
+            const auto [from, to] = ends_of(pair);
+            return from != to && !s.fixed(from) && joined(from, to, changes_.merge(from, to));
         });
     return renewed_after(made);
 }
@@ -195,9 +207,9 @@ std::size_t Passes::move(int percent)
             nodes.push_back(n);
     const std::size_t made = in_blocks(
         nodes, percent, [](Trials& trials, int n) { return trials.move(n); },
-        [&](int n, std::uint32_t then) {
-            return changes_.changed_since(n, then) && changes_.move(n);
-        });
+        [&](int n, std::uint32_t then) { return changes_.changed_since(n, then); },
+        [&](int, Trial& trial) { return changes_.make_move(trial); },
+        [&](int n) { return changes_.move(n); });
     return renewed_after(made);
 }
 
@@ -209,25 +221,24 @@ std::size_t Passes::hand_over(int percent)
         int place, neighbour;
     };
     std::vector<Handed> items;
-    const auto may = [&](const Handed& h, std::uint32_t then) {
-        const int from = s.node[std::size_t(h.place)], to = s.node[std::size_t(h.neighbour)];
-        // Outer nodes have a place of their own, which no other node can take in.
-        return from != to && !s.fixed(from) && s.places[std::size_t(from)].size() > 1 &&
-               changed_since(from, to, then);
+    const auto from = [&](const Handed& h) { return s.node[std::size_t(h.place)]; };
+    const auto to = [&](const Handed& h) { return s.node[std::size_t(h.neighbour)]; };
+    // Outer nodes have a place of their own, which no other node can take in.
+    const auto may = [&](const Handed& h) {
+        return from(h) != to(h) && !s.fixed(from(h)) && s.places[std::size_t(from(h))].size() > 1;
     };
     for (int level = 1; level <= s.levels; ++level)
         for (int v = 0; v < s.vertices(); ++v)
             for (const int u : neighbours(*s.mesh, v))
-                if (const Handed h{s.place(level, v), s.place(level, u)}; may(h, last))
+                if (const Handed h{s.place(level, v), s.place(level, u)};
+                    may(h) && changed_since(from(h), to(h), last))
                     items.push_back(h);
     const std::size_t made = in_blocks(
         items, percent,
-        [&](Trials& trials, const Handed& h) {
-            return trials.hand_over(h.place, s.node[std::size_t(h.neighbour)]);
-        },
-        [&](const Handed& h, std::uint32_t then) {
-            return may(h, then) && changes_.hand_over(h.place, s.node[std::size_t(h.neighbour)]);
-        });
+        [&](Trials& trials, const Handed& h) { return may(h) && trials.hand_over(h.place, to(h)); },
+        [&](const Handed& h, std::uint32_t then) { return changed_since(from(h), to(h), then); },
+        [&](const Handed&, Trial& trial) { return changes_.make_hand_over(trial); },
+        [&](const Handed& h) { return may(h) && changes_.hand_over(h.place, to(h)); });
     return renewed_after(made);
 }
 

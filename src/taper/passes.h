@@ -39,9 +39,9 @@ public:
     std::size_t turn(int percent);
 
 private:
-    template <class Item, class Trial, class Make>
-    std::size_t in_blocks(const std::vector<Item>& items, int percent, const Trial& trial,
-                          const Make& make);
+    template <class Item, class Search, class Stale, class Make, class Again>
+    std::size_t in_blocks(const std::vector<Item>& items, int percent, const Search& search,
+                          const Stale& stale, const Make& make, const Again& again);
     std::size_t renewed_after(std::size_t made);
     bool changed_since(int p, int q, std::uint32_t then) const
     {

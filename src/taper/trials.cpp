@@ -201,21 +201,31 @@ bool Trials::move(int n)
     list_around(s_.places[std::size_t(n)]);
     sum_before();
     step_ = newton_step(n);
-    share_ = 2;
-    change_ = {n, n, s_.at(n)};
-    return move_less();
+    share_ = 1;
+    return shorter_move(n);
 }
 
-bool Trials::move_less()
+bool Trials::move_less(const Trial& failed)
 {
-    const Vec3d& here = s_.at(change_.to);
-    while (share_ > kLeastShare) {
-        share_ /= 2;
-        change_.at = growth::rounded(here + share_ * step_);
+    const int n = failed.change.to;
+    begin_list();
+    list_around(s_.places[std::size_t(n)]);
+    sum_before();
+    step_ = failed.step;
+    share_ = failed.share / 2;
+    return shorter_move(n);
+}
+
+/// By share_ of the step, or less.
+bool Trials::shorter_move(int n)
+{
+    const Vec3d& here = s_.at(n);
+    for (; share_ >= kLeastShare; share_ /= 2) {
+        change_ = {n, n, growth::rounded(here + share_ * step_)};
         if (change_.at == here)
             return false;
         if (costs_less(change_, enough_, cost_now_) &&
-            within_caps(s_, s_.places[std::size_t(change_.to)], change_.at))
+            within_caps(s_, s_.places[std::size_t(n)], change_.at))
             return true;
     }
     return false;

@@ -9,6 +9,15 @@
 namespace vdb_shell::taper
 {
 
+/// A change that pays: what it is, the pieces that it is about, and what they cost after it.
+struct Trial {
+    Substitution change{};
+    std::vector<int> pieces;
+    std::vector<PieceCost> costs;
+    Vec3d step{0.0};  ///< of a move
+    double share = 0; ///< of the step that it makes
+};
+
 /// Single changes of a state, thought of only: whether all tets stay positive, the pillars short
 /// enough and the cost falls. Nothing here looks at the inner surface, and nothing is changed, so
 /// several threads can have one each for one state.
@@ -25,7 +34,7 @@ public:
     /// A step of Newton's method for the node's own convex problem.
     bool move(int n);
     /// After a move that passed here and failed elsewhere: the next shorter step that passes.
-    bool move_less();
+    bool move_less(const Trial& failed);
     /// A place goes over from its node, which keeps others, to another one.
     bool hand_over(int place, int to);
 
@@ -33,9 +42,15 @@ public:
     void list(const std::vector<int>& pieces);
     bool turned_costs_less();
 
-    const Substitution& change() const { return change_; }
-    const std::vector<int>& pieces() const { return pieces_; }
-    const std::vector<PieceCost>& costs() const { return cost_; }
+    /// Takes what the last call has left, for the price of a copy or none.
+    void give(Trial& trial)
+    {
+        trial.change = change_;
+        trial.pieces.swap(pieces_);
+        trial.costs.swap(cost_);
+        trial.step = step_;
+        trial.share = share_;
+    }
 
 private:
     void begin_list();
@@ -48,6 +63,7 @@ private:
     double volume6_after(const Substitution& change) const;
     bool loses_last_tet(int piece, const PieceCost& now) const;
     Vec3d newton_step(int n) const;
+    bool shorter_move(int n);
 
     const TaperState& s_;
     Substitution change_{};
