@@ -94,9 +94,9 @@ void FilePlan::add_output(const fs::path& path)
 
 bool is_standard_output(const fs::path& path)
 {
-    static const std::array<const char*, 4> kNames{"-", "/dev/stdout", "/dev/fd/1",
-                                                   "/proc/self/fd/1"};
-    for (const char* name : kNames)
+    static const std::array<const char*, 4> names{"-", "/dev/stdout", "/dev/fd/1",
+                                                  "/proc/self/fd/1"};
+    for (const char* name : names)
         if (path == name)
             return true;
     return false;

@@ -31,12 +31,22 @@ namespace vdb_shell
 
 namespace fs = std::filesystem;
 
+namespace
+{
+
+/// A folder of devices is no place for files.
+fs::path folder_of_temporary(const OutputTarget& target)
+{
+    return target.special ? fs::temp_directory_path() : target.folder();
+}
+
+} // namespace
+
 struct OutputSet::File {
     explicit File(OutputTarget&& where)
         : target(std::move(where)),
           // Nobody may read meanwhile what the replaced file did not let him read.
-          temporary(target.special ? fs::temp_directory_path() : target.folder(), target.given,
-                    target.existing ? 0600 : 0666)
+          temporary(folder_of_temporary(target), target.given, target.existing ? 0600 : 0666)
     {
     }
     OutputTarget target;
@@ -152,19 +162,23 @@ OutputSet::OutputSet(Existing existing) : existing_(existing) {}
 
 OutputSet::~OutputSet() = default;
 
+void OutputSet::require_free(const OutputTarget& target) const
+{
+    if (existing_ == Existing::kept && target.existing && !target.special)
+        refuse_output(target.given, "it exists, and is to be kept (--no-clobber)");
+    for (const std::unique_ptr<File>& other : files_)
+        if (other->target.path == target.path)
+            refuse_output(target.given, "it is written twice");
+}
+
 void OutputSet::write(const fs::path& path, const std::function<void(const fs::path&)>& write)
 {
     OutputTarget target = find_output_target(path);
-    if (existing_ == Existing::kept && target.existing && !target.special)
-        refuse_output(path, "it exists, and is to be kept (--no-clobber)");
-    for (const std::unique_ptr<File>& other : files_)
-        if (other->target.path == target.path)
-            refuse_output(path, "it is written twice");
-    const auto in_folder = [&](const auto& file) {
-        return file->target.folder() == target.folder();
-    };
-    if (!target.special && std::none_of(files_.begin(), files_.end(), in_folder))
-        remove_leftovers(target.folder());
+    require_free(target);
+    const fs::path folder = folder_of_temporary(target);
+    if (std::none_of(files_.begin(), files_.end(),
+                     [&](const auto& file) { return folder_of_temporary(file->target) == folder; }))
+        remove_leftovers(folder);
     auto file = std::make_unique<File>(std::move(target));
     const TemporaryFile& temporary = file->temporary;
     try {
@@ -202,6 +216,34 @@ void OutputSet::write_stream(const fs::path& path, const std::function<void(std:
     });
 }
 
+void OutputSet::put_in_places()
+{
+    if (existing_ == Existing::replaced)
+        for (const std::unique_ptr<File>& file : files_)
+            file->old = set_aside(file->target, file->old_lock);
+    for (const std::unique_ptr<File>& file : files_) {
+        const fs::path& temporary = file->temporary.path();
+        if (existing_ == Existing::kept)
+            put_where_nothing_is(temporary, file->target);
+        else if (::rename(temporary.c_str(), file->target.path.c_str()) != 0)
+            refuse_output(file->target.given, std::strerror(errno));
+        file->in_place = true;
+    }
+    std::set<fs::path> folders;
+    for (const std::unique_ptr<File>& file : files_)
+        if (folders.insert(file->target.folder()).second)
+            flush_folder(file->target);
+}
+
+void OutputSet::put_back() noexcept
+{
+    for (const std::unique_ptr<File>& file : files_)
+        if (file->old)
+            ::rename(file->old->path().c_str(), file->target.path.c_str());
+        else if (file->in_place)
+            ::unlink(file->target.path.c_str());
+}
+
 void OutputSet::commit()
 {
     // What cannot be undone comes first: where it fails, nothing has been replaced.
@@ -213,27 +255,9 @@ void OutputSet::commit()
     files_.erase(last, files_.end());
     const CommitGuard guard;
     try {
-        if (existing_ == Existing::replaced)
-            for (const std::unique_ptr<File>& file : files_)
-                file->old = set_aside(file->target, file->old_lock);
-        for (const std::unique_ptr<File>& file : files_) {
-            const fs::path& temporary = file->temporary.path();
-            if (existing_ == Existing::kept)
-                put_where_nothing_is(temporary, file->target);
-            else if (::rename(temporary.c_str(), file->target.path.c_str()) != 0)
-                refuse_output(file->target.given, std::strerror(errno));
-            file->in_place = true;
-        }
-        std::set<fs::path> folders;
-        for (const std::unique_ptr<File>& file : files_)
-            if (folders.insert(file->target.folder()).second)
-                flush_folder(file->target);
+        put_in_places();
     } catch (...) {
-        for (const std::unique_ptr<File>& file : files_)
-            if (file->old)
-                ::rename(file->old->path().c_str(), file->target.path.c_str());
-            else if (file->in_place)
-                ::unlink(file->target.path.c_str());
+        put_back();
         files_.clear();
         throw;
     }

@@ -28,26 +28,26 @@ class Violation(Exception):
 class Folder:
     """Outputs of one call, over old files or where nothing is."""
 
-    def __init__(self, path, with_old):
-        self.path, self.with_old = pathlib.Path(path), with_old
+    def __init__(self, path, with_old, names=NAMES):
+        self.path, self.with_old, self.names = pathlib.Path(path), with_old, names
 
     def fill(self):
         for file in self.path.iterdir():
             file.unlink()
         if self.with_old:
-            for name in NAMES:
+            for name in self.names:
                 (self.path / name).write_text("old " + name)
 
     def state(self):
         """'old', 'new', or what is wrong."""
         there = sorted(file.name for file in self.path.iterdir())
-        strange = [name for name in there if name not in NAMES]
+        strange = [name for name in there if name not in self.names]
         if strange:
             return "left over: " + ", ".join(strange)
-        old = [n for n in NAMES if (self.is_old(n) if self.with_old else n not in there)]
-        if len(old) == len(NAMES):
+        old = [n for n in self.names if (self.is_old(n) if self.with_old else n not in there)]
+        if len(old) == len(self.names):
             return "old"
-        return "new" if not old and len(there) == len(NAMES) else "old are " + ", ".join(old)
+        return "new" if not old and len(there) == len(self.names) else "old are " + ", ".join(old)
 
     def is_old(self, name):
         file = self.path / name
@@ -58,6 +58,15 @@ def command_line(command, mesh, folder):
     out = [word for name in NAMES if name not in ("s.points.vdb", "s.ele", "s.json") for word in ("-o", str(folder.path / name))]
     return [command, "build", str(mesh), "--resolution", "16", "--samples", "0", "-q", "--points", "beside", *out,
             "--report", str(folder.path / "s.json")]
+
+
+def lines(command, mesh, shell, folder):
+    """What signals are sent to, and the files that each writes."""
+    build = command_line(command, mesh, folder)
+    outputs = build[build.index("--points"):build.index("--report")]
+    return {"build": (build, NAMES), "convert": ([command, "convert", str(shell), *outputs], NAMES[:-1]),
+            "inspect": ([command, "inspect", str(mesh)], []), "check": ([command, "check", str(shell)], []),
+            "info": ([command, "info", str(shell)], [])}
 
 
 def require(condition, text):
@@ -109,14 +118,13 @@ def allocations(args, folder, log):
     return tried, statuses
 
 
-def signals(args, mesh, folder, count, extra):
+def signals(line, folder, count):
     """At random moments; the longest time from the signal to the end."""
     worst, seen = 0.0, {}
     generator = random.Random(1)
-    line = command_line(args.command, mesh, folder) + extra
     folder.fill()
     began = time.monotonic()
-    require(subprocess.run(line, capture_output=True).returncode == 0, "the build fails without any signal")
+    require(subprocess.run(line, capture_output=True).returncode == 0, "it fails without any signal")
     whole = time.monotonic() - began
     for k in range(count):
         folder.fill()
@@ -132,7 +140,7 @@ def signals(args, mesh, folder, count, extra):
         # Before the program has begun the signal's own action ends it.
         stopped = status in (128 + number, -number)
         require(stopped or status == 0, at)
-        require(state == "new" if status == 0 else state in ("old", "new"), at)
+        require(state == "new" if status == 0 and folder.names else state in ("old", "new"), at)
         if status == 128 + number:
             worst = max(worst, latency)
         seen[state if stopped else "finished"] = seen.get(state if stopped else "finished", 0) + 1
@@ -158,11 +166,12 @@ def main():
             print("calls, where nothing was:", calls(args, fresh, log, {}), flush=True)
             print("calls, without hard links:", calls(args, over, log, {"FAULT_NO_LINKS": "1"}), flush=True)
             print("allocations:", *allocations(args, over, log), flush=True)
-            worst, seen = signals(args, args.mesh, over, args.signals, [])
-            print(f"signals: {args.signals}, worst answer {1000 * worst:.0f} ms, {seen}", flush=True)
-            if args.large:
-                worst, seen = signals(args, args.large, over, args.signals, [])
-                print(f"signals, large: {args.signals}, worst answer {1000 * worst:.0f} ms, {seen}")
+            mesh = args.large or args.mesh
+            shell = pathlib.Path(work) / "shell.vdb"
+            subprocess.run([args.command, "build", mesh, "--resolution", "16", "--samples", "0", "-q", "-o", shell], check=True)
+            for name, (line, names) in lines(args.command, mesh, shell, over).items():
+                worst, seen = signals(line, Folder(outputs, True, names), args.signals)
+                print(f"signals, {name}: {args.signals}, worst answer {1000 * worst:.0f} ms, {seen}", flush=True)
     except Violation as violation:
         print("VIOLATION:", violation)
         return 1

@@ -10,6 +10,8 @@
 namespace vdb_shell
 {
 
+struct OutputTarget;
+
 /// What becomes of a file that stands where an output goes.
 enum class Existing { replaced, kept };
 
@@ -42,6 +44,9 @@ public:
 
 private:
     struct File;
+    void require_free(const OutputTarget& target) const;
+    void put_in_places();
+    void put_back() noexcept;
     std::vector<std::unique_ptr<File>> files_;
     Existing existing_;
 };
