@@ -19,9 +19,13 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include <cerrno>
+#include <cstring>
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <new>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -146,19 +150,40 @@ int status_of(const std::exception& error)
         return write_error;
     if (dynamic_cast<const ProgramError*>(&error))
         return program_failed;
+    if (dynamic_cast<const std::bad_alloc*>(&error))
+        return out_of_memory;
     return internal_error;
+}
+
+/// What was printed has to have arrived: a full disk or a closed stream shows here at the latest. A
+/// status that tells something already stays as it is.
+int finished(int status)
+{
+    errno = 0;
+    std::cout.flush();
+    if (!std::cout) {
+        std::cerr << "vdb_shell: standard output cannot be written"
+                  << (errno != 0 ? std::string(": ") + std::strerror(errno) : "") << '\n';
+        return status == success ? write_error : status;
+    }
+    // It came while files were put in their places, and had to wait.
+    return caught_signal() ? signal_base + caught_signal() : status;
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
+    end_uncaught_exceptions();
+    occupy_standard_streams();
     try {
-        return run(argc, argv);
+        return finished(run(argc, argv));
         // Everything that is thrown ends here, so that temporary files are removed while the stack
         // unwinds; an exception that leaves main may end the process without doing so.
     } catch (const std::exception& error) {
-        std::cerr << "vdb_shell: " << error.what() << '\n';
-        return status_of(error);
+        const int status = status_of(error);
+        std::cerr << "vdb_shell: " << (status == out_of_memory ? "out of memory" : error.what())
+                  << '\n';
+        return status;
     }
 }

@@ -61,7 +61,8 @@ def timed(arguments, folder, log, seconds):
 def why_failed(exit_status, stopped, seconds, outputs, text):
     if stopped:
         return f"over {seconds:g} s"
-    if exit_status != 0:
+    # 7: written, but not valid, as the raw method may be.
+    if exit_status not in (0, 7):
         return f"exit {exit_status}"
     if not all(output.exists() and output.stat().st_size for output in outputs):
         return "no result"

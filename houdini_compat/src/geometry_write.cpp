@@ -258,14 +258,14 @@ void write_geometry(std::ostream& out, const HoudiniGeometry& geometry, Format f
     compressed.finish();
 }
 
-void write_geometry(const fs::path& path, const HoudiniGeometry& geometry)
+void write_geometry(const fs::path& path, const HoudiniGeometry& geometry, OutputSet* with)
 {
     // Name and geometry are tested before the file is opened, so nothing is written that could not
     // be read back.
     const Format format = format_by_extension(path);
     require_consistent(geometry);
-    write_stream_atomically(path,
-                            [&](std::ostream& out) { write_geometry(out, geometry, format); });
+    write_stream_atomically(
+        path, [&](std::ostream& out) { write_geometry(out, geometry, format); }, with);
 }
 
 } // namespace vdb_shell::houdini

@@ -388,9 +388,9 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     return geometry;
 }
 
-void write_shell_geometry(const std::filesystem::path& path, const ShellFile& file)
+void write_shell_geometry(const std::filesystem::path& path, const ShellFile& file, OutputSet* with)
 {
-    write_geometry(path, shell_geometry(file));
+    write_geometry(path, shell_geometry(file), with);
 }
 
 ShellFile read_shell_geometry(const std::filesystem::path& path)

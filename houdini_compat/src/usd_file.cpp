@@ -13,6 +13,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/shell_points.h"
 
+#include "usd_asset.h"
 #include "usd_extent.h"
 #include "usd_stage.h"
 #include "usd_text.h"
@@ -215,22 +216,6 @@ void write_tets(UsdStage& stage, const Samples& samples)
     stage.close();
 }
 
-/// How the stage at `path` finds the .vdb wherever both are moved together.
-std::string relative_asset(const fs::path& path, const fs::path& volume)
-{
-    // Without touching the disk: neither file has to exist yet, and symbolic links stay as the user
-    // wrote them.
-    const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
-    const fs::path target = fs::absolute(volume).lexically_normal();
-    const fs::path relative = target.lexically_relative(folder);
-    // No relative path leads from one root to another; only an absolute one is left.
-    if (relative.empty())
-        return usd_asset(target.generic_string());
-    const bool upwards = *relative.begin() == "..";
-    // Without "./" in front USD would look for the name along its own search paths first.
-    return usd_asset((upwards ? "" : "./") + relative.generic_string());
-}
-
 void write_grids(UsdStage& stage, const Samples& samples, const fs::path& path)
 {
     stage.open("def Volume \"grids\"");
@@ -247,8 +232,9 @@ void write_grids(UsdStage& stage, const Samples& samples, const fs::path& path)
         stage.line(std::string("token fieldClass = \"") + field_class + "\"");
         stage.line("token fieldDataType = \"float\"");
         stage.line(std::string("token fieldName = \"") + name + "\"");
-        stage.attribute("asset filePath",
-                        [&path](const UsdSample& s) { return relative_asset(path, s.volume); });
+        stage.attribute("asset filePath", [&path](const UsdSample& s) {
+            return usd_asset(relative_asset(path, s.volume));
+        });
         stage.close();
     }
     stage.close();
@@ -296,6 +282,8 @@ void require_fitting(const fs::path& path, const Samples& samples)
         if (!sample.shell || sample.shell->stack.layers.empty())
             refuse(path, name + ": it has no shell");
         require_alike(path, name, sample, samples.front());
+        if (!sample.volume.empty())
+            require_usd_asset(path, sample.volume);
         if (!sample.volume.empty() && !(sample.shell->surface && sample.shell->depth))
             refuse(path, name + ": it has a volume but no grids");
     }
@@ -353,26 +341,30 @@ std::vector<Vec3I> boundary_triangles(const TetMesh& tets)
     return boundary;
 }
 
-void write_usd(const fs::path& path, const std::vector<UsdSample>& given, const UsdOptions& options)
+void write_usd(const fs::path& path, const std::vector<UsdSample>& given, const UsdOptions& options,
+               OutputSet* with)
 {
     require_fitting(path, given);
     std::list<ShellFile> filled;
     const Samples samples = with_cores(given, filled);
     require_positive(path, "metres per unit", options.meters_per_unit);
     require_positive(path, "frames per second", options.frames_per_second);
-    write_stream_atomically(path, [&](std::ostream& out) {
-        UsdStage stage(out, samples);
-        write_header(stage, samples, options);
-        stage.open("def Xform \"shell\" (\n    kind = \"component\"\n)");
-        write_surface(stage, samples);
-        stage.line("");
-        write_tets(stage, samples);
-        if (!samples.front().volume.empty()) {
+    write_stream_atomically(
+        path,
+        [&](std::ostream& out) {
+            UsdStage stage(out, samples);
+            write_header(stage, samples, options);
+            stage.open("def Xform \"shell\" (\n    kind = \"component\"\n)");
+            write_surface(stage, samples);
             stage.line("");
-            write_grids(stage, samples, path);
-        }
-        stage.close();
-    });
+            write_tets(stage, samples);
+            if (!samples.front().volume.empty()) {
+                stage.line("");
+                write_grids(stage, samples, path);
+            }
+            stage.close();
+        },
+        with);
 }
 
 } // namespace vdb_shell

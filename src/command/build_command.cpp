@@ -13,10 +13,10 @@
 
 #include "command/core_input.h"
 #include "command/exit_code.h"
+#include "command/file_plan.h"
 #include "command/signals.h"
 #include "command/surface_input.h"
 #include "report/stage_clock.h"
-#include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/write/remesh_map.h"
 
 #include <CLI/CLI.hpp>
@@ -108,35 +108,79 @@ std::vector<std::uint8_t> certified_flags(const ShellResult& result)
                     : std::vector<std::uint8_t>(result.tets.tets.size(), std::uint8_t(1));
 }
 
+/// Every file of the call, whichever option names it.
+void require_possible_files(const BuildArguments& arguments)
+{
+    FilePlan plan(existing_files(arguments.outputs.no_clobber));
+    plan.add_input(split_grid_name(arguments.mesh.string()).file);
+    plan.add_input(split_grid_name(arguments.thickness_grid).file);
+    plan.add_input(arguments.preset);
+    for (const std::string& core : arguments.cores)
+        plan.add_input(split_grid_name(core).file);
+    add_outputs(plan, arguments.outputs);
+    if (!arguments.report.empty() && !is_standard_output(arguments.report))
+        plan.add_output(arguments.report);
+    if (!arguments.remesh_map.empty())
+        plan.add_output(arguments.remesh_map);
+}
+
 void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
-    std::vector<std::filesystem::path> inputs{split_grid_name(arguments.mesh.string()).file};
-    for (const std::string& core : arguments.cores)
-        inputs.emplace_back(split_grid_name(core).file);
     require_fit(arguments.purpose, arguments.shell);
     if (arguments.shell.core_fill.wanted())
         require_places_for_core(arguments.outputs);
     require_program(arguments.shell.core_fill);
-    require_possible(arguments.outputs, inputs);
-    if (!arguments.cores.empty())
-        require_cores_possible(arguments.shell);
-    else if (arguments.shell.cores.distance > 0)
-        throw InvalidOption("--core-distance needs --core FILE");
-    // The report is written last, because it is the only output that can tell how long the others
-    // took.
-    if (!arguments.report.empty())
-        require_writable(arguments.report);
     const RemeshOptions& remesh = arguments.shell.remesh;
     if (!remesh.wanted() && (remesh.tolerance || !arguments.remesh_map.empty()))
         throw InvalidOption(std::string(remesh.tolerance ? "--remesh-tolerance" : "--remesh-map") +
                             " needs --remesh-edge-length or --remesh-to");
-    if (!arguments.remesh_map.empty()) {
+    if (!arguments.remesh_map.empty())
         require_map_extension(arguments.remesh_map);
-        require_writable(arguments.remesh_map);
+    require_possible_files(arguments);
+    if (!arguments.cores.empty())
+        require_cores_possible(arguments.shell);
+    else if (arguments.shell.cores.distance > 0)
+        throw InvalidOption("--core-distance needs --core FILE");
+}
+
+/// The report is made last, because it is the only output that can tell how long the others took.
+void write_report(const BuildArguments& arguments, const ShellReport& report, OutputSet& files)
+{
+    if (!arguments.report.empty() && !is_standard_output(arguments.report))
+        files.write_stream(arguments.report,
+                           [&](std::ostream& out) { out << report_json(report) << '\n'; });
+}
+
+void print_figures(const BuildArguments& arguments, const ShellReport& report)
+{
+    if (is_standard_output(arguments.report))
+        std::cout << report_json(report) << '\n';
+    else if (!arguments.quiet)
+        std::cout << report_text(report);
+}
+
+/// The files are there all the same: the raw method is asked for what it makes.
+int status_of(const ShellReport& report)
+{
+    const std::string faults = faults_of(report);
+    if (!faults.empty()) {
+        std::cerr << "vdb_shell: " << report.source << ": the shell is NOT VALID: " << faults
+                  << '\n';
+        return check_failed;
     }
+    return report.wanted && !report.wanted->met() ? bound_not_met : success;
+}
+
+/// A file without a tet would look like a success to whoever only asks whether it is there.
+void require_tets(const BuildArguments& arguments, const ShellResult& result)
+{
+    if (result.tets.tets.empty())
+        throw GeometryError(arguments.mesh.filename().string() +
+                            ": the shell has no tet: no pillar is longer than what float32 can "
+                            "tell from nothing; nothing was written");
 }
 
 } // namespace
@@ -148,7 +192,8 @@ OptionSections describe(BuildArguments& a)
     for (OptionSection& section : describe(a.outputs))
         sections.push_back(std::move(section));
     const OptionList figures{
-        option("", a.report, "--report", "Write all figures as JSON"),
+        option("", a.report, "--report",
+               "Write all figures as JSON; - is standard output, in place of the text"),
         option("", a.remesh_map, "--remesh-map",
                "Write where each vertex before remeshing lies on the surface after it, and the "
                "other way round: .json or .csv"),
@@ -183,25 +228,29 @@ int run_build(const BuildArguments& arguments)
     SignalInterrupter interrupter(arguments.progress);
     std::vector<StageCost> write_cost;
     ShellOptions options = arguments.shell;
-    ShellResult result = read_and_build(arguments, options, &interrupter);
+    ShellResult result = [&] {
+        const PoliteStop polite(options.core_fill.wanted());
+        return read_and_build(arguments, options, &interrupter);
+    }();
+    if (caught_signal())
+        throw Cancelled();
+    require_tets(arguments, result);
+    OutputSet files(existing_files(arguments.outputs.no_clobber));
     StageClock(write_cost).run("write", [&] {
         if (!arguments.remesh_map.empty())
-            write_remesh_map(arguments.remesh_map, *result.remesh_map);
+            write_remesh_map(arguments.remesh_map, *result.remesh_map, &files);
         // Before to_file, which takes the tets out of the result.
         const std::vector<std::uint8_t> certified = certified_flags(result);
         write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter),
-                      certified);
+                      certified, files);
     });
 
     std::vector<StageCost>& stages = result.report.stages;
     stages.insert(stages.end(), write_cost.begin(), write_cost.end());
-    if (!arguments.report.empty())
-        write_stream_atomically(arguments.report, [&](std::ostream& out) {
-            out << report_json(result.report) << '\n';
-        });
-    if (!arguments.quiet)
-        std::cout << report_text(result.report);
-    return result.report.wanted && !result.report.wanted->met() ? bound_not_met : success;
+    write_report(arguments, result.report, files);
+    files.commit();
+    print_figures(arguments, result.report);
+    return status_of(result.report);
 }
 
 } // namespace vdb_shell::command

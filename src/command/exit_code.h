@@ -16,7 +16,8 @@ enum ExitCode {
     bound_not_met = 6,
     check_failed = 7,
     program_failed = 8, ///< an outside program (--core-fill)
-    signal_base = 128,  ///< plus the signal's number
+    out_of_memory = 9,
+    signal_base = 128, ///< plus the signal's number
 };
 
 } // namespace vdb_shell::command

@@ -14,6 +14,7 @@
 #include "vdb_shell/write/verify_file.h"
 
 #include "command/exit_code.h"
+#include "command/file_plan.h"
 #include "command/signals.h"
 
 #include <openvdb/openvdb.h>
@@ -41,6 +42,17 @@ ShellFile read_shell(const std::filesystem::path& path)
 {
     return houdini::has_geometry_extension(path) ? houdini::read_shell_geometry(path)
                                                  : read_shell_vdb(path);
+}
+
+/// Other programs write such files too, and may have put any text there.
+nlohmann::ordered_json stored_json(const std::filesystem::path& path, const char* what,
+                                   const std::string& text)
+{
+    try {
+        return nlohmann::ordered_json::parse(text);
+    } catch (const nlohmann::json::exception& error) {
+        throw ReadError(path.string() + ": its " + what + " are not JSON: " + error.what());
+    }
 }
 
 void print_grid(const openvdb::FloatGrid& grid)
@@ -80,9 +92,10 @@ int run_info(const FileArguments& arguments)
     const ShellFile file = read_shell(arguments.file);
     if (arguments.json) {
         nlohmann::ordered_json json;
-        json["parameters"] = nlohmann::ordered_json::parse(file.parameters_json);
-        json["report"] = nlohmann::ordered_json::parse(file.report_json);
-        std::cout << json.dump(2) << '\n';
+        json["parameters"] = stored_json(arguments.file, "parameters", file.parameters_json);
+        json["report"] = stored_json(arguments.file, "report", file.report_json);
+        std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                  << '\n';
         return success;
     }
     const std::size_t layers = file.stack.layers.size();
@@ -102,14 +115,21 @@ int run_info(const FileArguments& arguments)
 
 int run_convert(const FileArguments& arguments)
 {
-    require_possible(arguments.outputs, {arguments.file});
+    FilePlan plan(existing_files(arguments.outputs.no_clobber));
+    plan.add_input(arguments.file);
+    add_outputs(plan, arguments.outputs);
+    // The file says itself where its points are, if they are not in it.
+    if (!houdini::has_geometry_extension(arguments.file))
+        plan.add_input(read_shell_info(arguments.file).points_at);
     const ShellFile file = read_shell(arguments.file);
     // The flags of certified tets are not taken from the file's report: they are what the tets
     // themselves show, by the exact test of overlaps.
     std::vector<std::uint8_t> certified;
     if (wants_flags(arguments.outputs))
         certified = find_overlaps(file.tets).certified;
-    write_outputs(arguments.outputs, file, certified);
+    OutputSet files(existing_files(arguments.outputs.no_clobber));
+    write_outputs(arguments.outputs, file, certified, files);
+    files.commit();
     return success;
 }
 

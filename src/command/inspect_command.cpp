@@ -9,8 +9,8 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
+#include "command/file_plan.h"
 #include "command/surface_input.h"
-#include "vdb_shell/core/atomic_file.h"
 
 #include <CLI/CLI.hpp>
 
@@ -28,7 +28,8 @@ OptionSections describe(InspectArguments& a)
         {"",
          {preset_option(a.preset), option("", a.json, "--json", "Print one JSON object"),
           option("", a.picture, "--output", "Write the mesh coloured by its defects: .ply")
-              .with_names({"-o"})}},
+              .with_names({"-o"}),
+          no_clobber_option(a.no_clobber)}},
         {"read", describe(a.read)},
         {"level_set", describe(a.inspect)}};
     // The help of so few options reads better as one group than as the groups of `build`.
@@ -49,23 +50,22 @@ BoundOptions add_inspect_command(CLI::App& app, InspectArguments& arguments)
 
 int run_inspect(const InspectArguments& arguments)
 {
-    if (!arguments.picture.empty()) {
-        // The picture need not exist yet, in which case the comparison fails and says no; that is
-        // the answer wanted here.
-        std::error_code ignored;
-        if (std::filesystem::equivalent(arguments.picture, arguments.mesh, ignored))
-            throw InvalidOption(arguments.picture.string() +
-                                ": is the input; it is not overwritten");
-        require_writable(arguments.picture);
-    }
+    FilePlan plan(existing_files(arguments.no_clobber));
+    plan.add_input(arguments.mesh);
+    plan.add_input(arguments.preset);
+    if (!arguments.picture.empty())
+        plan.add_output(arguments.picture);
     const ReadResult read = read_surface(arguments.mesh, arguments.read);
     InspectOptions options = in_unit(arguments.inspect, read.report.placement.unit);
     // What rounding to float32 moved is known to the reader alone, and decides whether --recentre
     // is advised.
     options.largest_rounding = read.report.largest_rounding;
     const MeshInspection inspection = inspect_mesh(read.mesh, options);
-    if (!arguments.picture.empty())
-        write_defect_picture(arguments.picture, read.mesh, options);
+    if (!arguments.picture.empty()) {
+        OutputSet files(existing_files(arguments.no_clobber));
+        write_defect_picture(arguments.picture, read.mesh, options, &files);
+        files.commit();
+    }
     const std::string name = arguments.mesh.filename().string();
     if (arguments.json)
         std::cout << inspection_json(name, read.report, inspection) << '\n';

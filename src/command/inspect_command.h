@@ -17,6 +17,7 @@ struct InspectArguments {
     ReadOptions read;
     InspectOptions inspect;
     std::filesystem::path picture; ///< coloured mesh of the defects; empty: none
+    bool no_clobber = false;
     bool json = false;
 };
 

@@ -2,9 +2,9 @@
 
 // From names of files to writers: the extension alone decides the format. All outputs are held
 // against what is known before any work begins, so a run of minutes does not end in a misspelt
-// extension. Each file is written whole or not at all by its own writer; if a later one fails,
-// those before it stay. A new extension also has to be named in the two lists that people read, the
-// help of -o and the message for unknown ones.
+// extension. The files of a call are written into one set and appear together. A new extension also
+// has to be named in the two lists that people read, the help of -o and the message for unknown
+// ones.
 
 #include "command/outputs.h"
 
@@ -14,8 +14,6 @@
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/shell/shared_points.h"
 #include "vdb_shell/write/tet_file.h"
-
-#include "vdb_shell/core/atomic_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -63,6 +61,23 @@ fs::path first_vdb(const Outputs& outputs)
     return {};
 }
 
+/// The files that one output is made of. Of TetGen's two either name gives both, and both names
+/// together give them once.
+std::vector<fs::path> files_of(const fs::path& path, const Outputs& outputs)
+{
+    fs::path other = path;
+    if (kind_of(path) == Kind::vdb && outputs.vdb.points == PointPlacement::beside)
+        return {path, points_file_of(path)};
+    if (path.extension() == ".ele") {
+        other.replace_extension(".node");
+        const bool both = std::count(outputs.paths.begin(), outputs.paths.end(), other) > 0;
+        return both ? std::vector<fs::path>{} : std::vector<fs::path>{path, other};
+    }
+    if (path.extension() == ".node")
+        return {path, other.replace_extension(".ele")};
+    return {path};
+}
+
 /// The shell and what fills it, as one mesh of tets; flags of the core's are all set, as a core is
 /// proven or not there.
 struct Solid {
@@ -97,33 +112,27 @@ OptionSections describe(Outputs& o)
                ".ply .off .stl (inner surface; the outer one of an outward shell), .png (picture "
                "of a cross-section)")
             .with_names({"-o"});
-    return {{"", in_group("Output", {output})},
+    return {{"", in_group("Output", {output, no_clobber_option(o.no_clobber)})},
             {"vdb", describe(o.vdb)},
             {"usd", describe(o.usd)},
             {"picture", describe(o.picture)}};
 }
 
-void require_possible(const Outputs& outputs, const std::vector<fs::path>& inputs)
+void add_outputs(FilePlan& plan, const Outputs& outputs)
 {
-    for (auto path = outputs.paths.begin(); path != outputs.paths.end(); ++path) {
-        if (kind_of(*path) == Kind::unknown)
-            throw InvalidOption(path->string() + ": unknown extension \"" +
-                                path->extension().string() +
+    for (const fs::path& path : outputs.paths)
+        if (kind_of(path) == Kind::unknown)
+            throw InvalidOption(path.string() + ": unknown extension \"" +
+                                path.extension().string() +
                                 "\"; known are .vdb .geo .bgeo .bgeo.sc .usda .vtu .node .ele "
                                 ".mesh .msh .obj .ply .off .stl .png");
-        // Only equal texts are found here: two ways to write one path pass, and then the later
-        // output replaces the earlier one.
-        if (std::find(outputs.paths.begin(), path, *path) != path)
-            throw InvalidOption(path->string() + ": given twice as an output");
-        for (const fs::path& input : inputs) {
-            // An output that does not exist yet cannot be the input; the comparison then fails,
-            // which counts as no.
-            std::error_code ignored;
-            if (fs::equivalent(*path, input, ignored))
-                throw InvalidOption(path->string() + ": is the input; it is not overwritten");
-        }
-        require_writable(*path);
-    }
+    const fs::path volume = first_vdb(outputs);
+    for (const fs::path& path : outputs.paths)
+        if (kind_of(path) == Kind::usd && !volume.empty())
+            require_usd_asset(path, volume);
+    for (const fs::path& path : outputs.paths)
+        for (const fs::path& file : files_of(path, outputs))
+            plan.add_output(file);
 }
 
 void require_places_for_core(const Outputs& outputs)
@@ -148,34 +157,36 @@ bool wants_flags(const Outputs& outputs)
 }
 
 void write_outputs(const Outputs& outputs, const ShellFile& file,
-                   const std::vector<std::uint8_t>& certified)
+                   const std::vector<std::uint8_t>& certified, OutputSet& files)
 {
     if (!file.core.empty())
         require_places_for_core(outputs);
     const Solid solid = wants_flags(outputs) ? solid_of(file, certified) : Solid{};
     for (const fs::path& path : outputs.paths) {
+        if (files_of(path, outputs).empty())
+            continue;
         switch (kind_of(path)) {
         case Kind::vdb:
-            write_shell_vdb(path, file, outputs.vdb);
+            write_shell_vdb(path, file, outputs.vdb, &files);
             break;
         case Kind::houdini:
-            houdini::write_shell_geometry(path, file);
+            houdini::write_shell_geometry(path, file, &files);
             break;
         case Kind::tets:
             write_tets(path, solid.tets, solid.certified, file.placement,
-                       feet_of_tet_points(file.stack, solid.tets, file.core_feet));
+                       feet_of_tet_points(file.stack, solid.tets, file.core_feet), &files);
             break;
         case Kind::surface:
-            write_mesh(path, grown_surface(file.stack), file.placement);
+            write_mesh(path, grown_surface(file.stack), file.placement, &files);
             break;
         // The picture shows the outermost and the innermost surface; surfaces between layers show
         // by the edges of the tets.
         case Kind::picture:
             write_cross_section(path, hull_of(file.stack), joined_tets(file.tets, file.core),
-                                outputs.picture);
+                                outputs.picture, &files);
             break;
         case Kind::usd:
-            write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd);
+            write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd, &files);
             break;
         case Kind::unknown:
             break; // refused by require_possible

@@ -6,6 +6,8 @@
 #include "vdb_shell/write/cross_section.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include "command/file_plan.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -19,14 +21,16 @@ struct Outputs {
     VdbWriteOptions vdb;
     CrossSectionOptions picture;
     UsdOptions usd;
+    bool no_clobber = false;
 };
 
 /// -o and the options of single formats.
 OptionSections describe(Outputs& outputs);
 
-/// Throws InvalidOption for an unknown extension or a path given twice, WriteError for a folder
-/// that cannot be written: tested before any work is done. `inputs` must not be overwritten.
-void require_possible(const Outputs& outputs, const std::vector<std::filesystem::path>& inputs);
+/// Adds all files that will be written, also those beside the ones that were named. Throws
+/// InvalidOption for an unknown extension, and what FilePlan throws: tested before any work is
+/// done.
+void add_outputs(FilePlan& plan, const Outputs& outputs);
 
 /// Throws InvalidOption where one of the formats cannot hold a core.
 void require_places_for_core(const Outputs& outputs);
@@ -37,9 +41,9 @@ bool wants_vdb(const Outputs& outputs);
 /// True when some output has tets, beside which the flags of certified ones can stand.
 bool wants_flags(const Outputs& outputs);
 
-/// Writes every output; a .usda refers to the first .vdb among them. `file.surface` and
-/// `file.depth` may be null unless wants_vdb(); `certified` may be empty unless wants_flags().
+/// Writes every output into the set; a .usda refers to the first .vdb among them. `file.surface`
+/// and `file.depth` may be null unless wants_vdb(); `certified` may be empty unless wants_flags().
 void write_outputs(const Outputs& outputs, const ShellFile& file,
-                   const std::vector<std::uint8_t>& certified);
+                   const std::vector<std::uint8_t>& certified, OutputSet& files);
 
 } // namespace vdb_shell::command

@@ -10,9 +10,9 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
+#include "command/file_plan.h"
 #include "command/signals.h"
 #include "command/surface_input.h"
-#include "vdb_shell/core/atomic_file.h"
 
 #include <CLI/CLI.hpp>
 
@@ -29,11 +29,11 @@ OptionSections describe(RepairArguments& a)
     Option output = option("", a.output, "--output", "Repaired surface: .obj .ply .off .stl")
                         .with_names({"-o"});
     output.required = true;
-    OptionSections sections{
-        {"",
-         {preset_option(a.preset), output, option("", a.json, "--json", "Print one JSON object")}},
-        {"read", describe(a.read)},
-        {"repair", describe(a.repair)}};
+    OptionSections sections{{"",
+                             {preset_option(a.preset), output, no_clobber_option(a.no_clobber),
+                              option("", a.json, "--json", "Print one JSON object")}},
+                            {"read", describe(a.read)},
+                            {"repair", describe(a.repair)}};
     for (OptionSection& section : sections)
         for (Option& o : section.options) {
             o.group = "Options";
@@ -54,11 +54,11 @@ BoundOptions add_repair_command(CLI::App& app, RepairArguments& arguments)
 
 int run_repair(const RepairArguments& arguments)
 {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(arguments.output, arguments.mesh, ignored))
-        throw InvalidOption(arguments.output.string() + ": is the input; it is not overwritten");
     // Before reading: a repair may take long, and its result must have a place to go.
-    require_writable(arguments.output);
+    FilePlan plan(existing_files(arguments.no_clobber));
+    plan.add_input(arguments.mesh);
+    plan.add_input(arguments.preset);
+    plan.add_output(arguments.output);
     SignalInterrupter interrupter(false);
     const ReadResult read = read_surface(arguments.mesh, arguments.read);
     warn_of_lost_digits(arguments.mesh, read);
@@ -67,7 +67,9 @@ int run_repair(const RepairArguments& arguments)
         repair_mesh(read.mesh, in_unit(arguments.repair, placement.unit), &interrupter);
     // The placement is undone here, so the output lies where the input lay, also with --recentre
     // and --rescale.
-    write_mesh(arguments.output, result.mesh, placement);
+    OutputSet files(existing_files(arguments.no_clobber));
+    write_mesh(arguments.output, result.mesh, placement, &files);
+    files.commit();
     const std::string name = arguments.mesh.filename().string();
     std::cout << (arguments.json ? repair_json(result.report) + '\n'
                                  : name + ":\n" + repair_text(result.report));

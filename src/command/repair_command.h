@@ -16,6 +16,7 @@ struct RepairArguments {
     std::filesystem::path mesh, output;
     ReadOptions read;
     RepairOptions repair;
+    bool no_clobber = false;
     bool json = false;
 };
 

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The first SIGINT or SIGTERM sets a number that the stages look at, so that they stop at a safe
-// place and temporaries are removed by their owners. The second ends the process at once, for those
-// who do not want to wait. A handler may only call what is async-signal-safe, so it does nothing
-// else: no stream, no lock, no memory.
+// A signal ends the process at once, whatever it does: all files under way are temporaries, whose
+// names a table holds for the handler. There are two exceptions. While files are put in their
+// places, which takes milliseconds, the signal waits. While an outside program may run, the first
+// signal sets a number that the stages look at, so that they end the program and remove its folder;
+// the second ends the process at once. A handler may only call what is async-signal-safe: no
+// stream, no lock, no memory.
 
 #include "command/signals.h"
 
 #include "command/exit_code.h"
 #include "vdb_shell/core/atomic_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <iostream>
+#include <new>
 
 namespace vdb_shell::command
 {
@@ -22,35 +31,113 @@ namespace
 
 /// The type that the C++ standard lets a handler write; the number stays 0 until a signal comes.
 volatile std::sig_atomic_t signal_number = 0;
+std::atomic<int> polite_stops{0};
+
+const char* stopped_by(int number)
+{
+    switch (number) {
+    case SIGHUP:
+        return "vdb_shell: stopped by SIGHUP\n";
+    case SIGINT:
+        return "vdb_shell: stopped by SIGINT\n";
+    case SIGTERM:
+        return "vdb_shell: stopped by SIGTERM\n";
+    case SIGXCPU:
+        return "vdb_shell: stopped by SIGXCPU: the limit on processor time is reached\n";
+    default: // SIGPIPE: who reads no further knows it
+        return "";
+    }
+}
+
+void say(const char* text)
+{
+    if (::write(STDERR_FILENO, text, std::strlen(text)) < 0)
+        errno = 0; // there is nobody left to tell
+}
 
 void on_signal(int number)
 {
-    if (signal_number != 0) {
-        // _exit runs no destructor, so the temporary files have to go here.
-        remove_temporaries_on_signal();
-        // The status is that of a shell for a process that a signal ended: 128 and its number.
-        ::_exit(signal_base + number);
-    }
+    const bool first = signal_number == 0;
     signal_number = number;
+    if (files_are_committed_now() || (first && polite_stops > 0))
+        return;
+    // _exit runs no destructor, so the temporary files have to go here.
+    remove_temporaries_on_signal();
+    say(stopped_by(number));
+    // The status is that of a shell for a process that a signal ended: 128 and its number.
+    ::_exit(signal_base + number);
+}
+
+void on_ignored_signal(int) {}
+
+void on_terminate()
+{
+    remove_temporaries_on_signal();
+    try {
+        if (const std::exception_ptr thrown = std::current_exception())
+            std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+        say("vdb_shell: out of memory\n");
+        ::_exit(out_of_memory);
+    } catch (const std::exception& error) {
+        std::cerr << "vdb_shell: " << error.what() << '\n';
+    }
+    std::abort();
+}
+
+/// What was ignored when the program was started (nohup, a shell's background) stays ignored.
+void handle(int number, void (*handler)(int))
+{
+    struct sigaction action {
+    };
+    if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN)
+        return;
+    action = {};
+    action.sa_handler = handler;
+    // No flag of sigaction is set: calls that wait return early instead of going on, and the
+    // handler stays in place for the second signal.
+    sigemptyset(&action.sa_mask);
+    ::sigaction(number, &action, nullptr);
 }
 
 } // namespace
 
 void catch_signals()
 {
-    struct sigaction action {
-    };
-    action.sa_handler = on_signal;
-    // No flag of sigaction is set: calls that wait return early instead of going on, and the
-    // handler stays in place for the second signal.
-    sigemptyset(&action.sa_mask);
-    ::sigaction(SIGINT, &action, nullptr);
-    ::sigaction(SIGTERM, &action, nullptr);
+    for (const int number : {SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGPIPE})
+        handle(number, on_signal);
+    // Nothing happens but that the write fails, which is told as any failure. A handler and not
+    // SIG_IGN, which outside programs would inherit.
+    handle(SIGXFSZ, on_ignored_signal);
+}
+
+void end_uncaught_exceptions()
+{
+    std::set_terminate(on_terminate);
+}
+
+void occupy_standard_streams()
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+        if (::fcntl(stream, F_GETFD) < 0)
+            // The lowest free number, which is this one. It cannot be written, so that text which
+            // nobody gets is an error as it was.
+            ::open("/dev/null", O_RDONLY);
 }
 
 int caught_signal()
 {
     return signal_number;
+}
+
+PoliteStop::PoliteStop(bool wanted) : wanted_(wanted)
+{
+    polite_stops += wanted_ ? 1 : 0;
+}
+
+PoliteStop::~PoliteStop()
+{
+    polite_stops -= wanted_ ? 1 : 0;
 }
 
 void SignalInterrupter::start(const char* name)

@@ -155,7 +155,7 @@ std::string ply_bytes(const TriangleMesh& mesh, const Marked& marked)
 } // namespace
 
 void write_defect_picture(const std::filesystem::path& path, const TriangleMesh& mesh,
-                          const InspectOptions& options)
+                          const InspectOptions& options, OutputSet* with)
 {
     if (path.extension() != ".ply")
         throw InvalidOption(path.string() + ": the coloured mesh of the defects is a .ply, not \"" +
@@ -163,9 +163,12 @@ void write_defect_picture(const std::filesystem::path& path, const TriangleMesh&
     const DefectMarks found = mark_defects(mesh, resolve_voxel_size(mesh, options.level_set));
     // All bytes are made before the file is opened, and the file then appears whole or not at all.
     const std::string bytes = ply_bytes(mesh, marks_of(mesh, found));
-    write_stream_atomically(path, [&](std::ostream& out) {
-        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    });
+    write_stream_atomically(
+        path,
+        [&](std::ostream& out) {
+            out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        },
+        with);
 }
 
 } // namespace vdb_shell

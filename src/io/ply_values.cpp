@@ -3,13 +3,13 @@
 // The header of a PLY file, and its data value by value (Greg Turk, "The PLY Polygon File Format",
 // 1994). A header is taken only if it is complete and says how to read a surface; data are read in
 // the order and the types that it declares. No length in the file is believed before the bytes for
-// it are there, since memory is taken by it. Trap: binary values are decoded as they lie in memory,
-// for which the machine is taken to be little-endian.
+// it are there, since memory is taken by it.
 
 #include "io/ply_values.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -200,6 +200,14 @@ private:
     bool has_format_ = false;
 };
 
+bool little_endian_machine()
+{
+    const std::uint16_t one = 1;
+    unsigned char first = 0;
+    std::memcpy(&first, &one, 1);
+    return first == 1;
+}
+
 /// A double holds every value of every type of the format exactly.
 template <typename Number> double number_at(const std::array<char, 8>& bytes)
 {
@@ -292,7 +300,7 @@ PlyValue PlyValues::next(PlyType type, const Place& place)
     // Values are not aligned, so they are copied before they are looked at.
     std::array<char, 8> bytes{};
     std::copy_n(data_.begin(), size, bytes.begin());
-    if (encoding_ == PlyEncoding::big_endian)
+    if ((encoding_ == PlyEncoding::little_endian) != little_endian_machine())
         std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     data_.remove_prefix(size);
     value.number = decode(type, bytes);
@@ -310,7 +318,7 @@ std::size_t PlyValues::list_size(const PlyProperty& list, const Place& place)
     const double most =
         static_cast<double>(bytes_left()) / static_cast<double>(text ? 1 : size_of(list.type));
     // Also for lengths that are stored as floats and are not numbers.
-    if (!(size >= 0 && size <= most))
+    if (!(size >= 0 && size <= most) || size != std::floor(size))
         refuse(name_, at.text() + ": a list \"" + list.name + "\" of " + std::to_string(size) +
                           " values, where the rest of the file can hold " +
                           std::to_string(static_cast<std::size_t>(most)));

@@ -127,9 +127,12 @@ void read_statement(ObjScan& obj, std::string_view line, std::size_t number)
         refuse_lost_surface(obj, keyword, number);
 }
 
-/// The line without its final backslash, which joins the next one to it.
+/// The line without its final backslash, which joins the next one to it. A comment ends with its
+/// line whatever stands there: the next one may be a vertex.
 bool cut_continuation(std::string_view& line)
 {
+    if (line.find('#') != line.npos)
+        return false;
     const std::size_t last = line.find_last_not_of(" \t");
     if (last == line.npos || line[last] != '\\')
         return false;

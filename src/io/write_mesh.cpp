@@ -135,7 +135,7 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 } // namespace
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
-                const Placement& placement)
+                const Placement& placement, OutputSet* with)
 {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -152,7 +152,8 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
     if (extension == ".stl" && placement.moves())
         throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
                                             "object stands; write .obj, .off or .ply");
-    write_stream_atomically(path, [&](std::ostream& out) { write(out, mesh, placement); });
+    write_stream_atomically(
+        path, [&](std::ostream& out) { write(out, mesh, placement); }, with);
 }
 
 } // namespace vdb_shell

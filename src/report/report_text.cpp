@@ -159,25 +159,13 @@ std::string shown_share(const Overlaps& overlaps)
            " prisms certified by themselves";
 }
 
-/// What is wrong with the shell; what was not looked at is not called right. Faults come first,
-/// even where there is a certificate: signs, conformity and sample points are counted without it,
-/// and a contradiction between the two has to show. Then the strongest statement that was proven,
-/// then what was merely seen.
+/// What was not looked at is not called right. Faults come first, even where there is a
+/// certificate: signs, conformity and sample points are counted without it, and a contradiction
+/// between the two has to show. Then the strongest statement that was proven, then what was merely
+/// seen.
 std::string verdict(const ShellReport& report)
 {
-    std::string wrong;
-    const auto add = [&](std::size_t count, const char* what) {
-        if (count > 0)
-            wrong += (wrong.empty() ? "" : ", ") + number(count, 12) + " " + what;
-    };
-    add(report.signs.inverted.count, "inverted tets");
-    add(report.signs.flat.count, "flat tets");
-    if (!report.conformity.conforming())
-        wrong += wrong.empty() ? "tets do not conform" : ", tets do not conform";
-    if (report.overlaps)
-        add(report.overlaps->pairs.count, "pairs of tets that overlap");
-    add(report.coverage.in_several, "sample points covered more than once");
-    add(report.coverage.outside_covered, "sample points covered outside the solid");
+    const std::string wrong = faults_of(report);
     if (!wrong.empty())
         return "NOT VALID: " + wrong +
                (report.overlaps ? "; " + shown_share(*report.overlaps) : std::string());
@@ -291,6 +279,24 @@ void proof_lines(std::ostringstream& out, const ShellReport& report)
 }
 
 } // namespace
+
+std::string faults_of(const ShellReport& report)
+{
+    std::string wrong;
+    const auto add = [&](std::size_t count, const char* what) {
+        if (count > 0)
+            wrong += (wrong.empty() ? "" : ", ") + number(count, 12) + " " + what;
+    };
+    add(report.signs.inverted.count, "inverted tets");
+    add(report.signs.flat.count, "flat tets");
+    if (!report.conformity.conforming())
+        wrong += wrong.empty() ? "tets do not conform" : ", tets do not conform";
+    if (report.overlaps)
+        add(report.overlaps->pairs.count, "pairs of tets that overlap");
+    add(report.coverage.in_several, "sample points covered more than once");
+    add(report.coverage.outside_covered, "sample points covered outside the solid");
+    return wrong;
+}
 
 std::string report_text(const ShellReport& report)
 {

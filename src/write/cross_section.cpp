@@ -128,7 +128,7 @@ OptionList describe(CrossSectionOptions& o)
 }
 
 void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,
-                         const TetMesh& tets, const CrossSectionOptions& options)
+                         const TetMesh& tets, const CrossSectionOptions& options, OutputSet* with)
 {
     // Cheap refusals come first: a wrong option or a folder that cannot be written is told before
     // the section is computed.
@@ -150,7 +150,7 @@ void write_cross_section(const std::filesystem::path& path, const PrismShell& sh
     to_pixels(drawing, frame_of(all, plane, options.width_pixels));
     const std::string png = encode_png(draw_cut(drawing), drawing.width, drawing.height);
     write_stream_atomically(
-        path, [&](std::ostream& out) { out.write(png.data(), std::streamsize(png.size())); });
+        path, [&](std::ostream& out) { out.write(png.data(), std::streamsize(png.size())); }, with);
 }
 
 } // namespace vdb_shell

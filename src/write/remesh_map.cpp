@@ -89,18 +89,21 @@ void require_map_extension(const std::filesystem::path& path)
                             "\" for a remesh map; known are .json .csv");
 }
 
-void write_remesh_map(const std::filesystem::path& path, const RemeshMap& map)
+void write_remesh_map(const std::filesystem::path& path, const RemeshMap& map, OutputSet* with)
 {
     require_map_extension(path);
     const Ways ways{{"input_on_result", &map.input_on_result},
                     {"result_on_input", &map.result_on_input}};
-    write_stream_atomically(path, [&](std::ostream& stream) {
-        TextOut out(stream);
-        if (extension_of(path) == ".csv")
-            write_csv(out, ways);
-        else
-            write_json(out, ways);
-    });
+    write_stream_atomically(
+        path,
+        [&](std::ostream& stream) {
+            TextOut out(stream);
+            if (extension_of(path) == ".csv")
+                write_csv(out, ways);
+            else
+                write_json(out, ways);
+        },
+        with);
 }
 
 } // namespace vdb_shell

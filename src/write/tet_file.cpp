@@ -10,11 +10,11 @@
 #include "vdb_shell/core/error.h"
 
 #include "vdb_shell/core/atomic_file.h"
+#include "vdb_shell/core/output_set.h"
 #include "write/tet_formats.h"
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 
 namespace vdb_shell
 {
@@ -33,23 +33,15 @@ std::string lower_extension(const fs::path& path)
     return extension;
 }
 
-void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& placement)
+void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& placement,
+                  OutputSet* with)
 {
     fs::path node = path, ele = path;
     node.replace_extension(".node");
     ele.replace_extension(".ele");
-    write_atomically(ele, [&](const fs::path& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        write_tetgen_ele(out, tets);
-        // Closed before it is tested, because the last bytes may fail only when the buffer is
-        // written out.
-        out.close();
-        if (!out)
-            throw WriteError(ele.string() + ": cannot be written: the disk is full or the file "
-                                            "system refused the data");
-        // Inside the other, so that neither name changes before both files are written.
-        write_stream_atomically(
-            node, [&](std::ostream& nodes) { write_tetgen_node(nodes, tets, placement); });
+    write_together(with, [&](OutputSet& set) {
+        set.write_stream(ele, [&](std::ostream& out) { write_tetgen_ele(out, tets); });
+        set.write_stream(node, [&](std::ostream& out) { write_tetgen_node(out, tets, placement); });
     });
 }
 
@@ -72,7 +64,7 @@ const std::vector<std::string>& tet_file_extensions()
 
 void write_tets(const fs::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified, const Placement& placement,
-                const std::vector<CoreFoot>& feet)
+                const std::vector<CoreFoot>& feet, OutputSet* with)
 {
     // Only .vtu has a place for the flags; the other formats drop them, but a wrong number is
     // refused for all.
@@ -85,10 +77,11 @@ void write_tets(const fs::path& path, const TetMesh& tets,
                             " feet on cores for " + std::to_string(tets.points.size()) + " points");
     const std::string extension = lower_extension(path);
     if (extension == ".node" || extension == ".ele")
-        return write_tetgen(path, tets, placement);
+        return write_tetgen(path, tets, placement, with);
     if (extension == ".vtu")
         return write_stream_atomically(
-            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, feet); });
+            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, feet); },
+            with);
     void (*write)(std::ostream&, const TetMesh&, const Placement&) = nullptr;
     if (extension == ".mesh")
         write = write_medit;
@@ -96,7 +89,8 @@ void write_tets(const fs::path& path, const TetMesh& tets,
         write = write_gmsh;
     else
         refuse_extension(path, extension);
-    write_stream_atomically(path, [&](std::ostream& out) { write(out, tets, placement); });
+    write_stream_atomically(
+        path, [&](std::ostream& out) { write(out, tets, placement); }, with);
 }
 
 } // namespace vdb_shell

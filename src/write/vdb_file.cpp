@@ -15,7 +15,7 @@
 
 #include "core/parallel.h"
 #include "io/vdb_archive.h"
-#include "vdb_shell/core/atomic_file.h"
+#include "vdb_shell/core/output_set.h"
 #include "vdb_shell/io/vdb_header.h"
 #include "write/core_feet_grid.h"
 #include "write/core_grids.h"
@@ -196,7 +196,8 @@ OptionList describe(VdbWriteOptions& o)
                 "Save a .vdb's volumes with half floats; its points stay exact")});
 }
 
-void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWriteOptions& options)
+void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWriteOptions& options,
+                     OutputSet* with)
 {
     openvdb::initialize();
     require_consistent(file.stack, file.tets);
@@ -227,14 +228,15 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     for (const GridBase::Ptr& grid : points)
         add_points_metadata(*grid, metadata);
 
-    write_atomically(path, [&](const fs::path& temporary) {
-        if (!beside)
-            std::move(points.begin(), points.end(), std::back_inserter(volumes));
-        write_vdb_archive(temporary, std::move(volumes), metadata);
-        // Inside the other, so that neither file is renamed before both are on disk.
+    write_together(with, [&](OutputSet& set) {
+        set.write(path, [&](const fs::path& temporary) {
+            if (!beside)
+                std::move(points.begin(), points.end(), std::back_inserter(volumes));
+            write_vdb_archive(temporary, std::move(volumes), metadata);
+        });
         if (beside)
-            write_atomically(points_file_of(path), [&](const fs::path& temporary_points) {
-                write_vdb_archive(temporary_points, std::move(points), metadata);
+            set.write(points_file_of(path), [&](const fs::path& temporary) {
+                write_vdb_archive(temporary, std::move(points), metadata);
             });
     });
 }

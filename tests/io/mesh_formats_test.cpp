@@ -201,6 +201,26 @@ TEST_F(MeshFormats, understands_the_forms_of_obj_lines)
     EXPECT_EQ(result.report.file_faces, 4U);
 }
 
+TEST_F(MeshFormats, a_comment_of_obj_ends_with_its_line)
+{
+    expect_tetrahedron(read("a.obj", "# C:\\meshes\\\nv 0 0 0\nv 1 0 0 # \\\nv 0 1 0\nv 0 0 1\n"
+                                     "f 1 3 2\nf 1 2 4 # \\\nf 1 4 3\nf 2 3 4\n"));
+}
+
+TEST_F(MeshFormats, refuses_a_list_of_ply_whose_length_is_no_whole_number)
+{
+    const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                               "property float y\nproperty float z\nelement face 1\n"
+                               "property list float int vertex_indices\nend_header\n";
+    std::string bytes = header;
+    bytes.replace(bytes.find("ascii"), 5, "binary_little_endian");
+    const float points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, size = 3.5F;
+    bytes.append(reinterpret_cast<const char*>(points), sizeof points);
+    bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
+    bytes.append(16, '\0');
+    EXPECT_SAYS(complaint("a.ply", bytes), "a list \"vertex_indices\" of 3.5");
+}
+
 TEST_F(MeshFormats, names_what_is_wrong_in_obj)
 {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

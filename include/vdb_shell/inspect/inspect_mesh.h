@@ -14,6 +14,7 @@
 
 namespace vdb_shell
 {
+class OutputSet;
 
 /// Boundary edges in a row. Where boundaries meet in a point they are told apart.
 struct BoundaryLoop {
@@ -95,6 +96,6 @@ std::string inspection_json(const std::string& name, const ReadReport& read,
 /// property `defects` whose bits name all of them (docs/stages/repair.md). Throws WriteError;
 /// InvalidOption for another extension than .ply.
 void write_defect_picture(const std::filesystem::path& path, const TriangleMesh& mesh,
-                          const InspectOptions& options = {});
+                          const InspectOptions& options = {}, OutputSet* with = nullptr);
 
 } // namespace vdb_shell

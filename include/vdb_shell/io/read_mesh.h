@@ -12,6 +12,7 @@
 
 namespace vdb_shell
 {
+class OutputSet;
 
 struct ReadOptions {
     /// Merge vertices of exactly equal float32 position (seams of OBJ files). Off, the vertices
@@ -65,6 +66,6 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
 /// where the file had them, as doubles; STL has none and is refused. The file appears whole or not
 /// at all. Throws WriteError; InvalidOption for an unknown extension.
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
-                const Placement& placement = {});
+                const Placement& placement = {}, OutputSet* with = nullptr);
 
 } // namespace vdb_shell

@@ -129,6 +129,9 @@ struct ShellReport {
 /// from run to run.
 std::string report_json(const ShellReport& report, bool with_costs = true);
 
+/// What was found wrong with the shell; empty where nothing was.
+std::string faults_of(const ShellReport& report);
+
 /// The report for a person: some twenty lines.
 std::string report_text(const ShellReport& report);
 

@@ -8,6 +8,7 @@
 
 namespace vdb_shell
 {
+class OutputSet;
 
 enum class Axis { x, y, z };
 const NameTable<Axis>& names(Axis);
@@ -23,6 +24,7 @@ OptionList describe(CrossSectionOptions& options);
 /// inner outlines, places that more than one tet covers in red. Throws WriteError; InvalidOption
 /// for a width outside [16, 16384] or a position outside [0, 1].
 void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,
-                         const TetMesh& tets, const CrossSectionOptions& options = {});
+                         const TetMesh& tets, const CrossSectionOptions& options = {},
+                         OutputSet* with = nullptr);
 
 } // namespace vdb_shell

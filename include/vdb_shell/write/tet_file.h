@@ -12,6 +12,7 @@
 
 namespace vdb_shell
 {
+class OutputSet;
 
 /// Extensions that write_tets knows: ".vtu", ".node", ".ele", ".mesh", ".msh".
 const std::vector<std::string>& tet_file_extensions();
@@ -27,6 +28,6 @@ const std::vector<std::string>& tet_file_extensions();
 /// that are not one a tet and feet that are not one a point, WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {},
-                const std::vector<CoreFoot>& feet = {});
+                const std::vector<CoreFoot>& feet = {}, OutputSet* with = nullptr);
 
 } // namespace vdb_shell

@@ -16,6 +16,7 @@
 
 namespace vdb_shell
 {
+class OutputSet;
 
 /// Version of the layout in docs/file_format.md. A reader refuses a larger one. A shell of one
 /// layer below its surface is written as schema 1, which has no words for layers; one that is not
@@ -91,7 +92,7 @@ FloatGridPtr shell_depth_grid(const TetMesh& tets, double voxel_size,
 /// when stack and tets do not fit together as make_tets leaves them, and when a distance is beyond
 /// what the half floats that are asked for can hold; WriteError.
 void write_shell_vdb(const std::filesystem::path& path, const ShellFile& file,
-                     const VdbWriteOptions& options = {});
+                     const VdbWriteOptions& options = {}, OutputSet* with = nullptr);
 
 /// Reads what write_shell_vdb wrote, bit for bit (half floats as they were rounded, the mark that
 /// they were saved so kept); finds points that stand beside the file. Throws

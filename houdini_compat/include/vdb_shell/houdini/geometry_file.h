@@ -7,6 +7,11 @@
 #include <iosfwd>
 #include <string>
 
+namespace vdb_shell
+{
+class OutputSet;
+}
+
 namespace vdb_shell::houdini
 {
 
@@ -41,7 +46,8 @@ ReadGeometry parse_geometry(const std::string& bytes, const std::string& name);
 /// same geometry. The file appears whole or not at all. Throws InvalidOption as require_consistent
 /// does, for another extension, and for a value that a form has no way to write (text: numbers that
 /// are not finite, strings that are not UTF-8); WriteError.
-void write_geometry(const std::filesystem::path& path, const HoudiniGeometry& geometry);
+void write_geometry(const std::filesystem::path& path, const HoudiniGeometry& geometry,
+                    OutputSet* with = nullptr);
 
 /// The same to a stream. Precondition: require_consistent.
 void write_geometry(std::ostream& out, const HoudiniGeometry& geometry, Format format);

@@ -6,6 +6,11 @@
 
 #include <filesystem>
 
+namespace vdb_shell
+{
+class OutputSet;
+}
+
 namespace vdb_shell::houdini
 {
 
@@ -25,7 +30,8 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
 bool is_shell(const HoudiniGeometry& geometry);
 
 /// shell_geometry and write_geometry.
-void write_shell_geometry(const std::filesystem::path& path, const ShellFile& file);
+void write_shell_geometry(const std::filesystem::path& path, const ShellFile& file,
+                          OutputSet* with = nullptr);
 
 /// read_geometry and shell_of_geometry.
 ShellFile read_shell_geometry(const std::filesystem::path& path);

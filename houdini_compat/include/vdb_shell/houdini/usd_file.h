@@ -9,6 +9,7 @@
 
 namespace vdb_shell
 {
+class OutputSet;
 
 enum class UpAxis { y, z };
 const NameTable<UpAxis>& names(UpAxis);
@@ -38,7 +39,11 @@ struct UsdSample {
 /// have different triangles or which have other layers, a volume for some samples only or without
 /// grids, options that are not positive and finite; WriteError.
 void write_usd(const std::filesystem::path& path, const std::vector<UsdSample>& samples,
-               const UsdOptions& options = {});
+               const UsdOptions& options = {}, OutputSet* with = nullptr);
+
+/// Throws InvalidOption where the stage at `path` could not name the volume, because its path is no
+/// UTF-8: asked before the work begins.
+void require_usd_asset(const std::filesystem::path& path, const std::filesystem::path& volume);
 
 /// The triangles that belong to one tet only, outward from it when it is positive; sorted.
 std::vector<openvdb::Vec3I> boundary_triangles(const TetMesh& tets);

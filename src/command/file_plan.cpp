@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes the paths of a call, as they were given; leaves the proof that no output destroys an input
+// or another output, or a refusal that names both. It is asked before the work begins. What others
+// do to the files meanwhile it cannot know: renames at the end never follow a link.
+
+#include "command/file_plan.h"
+
+#include "core/output_target.h"
+#include "vdb_shell/core/error.h"
+
+#include <unistd.h>
+
+#include <array>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// True where one of the two streams goes to this very file: `> report.json`.
+bool takes_a_stream(const struct stat& file)
+{
+    for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
+        struct stat status {
+        };
+        if (S_ISREG(file.st_mode) && ::fstat(stream, &status) == 0 &&
+            status.st_dev == file.st_dev && status.st_ino == file.st_ino)
+            return true;
+    }
+    return false;
+}
+
+} // namespace
+
+bool FilePlan::Identity::operator==(const Identity& other) const
+{
+    return device == other.device && inode == other.inode && name == other.name;
+}
+
+std::optional<FilePlan::Identity> FilePlan::identity_of(const fs::path& path)
+{
+    struct stat status {
+    };
+    if (::stat(path.c_str(), &status) != 0)
+        return std::nullopt;
+    return Identity{status.st_dev, status.st_ino, ""};
+}
+
+const FilePlan::Entry* FilePlan::find(const std::vector<Entry>& entries, const Identity& identity)
+{
+    for (const Entry& entry : entries)
+        if (entry.identity == identity)
+            return &entry;
+    return nullptr;
+}
+
+void FilePlan::add_input(const fs::path& path)
+{
+    const std::optional<Identity> identity = identity_of(path);
+    if (!identity)
+        return;
+    if (const Entry* output = find(outputs_, *identity))
+        throw InvalidOption(output->path.string() + ": is the input " + path.string() +
+                            "; it is not overwritten");
+    inputs_.push_back({path, *identity});
+}
+
+void FilePlan::add_output(const fs::path& path)
+{
+    const OutputTarget target = find_output_target(path);
+    std::optional<Identity> identity = identity_of(target.path);
+    if (!identity) {
+        identity = identity_of(target.folder());
+        if (!identity)
+            refuse_output(path, "its folder does not exist");
+        identity->name = target.path.filename().string();
+    }
+    if (const Entry* input = find(inputs_, *identity))
+        throw InvalidOption(path.string() + ": is the input " + input->path.string() +
+                            "; it is not overwritten");
+    if (const Entry* output = find(outputs_, *identity))
+        throw InvalidOption(path.string() + ": given twice as an output, the other time as " +
+                            output->path.string());
+    if (target.existing && takes_a_stream(*target.existing))
+        throw InvalidOption(path.string() +
+                            ": standard output or standard error goes to this file already");
+    if (target.existing && !target.special && existing_ == Existing::kept)
+        refuse_output(path, "it exists, and is to be kept (--no-clobber)");
+    outputs_.push_back({path, *identity});
+}
+
+bool is_standard_output(const fs::path& path)
+{
+    static const std::array<const char*, 4> names{"-", "/dev/stdout", "/dev/fd/1",
+                                                  "/proc/self/fd/1"};
+    for (const char* name : names)
+        if (path == name)
+            return true;
+    return false;
+}
+
+Option no_clobber_option(bool& keep)
+{
+    return option("", keep, "--no-clobber",
+                  "Refuse to replace files that exist, before the work and after it");
+}
+
+Existing existing_files(bool keep)
+{
+    return keep ? Existing::kept : Existing::replaced;
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_fixture.h"
+#include "support/shapes.h"
+#include "vdb_shell/write/vdb_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <thread>
+
+// What the command does with files: nothing is overwritten that was not meant, nothing is lost in
+// silence, and the status says what happened.
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using command::ExitCode;
+
+class FilePlans : public Command
+{
+protected:
+    void SetUp() override
+    {
+        box = mesh_file("b.obj", gridded_box({0, 0, 0}, {1, 1, 1}, 2));
+        bytes = read_bytes(folder / "b.obj");
+        build = "build " + box + kCoarse + "-q ";
+    }
+    std::string out(const std::string& name) { return " -o " + file(name); }
+    /// The words of a line, as a shell runs it.
+    int shell(const std::string& line) { return std::system(line.c_str()); }
+
+    std::string box, bytes, build;
+};
+
+TEST_F(FilePlans, NoOutputDestroysAnInputOrAnotherOutput)
+{
+    ASSERT_EQ(run(build + out("g.vdb")).status, ExitCode::success);
+    ASSERT_EQ(run(build + "--points beside" + out("h.vdb")).status, ExitCode::success);
+    const std::string grid = read_bytes(folder / "g.vdb"),
+                      points = read_bytes(folder / "h.points.vdb");
+    fs::create_hard_link(box, folder / "hard.obj");
+    fs::create_symlink("b.obj", folder / "soft.obj");
+    fs::create_symlink(".", folder / "here");
+    write_bytes(folder / "options.json", "{}");
+    const std::string refused[] = {
+        build + out("a.vtu") + " --report " + box,
+        build + out("hard.obj"),
+        build + out("soft.obj"),
+        build + out("here/b.obj"),
+        build + "--thickness-grid " + file("g.vdb") + ":depth" + out("g.vdb"),
+        build + "--core " + file("g.vdb") + ":surface" + out("g.vdb"),
+        build + "--options " + file("options.json") + " --report " + file("options.json"),
+        build + "--remesh-to 50 --remesh-map " + file("m.json") + " --report " + file("m.json"),
+        build + out("a.vdb") + out("./a.vdb"),
+        build + out("a.vdb") + out("here/a.vdb"),
+        build + out("a.vtu") + " --report " + file("a.vtu"),
+        build + "--points beside" + out("k.vdb") + out("k.points.vdb"),
+        build + out("t.node") + " --report " + file("t.ele"),
+        "convert " + file("h.vdb") + out("h.points.vdb"),
+        "convert " + file("h.vdb") + out("h.vdb"),
+        "inspect " + mesh_file("p.ply", icosphere(1, 1)) + " -o " + file("p.ply"),
+        "repair " + box + out("hard.obj"),
+        "repair " + box + " --options " + file("options.json") + out("here/options.json")};
+    for (const std::string& line : refused) {
+        const Outcome result = run(line);
+        EXPECT_EQ(result.status, ExitCode::usage_error) << line << result.err;
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    }
+    EXPECT_EQ(read_bytes(folder / "b.obj"), bytes);
+    EXPECT_EQ(read_bytes(folder / "g.vdb"), grid);
+    EXPECT_EQ(read_bytes(folder / "h.points.vdb"), points);
+    EXPECT_EQ(read_bytes(folder / "options.json"), "{}");
+    for (const char* name : {"a.vtu", "a.vdb", "k.vdb", "t.ele", "m.json"})
+        EXPECT_FALSE(fs::exists(folder / name)) << name;
+}
+
+TEST_F(FilePlans, APointsFileOfAnotherNameIsAnInputToo)
+{
+    ASSERT_EQ(run(build + "--points beside" + out("a.vdb")).status, ExitCode::success);
+    fs::rename(folder / "a.vdb", folder / "b.vdb");
+    expect_refusal("convert --points beside " + file("b.vdb") + out("a.vdb"), ExitCode::usage_error,
+                   {"a.points.vdb", "input"});
+    EXPECT_EQ(run("check " + file("b.vdb")).status, ExitCode::success);
+}
+
+TEST_F(FilePlans, BothFilesOfTetGenAreWrittenOnce)
+{
+    EXPECT_EQ(run(build + out("t.node") + out("t.ele")).status, ExitCode::success);
+    EXPECT_TRUE(fs::exists(folder / "t.node") && fs::exists(folder / "t.ele"));
+}
+
+TEST_F(FilePlans, AnOutputThatCannotBeWrittenLeavesTheOthersAsTheyWere)
+{
+    write_bytes(folder / "a.vtu", "old");
+    // STL cannot say where a shell stands, which only its writer knows.
+    write_mesh(folder / "far.obj", gridded_box({0, 0, 0}, {1, 1, 1}, 2), {{1e6, 0, 0}, 1.0});
+    const Outcome result = run("build --recentre " + file("far.obj") + kCoarse + out("a.vtu") +
+                               out("a.stl") + " --report " + file("a.json"));
+    EXPECT_EQ(result.status, ExitCode::usage_error) << result.err;
+    EXPECT_EQ(read_bytes(folder / "a.vtu"), "old");
+    EXPECT_FALSE(fs::exists(folder / "a.json"));
+}
+
+TEST_F(FilePlans, ExistingFilesAreKeptWhenAsked)
+{
+    write_bytes(folder / "a.vtu", "old");
+    for (const std::string& line :
+         {build + out("a.vtu"), build + out("a.node") + " --report " + file("a.vtu"),
+          "repair " + box + out("hard.obj")}) {
+        write_bytes(folder / "hard.obj", "old");
+        expect_refusal(line + " --no-clobber", ExitCode::write_error, {"exists", "--no-clobber"});
+    }
+    EXPECT_EQ(read_bytes(folder / "a.vtu"), "old");
+    EXPECT_FALSE(fs::exists(folder / "a.node"));
+    EXPECT_EQ(run(build + "--no-clobber" + out("b.vtu")).status, ExitCode::success);
+}
+
+TEST_F(FilePlans, AReadOnlyFileIsRefusedAndAModeKept)
+{
+    write_bytes(folder / "a.vtu", "old");
+    fs::permissions(folder / "a.vtu", fs::perms::owner_read);
+    expect_refusal(build + out("a.vtu"), ExitCode::write_error, {"a.vtu", "read-only"});
+    fs::permissions(folder / "a.vtu", fs::perms::owner_read | fs::perms::owner_write);
+    ASSERT_EQ(run(build + out("a.vtu")).status, ExitCode::success);
+    EXPECT_EQ(fs::status(folder / "a.vtu").permissions(),
+              fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(FilePlans, DevicesAndFifosAreWrittenInto)
+{
+    ASSERT_EQ(::mkfifo((folder / "f.vtu").c_str(), 0600), 0);
+    std::string read;
+    std::thread reader([&] { read = read_bytes(folder / "f.vtu"); });
+    const Outcome result = run(build + out("f.vtu") + out("a.vtu") + " --report /dev/null");
+    reader.join();
+    EXPECT_EQ(result.status, ExitCode::success) << result.err;
+    EXPECT_EQ(read, read_bytes(folder / "a.vtu"));
+    EXPECT_TRUE(fs::is_fifo(folder / "f.vtu"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(FilePlans, AReportGoesToStandardOutput)
+{
+    for (const char* name : {"-", "/dev/stdout"}) {
+        const Outcome result = run("build " + box + kCoarse + "--report " + name);
+        ASSERT_EQ(result.status, ExitCode::success) << result.err;
+        EXPECT_EQ(nlohmann::json::parse(result.out).at("source"), "b.obj");
+    }
+    EXPECT_FALSE(fs::exists("-"));
+    expect_refusal(build + "--report " + file("out"), ExitCode::usage_error, {"standard output"});
+}
+
+TEST_F(FilePlans, StandardOutputThatFailsIsAnError)
+{
+    ASSERT_EQ(run(build + out("s.vdb")).status, ExitCode::success);
+    for (const std::string& words :
+         {"build " + box + kCoarse, "build -q --report - " + box + kCoarse, "inspect " + box,
+          "info " + file("s.vdb"), "check " + file("s.vdb"), std::string("options"),
+          std::string("--help"), std::string("--version")}) {
+        const std::string line = std::string(VDB_SHELL_COMMAND) + " " + words;
+        EXPECT_EQ(WEXITSTATUS(shell(line + " >/dev/full 2>" + file("err"))), ExitCode::write_error)
+            << words;
+        EXPECT_NE(read_bytes(folder / "err").find("standard output"), std::string::npos) << words;
+    }
+}
+
+TEST_F(FilePlans, ClosedStreamsEndInNoFile)
+{
+    const std::string line = std::string(VDB_SHELL_COMMAND) + " build " + box + kCoarse;
+    EXPECT_EQ(WEXITSTATUS(shell(line + "--progress" + out("a.vtu") + " <&- >&- 2>&-")),
+              ExitCode::write_error);
+    ASSERT_EQ(run(build + out("b.vtu")).status, ExitCode::success);
+    EXPECT_EQ(read_bytes(folder / "a.vtu"), read_bytes(folder / "b.vtu"));
+}
+
+TEST_F(FilePlans, ALimitOnTheSizeOfFilesIsAWriteError)
+{
+    write_bytes(folder / "a.vtu", "old");
+    const std::string line = "ulimit -f 4; exec " + std::string(VDB_SHELL_COMMAND) + " " + build +
+                             out("a.vtu") + " 2>" + file("err");
+    EXPECT_EQ(WEXITSTATUS(shell("sh -c '" + line + "'")), ExitCode::write_error);
+    EXPECT_NE(read_bytes(folder / "err").find("a.vtu: cannot be written: File too large"),
+              std::string::npos)
+        << read_bytes(folder / "err");
+    EXPECT_EQ(read_bytes(folder / "a.vtu"), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 3);
+}
+
+TEST_F(FilePlans, AShellWithoutATetOrNotValidIsNoSuccess)
+{
+    for (const char* options :
+         {"--thickness 1e-308", "--thickness-scale 1e-308", "--method raw --step 1e308"})
+        expect_refusal(build + options + out("a.vtu"), ExitCode::geometry_error, {"no tet"});
+    EXPECT_FALSE(fs::exists(folder / "a.vtu"));
+}
+
+TEST_F(FilePlans, NamesThatAreNoUtf8LeaveValidFilesOrAreRefused)
+{
+    const std::string name = "caf\xe9"; // Latin-1
+    fs::copy_file(box, folder / (name + ".obj"));
+    const std::string from = "build -q " + file(name + ".obj") + kCoarse;
+    ASSERT_EQ(
+        run(from + out(name + ".vdb") + out(name + ".geo") + " --report " + file("r.json")).status,
+        ExitCode::success);
+    EXPECT_NO_THROW(nlohmann::json::parse(read_bytes(folder / "r.json")));
+    EXPECT_NO_THROW(nlohmann::json::parse(read_bytes(folder / (name + ".geo"))));
+    EXPECT_NO_THROW(nlohmann::json::parse(run("info --json " + file(name + ".vdb")).out));
+    EXPECT_NO_THROW(nlohmann::json::parse(run("inspect --json " + file(name + ".obj")).out));
+    EXPECT_EQ(run("check " + file(name + ".vdb")).status, ExitCode::success);
+    expect_refusal(from + out(name + ".vdb") + out("a.usda"), ExitCode::usage_error,
+                   {"a.usda", "UTF-8"});
+    EXPECT_EQ(run(from + out("a.vdb") + out(name + ".usda")).status, ExitCode::success);
+}
+
+TEST_F(FilePlans, StoredTextThatIsNoJsonIsRefusedByName)
+{
+    ASSERT_EQ(run(build + out("a.vdb")).status, ExitCode::success);
+    ShellFile shell = read_shell_vdb(folder / "a.vdb");
+    shell.report_json = "{\"source\": ";
+    write_shell_vdb(folder / "b.vdb", shell);
+    expect_refusal("info --json " + file("b.vdb"), ExitCode::read_error,
+                   {"b.vdb", "report", "JSON"});
+}
+
+TEST_F(FilePlans, UnsignedOptionsAreNotNegative)
+{
+    for (const char* option : {"--samples", "--sample-seed", "--decimate-to", "--layers"})
+        EXPECT_EQ(run(build + option + " -1" + out("a.vtu")).status, ExitCode::usage_error)
+            << option;
+    EXPECT_FALSE(fs::exists(folder / "a.vtu"));
+}
+
+} // namespace
+} // namespace vdb_shell::test
