@@ -11,22 +11,60 @@
 
 #include "core/exact.h"
 #include "core/fan.h"
+#include "core/orient3d_filter.h"
 #include "core/parallel.h"
 #include "mesh/topology.h"
+
+#include <cmath>
 
 namespace vdb_shell
 {
 namespace
 {
 
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+/// Fan::surely_embedded for as many triangles as there may be: the same tests, one after the other.
+/// A vertex of a hundred thousand triangles has too many pairs for exact tests of each.
+bool large_fan_surely_embedded(const std::vector<Vec3s>& points, std::size_t apex,
+                               const VertexTriangles::Range& rim)
+{
+    const std::size_t count = rim.size();
+    const Vec3d origin(points[apex]);
+    const auto spoke = [&](std::size_t i) { return Vec3d(points[rim.first[i % count]]) - origin; };
+    Vec3d sum(0.0);
+    for (std::size_t i = 0; i < count; ++i)
+        sum += spoke(i).cross(spoke(i + 1));
+    const auto k = int(openvdb::math::MaxIndex(openvdb::math::Abs(sum))), j = (k + 1) % 3;
+    const auto below = [&](const Vec3d& s) { return s[j] * sum[k] - s[k] * sum[j] < 0; };
+    std::size_t rises = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3d u = spoke(i), w = spoke(i + 1);
+        double det = 0, permanent = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+            const double left = u[a] * w[b], right = u[b] * w[a];
+            det += sum[axis] * (left - right);
+            permanent += std::abs(sum[axis]) * (std::abs(left) + std::abs(right));
+        }
+        // The margin of Fan::surely_embedded.
+        if (exact::certain_sign(det, permanent, 3 * exact::kOrientError) <= 0)
+            return false;
+        rises += below(u) && !below(w);
+    }
+    return rises == 1;
+}
+
 /// Whether doubles show it for certain; false tells nothing.
 bool surely_embedded(const std::vector<openvdb::Vec3s>& points, std::size_t apex,
                      const VertexTriangles::Range& rim)
 {
-    // An open fan has no rim here, and a large one does not fit into the fan's arrays. Their pairs
-    // are tested one by one.
-    if (rim.size() < 3 || rim.size() > Fan::kMost)
+    // An open fan has no rim here. Its pairs are tested one by one.
+    if (rim.size() < 3)
         return false;
+    if (rim.size() > Fan::kMost)
+        return large_fan_surely_embedded(points, apex, rim);
     const Fan fan(openvdb::Vec3d(points[apex]), rim.size(),
                   [&](std::size_t i) { return openvdb::Vec3d(points[rim.first[i]]); });
     return fan.surely_embedded();
