@@ -158,10 +158,10 @@ def nested_spheres(n):
 
 
 def many_components(n):
-    """Balls of 24 triangles each, apart from one another."""
-    side = math.ceil((n / 24) ** (1 / 3))
+    """Octahedra, apart from one another."""
+    side = math.ceil((n / 8) ** (1 / 3))
     places = [(i, j, k) for i in range(side) for j in range(side) for k in range(side)]
-    return joined(sphere(24, .4, place) for place in places[:max(1, n // 24)])
+    return joined(sphere(8, .4, place) for place in places[:max(1, n // 8)])
 
 
 def holes_of_sphere(n):

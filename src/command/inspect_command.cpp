@@ -9,6 +9,7 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
+#include "command/signals.h"
 #include "command/surface_input.h"
 #include "vdb_shell/core/atomic_file.h"
 
@@ -63,7 +64,8 @@ int run_inspect(const InspectArguments& arguments)
     // What rounding to float32 moved is known to the reader alone, and decides whether --recentre
     // is advised.
     options.largest_rounding = read.report.largest_rounding;
-    const MeshInspection inspection = inspect_mesh(read.mesh, options);
+    SignalInterrupter interrupter(false);
+    const MeshInspection inspection = inspect_mesh(read.mesh, options, &interrupter);
     if (!arguments.picture.empty())
         write_defect_picture(arguments.picture, read.mesh, options);
     const std::string name = arguments.mesh.filename().string();

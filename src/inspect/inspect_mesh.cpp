@@ -9,6 +9,7 @@
 
 #include "vdb_shell/inspect/inspect_mesh.h"
 
+#include "core/stage_progress.h"
 #include "inspect/marks.h"
 #include "mesh/boundary_loops.h"
 #include "mesh/most_visible.h"
@@ -104,13 +105,15 @@ std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t trian
 
 } // namespace
 
-DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size)
+DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size, Interrupter* interrupter)
 {
+    const StageProgress progress(interrupter, "inspect");
     DefectMarks marks;
     marks.uses = sorted_edge_uses(mesh.triangles);
-    marks.surface = find_defects(mesh, marks.uses);
+    marks.surface = find_defects(mesh, marks.uses, interrupter);
     mark_orientation(marks, mesh.triangles.size());
     marks.blind = blind_vertices(mesh);
+    progress.stop_if_interrupted(80);
     marks.thin = find_thin_triangles(mesh, marks.surface.duplicate_triangles, voxel_size);
     return marks;
 }
@@ -127,7 +130,8 @@ OptionList describe(InspectOptions& o)
     return options;
 }
 
-MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options)
+MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options,
+                            Interrupter* interrupter)
 {
     require_well_formed(mesh, "inspect_mesh");
     MeshInspection inspection;
@@ -138,7 +142,7 @@ MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& opti
     // left at 0, and it is the triangles, all without area, that tell what is wrong.
     if (options.level_set.voxel_size || diagonal_of(bounds) > 0)
         inspection.voxel_size = resolve_voxel_size(mesh, options.level_set);
-    const DefectMarks marks = mark_defects(mesh, inspection.voxel_size);
+    const DefectMarks marks = mark_defects(mesh, inspection.voxel_size, interrupter);
     inspection.check = summarise(mesh, marks.uses, marks.surface);
     inspection.boundary_loops = measure_loops(mesh, marks.surface.boundary_edges);
     inspection.flipped_patches = patches_of(marks, mesh.triangles.size());

@@ -17,7 +17,8 @@ struct DefectMarks {
     std::vector<std::uint32_t> blind;              ///< points
     std::vector<std::uint32_t> thin;               ///< triangles
 };
-DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size);
+DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size,
+                         Interrupter* interrupter = nullptr);
 
 /// See MeshInspection::thin_triangles.
 /// `repeats` are left out: copies of a triangle cannot be thinner than it is.
