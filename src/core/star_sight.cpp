@@ -128,6 +128,7 @@ bool a_direction_sees(const openvdb::Vec3s& apex, const std::vector<Side>& sides
         return s;
     };
     std::vector<Vector<3>> normals;
+    normals.reserve(sides.size());
     for (const Side& side : sides)
         normals.push_back(cross(spoke(side[1]), spoke(side[0])));
     // Not std::shuffle, whose order differs from library to library. No order gives another answer.

@@ -225,6 +225,7 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
     // Only a piece whose box meets that of another can enclose a corner of it.
     BoxTree tree;
     std::vector<FloatBox> piece_boxes;
+    piece_boxes.reserve(count);
     for (const Piece& piece : pieces)
         piece_boxes.push_back(piece.box);
     tree.build(std::move(piece_boxes));

@@ -223,7 +223,7 @@ private:
     {
         const openvdb::Vec3s& point = mesh_.points[triangle(g)[0]];
         FloatBox above = FloatBox::around(point);
-        above.add({point[0], point[1], std::numeric_limits<float>::max()});
+        above.add(openvdb::Vec3s(point[0], point[1], std::numeric_limits<float>::max()));
         bool inside = false;
         boxes.for_each_overlap(above, [&](int i) {
             const openvdb::Vec3I& t = solid[std::size_t(i)];

@@ -215,6 +215,7 @@ private:
 std::size_t longest_optimal(const std::vector<Hole>& holes)
 {
     std::vector<std::size_t> lengths;
+    lengths.reserve(holes.size());
     for (const Hole& hole : holes)
         lengths.push_back(hole.points.size());
     std::sort(lengths.begin(), lengths.end());
