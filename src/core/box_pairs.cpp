@@ -11,6 +11,7 @@
 
 #include "core/bucket_sort.h"
 #include "core/parallel.h"
+#include "core/polled_stop.h"
 
 #include <algorithm>
 
@@ -44,8 +45,10 @@ std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes)
     return overlapping_pairs(boxes, [](std::uint32_t, std::uint32_t) { return true; });
 }
 
-std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const KeepPair& keep)
+std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const KeepPair& keep,
+                                    Interrupter* interrupter)
 {
+    const PolledStop stop(interrupter);
     BoxTree tree;
     tree.build(boxes);
     const std::size_t groups = tree.groups();
@@ -55,7 +58,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const Ke
         [&](std::size_t part) {
             BoxTree::Near near;
             const std::size_t end = std::min(groups, (part + 1) * kGroupsInPart);
-            for (std::size_t group = part * kGroupsInPart; group < end; ++group)
+            for (std::size_t group = part * kGroupsInPart; group < end && !stop.wanted(); ++group)
                 tree.for_each_overlap_of(
                     group, tree, near, [](int) { return true; },
                     [&](int i, int j) {
@@ -68,6 +71,7 @@ std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const Ke
                     });
         },
         1);
+    stop.throw_if_wanted();
     // The first boxes are numbers from 0 without gaps, as a bucket sort wants. The second tells all
     // pairs of a bucket apart, so their order is unique.
     return bucket_sort<Pair>(

@@ -3,6 +3,8 @@
 
 #include "core/box_tree.h"
 
+#include "vdb_shell/core/interrupter.h"
+
 #include <openvdb/Types.h>
 
 #include <array>
@@ -20,9 +22,11 @@ std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
 /// All pairs i < j of boxes that have a point in common, sorted.
 std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<FloatBox>& boxes);
 
-/// Those of them for which keep(i, j) holds, which is called from several threads at a time.
+/// Those of them for which keep(i, j) holds, which is called from several threads at a time. The
+/// interrupter may be null; it is asked by the calling thread only. Throws Cancelled.
 using KeepPair = std::function<bool(std::uint32_t, std::uint32_t)>;
 std::vector<std::array<std::uint32_t, 2>> overlapping_pairs(const std::vector<FloatBox>& boxes,
-                                                            const KeepPair& keep);
+                                                            const KeepPair& keep,
+                                                            Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell

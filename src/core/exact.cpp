@@ -179,13 +179,27 @@ bool plane_separates(const std::vector<openvdb::Vec3s>& points, const openvdb::V
     return side != 0;
 }
 
+/// Whether corners of different index stand in one place, as where a surface was cut open. No
+/// filter in doubles decides such pairs, as all signs there are zero.
+bool have_equal_corners(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
+                        const openvdb::Vec3I& second)
+{
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (first[i] != second[j] && points[first[i]] == points[second[j]])
+                return true;
+    return false;
+}
+
 } // namespace
 
 bool triangles_touch(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& first,
                      const openvdb::Vec3I& second)
 {
-    // Quick tests come first. Each says "apart" only where it is certain, so their order changes
-    // the time and not the answer.
+    // Quick tests come first. Each answers only where it is certain, so their order changes the
+    // time and not the answer.
+    if (have_equal_corners(points, first, second))
+        return true;
     if (apart_in_projection(points, first, second) || plane_separates(points, first, second) ||
         plane_separates(points, second, first))
         return false;

@@ -9,6 +9,7 @@
 
 #include "field/signed_distance.h"
 
+#include "core/unit_vector.h"
 #include "mesh/nearest_on_triangle.h"
 #include "vdb_shell/mesh/normals.h"
 
@@ -35,9 +36,7 @@ std::array<Vec3d, 3> SignedDistance::corners(std::uint32_t triangle) const
 Vec3d SignedDistance::unit_normal(std::uint32_t triangle) const
 {
     const std::array<Vec3d, 3> c = corners(triangle);
-    Vec3d n = (c[1] - c[0]).cross(c[2] - c[0]);
-    n.normalize();
-    return n;
+    return unit_vector((c[1] - c[0]).cross(c[2] - c[0]));
 }
 
 Vec3d SignedDistance::edge_normal(std::uint32_t triangle, int side) const

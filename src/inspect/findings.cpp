@@ -191,6 +191,10 @@ void add_float_limits(Findings& findings, const MeshInspection& inspection)
     if (floats.farthest / inspection.voxel_size > kLargestVoxelIndex)
         add("far_coordinates", apart + "too far from the origin for voxels of this size", true,
             "--recentre, or a larger --voxel-size");
+    // The level set then has no voxel inside, and lines have nothing to step through.
+    if (inspection.voxel_size > floats.longest_side)
+        add("large_voxels", "a voxel is larger than the object", true,
+            "a smaller --voxel-size, or --resolution");
     if (inspection.voxel_size < kSmallestVoxelSize)
         add("tiny_voxels", "voxels are smaller than OpenVDB's transforms can hold", true,
             "--rescale, or a larger --voxel-size");

@@ -3,19 +3,18 @@
 // Takes a mesh however bad it is and finds everything that stands in the way of a shell or will
 // show in it. It changes nothing and throws at no bad surface, so every part has to bear any
 // topology: what needs an orientation looks at edges of two triangles only, and loops may be open.
-// Connectivity and contacts are exact, as they are those of check_mesh(); blind vertices and thin
-// triangles are measured in doubles. Marks hold every element in ascending order, the result only
-// counts and first ones, so neither depends on threads.
+// Connectivity and contacts are exact, as they are those of check_mesh(), and so are blind
+// vertices; thin triangles are measured in doubles. Marks hold every element in ascending order,
+// the result only counts and first ones, so neither depends on threads.
 
 #include "vdb_shell/inspect/inspect_mesh.h"
-#include "vdb_shell/mesh/normals.h"
 
-#include "growth/line_directions.h"
+#include "core/stage_progress.h"
 #include "inspect/marks.h"
 #include "mesh/boundary_loops.h"
+#include "mesh/most_visible.h"
 #include "mesh/orientation.h"
 #include "vdb_shell/options/option.h"
-#include "vdb_shell/step/directions.h"
 
 #include <algorithm>
 #include <numeric>
@@ -26,25 +25,6 @@ namespace
 {
 
 using openvdb::Vec3d;
-
-/// Vertices that even growth's mended directions leave blind. Growth mends a direction by looking
-/// for the one that sees the worst triangle best; the same is done here, from the normals on. Where
-/// even that one sees a triangle from behind, growth pins the vertex. Points without a triangle
-/// have no direction either, and are no fault.
-std::vector<std::uint32_t> find_blind_vertices(const TriangleMesh& mesh)
-{
-    Directions directions = directions_along(mesh, pseudo_normals(mesh));
-    growth::mend_directions(mesh, directions);
-    std::vector<char> used(mesh.points.size());
-    for (const openvdb::Vec3I& t : mesh.triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            used[t[corner]] = 1;
-    std::vector<std::uint32_t> blind;
-    for (std::uint32_t v = 0; v < used.size(); ++v)
-        if (used[v] && directions.visibility[v] <= 0)
-            blind.push_back(v);
-    return blind;
-}
 
 /// Of a one-sided piece only the first triangle is marked: which of its triangles disagree depends
 /// on where one begins, and none of them is the wrong one.
@@ -125,14 +105,16 @@ std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t trian
 
 } // namespace
 
-DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size)
+DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size, Interrupter* interrupter)
 {
+    const StageProgress progress(interrupter, "inspect");
     DefectMarks marks;
     marks.uses = sorted_edge_uses(mesh.triangles);
-    marks.surface = find_defects(mesh, marks.uses);
+    marks.surface = find_defects(mesh, marks.uses, interrupter);
     mark_orientation(marks, mesh.triangles.size());
-    marks.blind = find_blind_vertices(mesh);
-    marks.thin = find_thin_triangles(mesh, voxel_size);
+    marks.blind = blind_vertices(mesh);
+    progress.stop_if_interrupted(80);
+    marks.thin = find_thin_triangles(mesh, marks.surface.duplicate_triangles, voxel_size);
     return marks;
 }
 
@@ -148,7 +130,8 @@ OptionList describe(InspectOptions& o)
     return options;
 }
 
-MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options)
+MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options,
+                            Interrupter* interrupter)
 {
     require_well_formed(mesh, "inspect_mesh");
     MeshInspection inspection;
@@ -159,7 +142,7 @@ MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& opti
     // left at 0, and it is the triangles, all without area, that tell what is wrong.
     if (options.level_set.voxel_size || diagonal_of(bounds) > 0)
         inspection.voxel_size = resolve_voxel_size(mesh, options.level_set);
-    const DefectMarks marks = mark_defects(mesh, inspection.voxel_size);
+    const DefectMarks marks = mark_defects(mesh, inspection.voxel_size, interrupter);
     inspection.check = summarise(mesh, marks.uses, marks.surface);
     inspection.boundary_loops = measure_loops(mesh, marks.surface.boundary_edges);
     inspection.flipped_patches = patches_of(marks, mesh.triangles.size());

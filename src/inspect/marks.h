@@ -17,10 +17,14 @@ struct DefectMarks {
     std::vector<std::uint32_t> blind;              ///< points
     std::vector<std::uint32_t> thin;               ///< triangles
 };
-DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size);
+DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size,
+                         Interrupter* interrupter = nullptr);
 
 /// See MeshInspection::thin_triangles.
-std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double voxel_size);
+/// `repeats` are left out: copies of a triangle cannot be thinner than it is.
+std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh,
+                                               const std::vector<std::uint32_t>& repeats,
+                                               double voxel_size);
 
 FloatLimits float_limits(const TriangleMesh& mesh);
 

@@ -44,22 +44,33 @@ bool share_a_corner(const Vec3I& a, const Vec3I& b)
 
 } // namespace
 
-std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh, double voxel_size)
+std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh,
+                                               const std::vector<std::uint32_t>& repeats,
+                                               double voxel_size)
 {
+    std::vector<char> left_out(mesh.triangles.size()), thin(mesh.triangles.size());
+    for (const std::uint32_t t : repeats)
+        left_out[t] = 1;
+    std::vector<Vec3I> others;
+    for (std::size_t t = 0; t < left_out.size(); ++t)
+        if (!left_out[t])
+            others.push_back(mesh.triangles[t]);
     BoxTree tree;
-    tree.build(triangle_boxes(mesh.points, mesh.triangles));
-    std::vector<char> thin(mesh.triangles.size());
+    tree.build(triangle_boxes(mesh.points, others));
     // Each index writes its own slot and the answers are collected in order, so threads do not
     // matter.
     for_each_index(thin.size(), [&](std::size_t t) {
         const Ray ray = inward_from(mesh, mesh.triangles[t]);
-        if (ray.along.lengthSqr() == 0)
+        if (left_out[t] || ray.along.lengthSqr() == 0)
             return;
-        tree.for_each_on_ray(ray.from, ray.along, voxel_size, [&](int other) {
-            const Vec3I& opposite = mesh.triangles[static_cast<std::size_t>(other)];
-            thin[t] =
-                static_cast<char>(thin[t] || (!share_a_corner(mesh.triangles[t], opposite) &&
-                                              leaves_through(mesh, opposite, ray) < voxel_size));
+        double limit = voxel_size;
+        tree.for_each_on_ray(ray.from, ray.along, limit, [&](int other) {
+            const Vec3I& opposite = others[static_cast<std::size_t>(other)];
+            if (thin[t] || share_a_corner(mesh.triangles[t], opposite) ||
+                !(leaves_through(mesh, opposite, ray) < voxel_size))
+                return;
+            thin[t] = 1;
+            limit = -1; // one is enough
         });
     });
     std::vector<std::uint32_t> found;

@@ -95,11 +95,11 @@ MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
     return check;
 }
 
-MeshCheck check_mesh(const TriangleMesh& mesh)
+MeshCheck check_mesh(const TriangleMesh& mesh, Interrupter* interrupter)
 {
     require_well_formed(mesh, "check_mesh");
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
-    return summarise(mesh, uses, find_defects(mesh, uses));
+    return summarise(mesh, uses, find_defects(mesh, uses, interrupter));
 }
 
 TriangleMesh turn_outward(TriangleMesh mesh, const MeshCheck& check)

@@ -6,7 +6,8 @@
 // (docs/theory.md, "Remarks"). Whether a piece encloses a point is decided by the parity of exact
 // crossings of an upward ray; the winding number would need the orientation, which is what is to be
 // found out. Volumes are sums in doubles, whose sign is no proof. Each component is compared with
-// each closed other, so many components that lie within each other's boxes take quadratic time.
+// each closed other whose box meets its own, so many that lie within each other's boxes take
+// quadratic time.
 
 #include "mesh/components.h"
 
@@ -221,14 +222,23 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
                                                 static_cast<std::uint32_t>(std::max(a, b))};
         return std::binary_search(crossing.begin(), crossing.end(), pair);
     };
+    // Only a piece whose box meets that of another can enclose a corner of it.
+    BoxTree tree;
+    std::vector<FloatBox> piece_boxes;
+    piece_boxes.reserve(count);
+    for (const Piece& piece : pieces)
+        piece_boxes.push_back(piece.box);
+    tree.build(std::move(piece_boxes));
     for_each_index(
         count,
         [&](std::size_t c) {
             int& depth = components[c].nesting_depth;
-            for (std::size_t other = 0; other < count; ++other)
+            tree.for_each_overlap(pieces[c].box, [&](int i) {
+                const auto other = static_cast<std::size_t>(i);
                 // An open piece has no inside.
                 if (other != c && pieces[other].closed)
                     depth += encloses(mesh, boxes, pieces[other], pieces[c], cross(c, other));
+            });
             const bool outer = depth % 2 == 0;
             const double volume = components[c].volume;
             components[c].inside_out =

@@ -5,9 +5,14 @@
 
 #include "mesh/most_visible.h"
 
+#include "core/exact.h"
+#include "core/orient3d_filter.h"
 #include "core/parallel.h"
+#include "core/star_sight.h"
+#include "mesh/topology.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -18,6 +23,7 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3I;
+using openvdb::Vec3s;
 
 // The optimum over a star touches at most three normals, so all triples are tried; with more
 // normals than this an iteration is cheaper.
@@ -112,12 +118,73 @@ std::vector<std::vector<Vec3d>> star_normals(const TriangleMesh& mesh)
     return normals;
 }
 
+namespace
+{
+
+/// The triangles at a vertex that have an area, as what they look like from it.
+std::vector<exact::Side> sides_at(const TriangleMesh& mesh, const VertexTriangles::Range& around,
+                                  std::uint32_t vertex)
+{
+    std::vector<exact::Side> sides;
+    for (const std::uint32_t t : around) {
+        const Vec3I& c = mesh.triangles[t];
+        const int k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
+        const Vec3s &p = mesh.points[c[(k + 1) % 3]], &q = mesh.points[c[(k + 2) % 3]];
+        const Vec3d apex(mesh.points[vertex]);
+        // What is zero in doubles may have an area of a few bits; only then is it worth asking.
+        if ((Vec3d(p) - apex).cross(Vec3d(q) - apex).lengthSqr() > 0 ||
+            !exact::collinear(mesh.points[vertex], p, q))
+            sides.push_back({p, q});
+    }
+    return sides;
+}
+
+Vec3d inward(const Vec3d& apex, const exact::Side& side)
+{
+    return (Vec3d(side[1]) - apex).cross(Vec3d(side[0]) - apex);
+}
+
+/// Whether doubles show that d sees all sides; false tells nothing. d counts as given, so the
+/// differences and products are rounded as in an orientation, or less.
+bool surely_sees(const Vec3d& apex, const std::vector<exact::Side>& sides, const Vec3d& d)
+{
+    return std::all_of(sides.begin(), sides.end(), [&](const exact::Side& side) {
+        const Vec3d u = Vec3d(side[1]) - apex, w = Vec3d(side[0]) - apex;
+        double det = 0, permanent = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+            const double left = u[a] * w[b], right = u[b] * w[a];
+            det += d[axis] * (left - right);
+            permanent += std::abs(d[axis]) * (std::abs(left) + std::abs(right));
+        }
+        return exact::certain_sign(det, permanent) > 0;
+    });
+}
+
+/// Two directions are tried in doubles: the mean of the normals, which is enough nearly
+/// everywhere, and the best one. Exact numbers decide where neither is sure.
+bool is_blind(const TriangleMesh& mesh, const VertexTriangles::Range& around, std::uint32_t vertex)
+{
+    const std::vector<exact::Side> sides = sides_at(mesh, around, vertex);
+    const Vec3d apex(mesh.points[vertex]);
+    std::vector<Vec3d> normals;
+    Vec3d mean(0.0);
+    for (const exact::Side& side : sides) {
+        normals.push_back(unit_or_zero(inward(apex, side)));
+        mean += normals.back();
+    }
+    return !surely_sees(apex, sides, mean) && !surely_sees(apex, sides, most_visible(normals)) &&
+           !exact::a_direction_sees(mesh.points[vertex], sides);
+}
+
+} // namespace
+
 std::vector<std::uint32_t> blind_vertices(const TriangleMesh& mesh)
 {
-    const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
-    std::vector<char> blind(normals.size());
-    for_each_index(normals.size(), [&](std::size_t v) {
-        blind[v] = !normals[v].empty() && smallest_dot(normals[v], most_visible(normals[v])) <= 0;
+    const VertexTriangles stars = triangles_around_vertices(mesh.points.size(), mesh.triangles);
+    std::vector<char> blind(mesh.points.size());
+    for_each_index(blind.size(), [&](std::size_t v) {
+        blind[v] = is_blind(mesh, stars.around(v), static_cast<std::uint32_t>(v));
     });
     std::vector<std::uint32_t> list;
     for (std::uint32_t v = 0; v < blind.size(); ++v)

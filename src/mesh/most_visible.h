@@ -19,7 +19,8 @@ double smallest_dot(const std::vector<openvdb::Vec3d>& normals, const openvdb::V
 /// By vertex, the inward unit normals of its triangles; those without area have none.
 std::vector<std::vector<openvdb::Vec3d>> star_normals(const TriangleMesh& mesh);
 
-/// Vertices that no direction serves, ascending: each sees a triangle from behind or edge on.
+/// Vertices from which no direction sees all their triangles, ascending: wherever their pillar
+/// goes, some tet on it is flat or inverted. Exact; a triangle without area does not count.
 std::vector<std::uint32_t> blind_vertices(const TriangleMesh& mesh);
 
 } // namespace vdb_shell

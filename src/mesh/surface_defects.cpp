@@ -141,31 +141,46 @@ std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
     return raised(duplicate);
 }
 
+/// Pairs of triangles that are neither degenerate nor repeats, which are listed as what they are.
+/// Only such triangles get a box: the pairs among n copies of one triangle would be n^2 / 2.
 std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
-                                                  const std::vector<char>& degenerate)
+                                                  const SurfaceDefects& defects,
+                                                  Interrupter* interrupter)
 {
+    std::vector<char> left_out(mesh.triangles.size());
+    for (const auto* list : {&defects.degenerate_triangles, &defects.duplicate_triangles})
+        for (const std::uint32_t t : *list)
+            left_out[t] = 1;
+    std::vector<std::uint32_t> tested;
+    std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
+    for (std::uint32_t t = 0; t < left_out.size(); ++t)
+        if (!left_out[t]) {
+            boxes[tested.size()] = boxes[t];
+            tested.push_back(t);
+        }
+    boxes.resize(tested.size());
     const TriangleContacts contacts(mesh.points, mesh.triangles);
     const auto touch = [&](std::uint32_t first, std::uint32_t second) {
-        // Degenerate and duplicate triangles are listed as what they are. The test for contacts
-        // must not get degenerate ones in any case, so the order of these conditions matters; the
-        // comparison of corners comes last, since hardly any pair gets that far.
-        return !degenerate[first] && !degenerate[second] && contacts.touch(first, second) &&
-               sorted_corners(mesh.triangles[first]) != sorted_corners(mesh.triangles[second]);
+        return contacts.touch(tested[first], tested[second]);
     };
-    return overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch);
+    std::vector<TrianglePair> pairs = overlapping_pairs(boxes, touch, interrupter);
+    // Ascending numbers name ascending triangles, so the order stays.
+    for (TrianglePair& pair : pairs)
+        pair = {tested[pair[0]], tested[pair[1]]};
+    return pairs;
 }
 
 } // namespace
 
-SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses)
+SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+                            Interrupter* interrupter)
 {
     SurfaceDefects defects;
     look_at_edges(sorted_uses, defects);
     defects.non_manifold_vertices = find_non_manifold_vertices(mesh);
-    const std::vector<char> degenerate = find_degenerate(mesh);
-    defects.degenerate_triangles = raised(degenerate);
+    defects.degenerate_triangles = raised(find_degenerate(mesh));
     defects.duplicate_triangles = find_duplicates(mesh);
-    defects.self_intersections = find_self_intersections(mesh, degenerate);
+    defects.self_intersections = find_self_intersections(mesh, defects, interrupter);
     return defects;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/topology.h"
+#include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include <cstdint>
@@ -18,7 +19,9 @@ struct SurfaceDefects {
     std::vector<TrianglePair> self_intersections;
 };
 
-SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses);
+/// The interrupter may be null; throws Cancelled.
+SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+                            Interrupter* interrupter = nullptr);
 
 template <typename Element> void add_to(Defect<Element>& defect, const Element& element)
 {

@@ -41,6 +41,44 @@ VertexTriangles triangles_around_vertices(std::size_t vertex_count,
 namespace
 {
 
+// From this many triangles on a sorted list is quicker than a search through all at each step.
+constexpr std::size_t kLargeStar = 64;
+
+/// Finds the triangle of a star whose side begins at a point: of several the first.
+template <typename SideOf> class NextSide
+{
+public:
+    NextSide(const VertexTriangles::Range& around, const SideOf& side_of)
+        : around_(around), side_of_(side_of)
+    {
+        if (around.size() < kLargeStar)
+            return;
+        for (const std::uint32_t t : around)
+            sorted_.emplace_back(side_of(t)[0], t);
+        std::sort(sorted_.begin(), sorted_.end());
+    }
+
+    /// False where there is none.
+    bool find(std::uint32_t point, std::uint32_t& triangle) const
+    {
+        if (!sorted_.empty()) {
+            const auto at =
+                std::lower_bound(sorted_.begin(), sorted_.end(), std::make_pair(point, 0U));
+            triangle = at == sorted_.end() ? 0 : at->second;
+            return at != sorted_.end() && at->first == point;
+        }
+        const auto at = std::find_if(around_.begin(), around_.end(),
+                                     [&](std::uint32_t t) { return side_of_(t)[0] == point; });
+        triangle = at == around_.end() ? 0 : *at;
+        return at != around_.end();
+    }
+
+private:
+    const VertexTriangles::Range& around_;
+    const SideOf& side_of_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sorted_;
+};
+
 /// Writes the rim of vertex v to `rim`; false where its triangles do not turn round it once.
 bool list_rim(const std::vector<openvdb::Vec3I>& triangles, const VertexTriangles::Range& around,
               std::uint32_t v, std::uint32_t* rim)
@@ -53,8 +91,7 @@ bool list_rim(const std::vector<openvdb::Vec3I>& triangles, const VertexTriangle
     };
     if (around.size() == 0)
         return false;
-    // Each step looks through all triangles of the vertex for the next one. That is quadratic in
-    // their number, which is about 6 on average in a closed surface (Euler's formula).
+    const NextSide next(around, side_of);
     std::array<std::uint32_t, 2> side = side_of(*around.begin());
     const std::uint32_t start = side[0];
     for (std::size_t i = 0; i < around.size(); ++i) {
@@ -64,11 +101,10 @@ bool list_rim(const std::vector<openvdb::Vec3I>& triangles, const VertexTriangle
         const bool last = i + 1 == around.size();
         if (last || side[1] == start)
             return last && side[1] == start;
-        const auto next = std::find_if(around.begin(), around.end(),
-                                       [&](std::uint32_t t) { return side_of(t)[0] == side[1]; });
-        if (next == around.end())
+        std::uint32_t triangle = 0;
+        if (!next.find(side[1], triangle))
             return false;
-        side = side_of(*next);
+        side = side_of(triangle);
     }
     return false;
 }

@@ -11,25 +11,98 @@
 
 #include "core/exact.h"
 #include "core/fan.h"
+#include "core/orient3d_filter.h"
 #include "core/parallel.h"
+#include "core/unit_vector.h"
 #include "mesh/topology.h"
+
+#include <array>
+#include <cmath>
 
 namespace vdb_shell
 {
 namespace
 {
 
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+/// Fan::surely_embedded for as many triangles as there may be: the same tests, one after the other.
+/// A vertex of a hundred thousand triangles has too many pairs for exact tests of each.
+bool large_fan_surely_embedded(const std::vector<Vec3s>& points, std::size_t apex,
+                               const VertexTriangles::Range& rim)
+{
+    const std::size_t count = rim.size();
+    const Vec3d origin(points[apex]);
+    const auto spoke = [&](std::size_t i) { return Vec3d(points[rim.first[i % count]]) - origin; };
+    Vec3d sum(0.0);
+    for (std::size_t i = 0; i < count; ++i)
+        sum += spoke(i).cross(spoke(i + 1));
+    const auto k = int(openvdb::math::MaxIndex(openvdb::math::Abs(sum))), j = (k + 1) % 3;
+    const auto below = [&](const Vec3d& s) { return s[j] * sum[k] - s[k] * sum[j] < 0; };
+    std::size_t rises = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3d u = spoke(i), w = spoke(i + 1);
+        double det = 0, permanent = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+            const double left = u[a] * w[b], right = u[b] * w[a];
+            det += sum[axis] * (left - right);
+            permanent += std::abs(sum[axis]) * (std::abs(left) + std::abs(right));
+        }
+        // The margin of Fan::surely_embedded.
+        if (exact::certain_sign(det, permanent, 3 * exact::kOrientError) <= 0)
+            return false;
+        rises += below(u) && !below(w);
+    }
+    return rises == 1;
+}
+
 /// Whether doubles show it for certain; false tells nothing.
 bool surely_embedded(const std::vector<openvdb::Vec3s>& points, std::size_t apex,
                      const VertexTriangles::Range& rim)
 {
-    // An open fan has no rim here, and a large one does not fit into the fan's arrays. Their pairs
-    // are tested one by one.
-    if (rim.size() < 3 || rim.size() > Fan::kMost)
+    // An open fan has no rim here. Its pairs are tested one by one.
+    if (rim.size() < 3)
         return false;
+    if (rim.size() > Fan::kMost)
+        return large_fan_surely_embedded(points, apex, rim);
     const Fan fan(openvdb::Vec3d(points[apex]), rim.size(),
                   [&](std::size_t i) { return openvdb::Vec3d(points[rim.first[i]]); });
     return fan.surely_embedded();
+}
+
+/// Of two triangles that have one corner in common: whether a plane through it surely has the
+/// others of one on one side and those of the other on the other. The plane halves the angle
+/// between the middles; any that does so proves it, so its own rounding does not matter.
+bool surely_apart_at(const Vec3d& apex, const std::array<Vec3d, 2>& first,
+                     const std::array<Vec3d, 2>& second)
+{
+    const std::array<Vec3d, 2> own{first[0] - apex, first[1] - apex},
+        other{second[0] - apex, second[1] - apex};
+    const Vec3d across = unit_vector(own[0] + own[1]) - unit_vector(other[0] + other[1]);
+    // One rounding of each difference, one of each product, two of sums: four times 1.1e-16.
+    constexpr double kError = 6e-16;
+    const auto side = [&](const Vec3d& spoke) {
+        const double x = across[0] * spoke[0], y = across[1] * spoke[1], z = across[2] * spoke[2];
+        return exact::certain_sign(x + y + z, std::abs(x) + std::abs(y) + std::abs(z), kError);
+    };
+    return side(own[0]) > 0 && side(own[1]) > 0 && side(other[0]) < 0 && side(other[1]) < 0;
+}
+
+/// The same by index; false where they do not have just one corner in common.
+bool surely_apart(const std::vector<Vec3s>& points, const openvdb::Vec3I& a,
+                  const openvdb::Vec3I& b)
+{
+    int shared = 0, in_a = 0, in_b = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (a[i] == b[j])
+                ++shared, in_a = i, in_b = j;
+    const auto others = [&](const openvdb::Vec3I& t, int k) {
+        return std::array<Vec3d, 2>{Vec3d(points[t[(k + 1) % 3]]), Vec3d(points[t[(k + 2) % 3]])};
+    };
+    return shared == 1 && surely_apart_at(Vec3d(points[a[in_a]]), others(a, in_a), others(b, in_b));
 }
 
 } // namespace
@@ -51,7 +124,7 @@ bool TriangleContacts::touch(std::uint32_t first, std::uint32_t second) const
         // about all that the two have in common.
         if (embedded_[a[k]] && (b[0] == a[k] || b[1] == a[k] || b[2] == a[k]))
             return false;
-    return exact::triangles_touch(points_, a, b);
+    return !surely_apart(points_, a, b) && exact::triangles_touch(points_, a, b);
 }
 
 } // namespace vdb_shell

@@ -9,6 +9,8 @@
 #include "pipeline/figures.h"
 
 #include "core/parallel.h"
+#include "mesh/most_visible.h"
+#include "mesh/surface_defects.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Count.h>
@@ -116,6 +118,26 @@ void measure_sides(ShellResult& result)
                   pillars_between(stack, 0, stack.skin, stack.layers.front().stop), voxel_size);
 }
 
+/// Which pins had to be, and where so many are together that a triangle has no tet.
+void judge_pins(ShellReport& report, const ShellStack& stack, const TetMesh& tets)
+{
+    const TriangleMesh skin{stack.surface(stack.skin), stack.triangles()};
+    const std::vector<std::uint32_t> demanded = blind_vertices(skin);
+    report.demanded_pins = summary_of(demanded);
+    std::vector<char> has_tet(skin.triangles.size()), blind(skin.points.size());
+    for (const std::uint32_t t : tets.prism)
+        has_tet[t] = 1;
+    for (const std::uint32_t v : demanded)
+        blind[v] = 1;
+    for (std::uint32_t t = 0; t < has_tet.size(); ++t) {
+        if (has_tet[t])
+            continue;
+        const openvdb::Vec3I& c = skin.triangles[t];
+        add_to(report.triangles_without_tet, t);
+        report.without_tet_demanded += blind[c[0]] && blind[c[1]] && blind[c[2]];
+    }
+}
+
 double volume_outside(const ShellStack& stack, const TetMesh& tets, double all)
 {
     // With one side the answer is nothing or all, without a further sum; so the fill of an inward
@@ -145,6 +167,7 @@ void measure_result(ShellResult& result)
                      report.signs = count_tet_signs(result.tets);
                      report.quality = measure_quality(result.tets);
                      report.surface_bounds = measure_surface_bounds(result.surface, report.side);
+                     judge_pins(report, stack, result.tets);
                      measure_sides(result);
                  });
     report.solid_volume = signed_volume(result.surface.points, result.surface.triangles);

@@ -41,16 +41,16 @@ bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
 
 /// Looks at r.surface and splits its fans where that is allowed. After a repair the check has been
 /// made already, of the surface that the repair gives.
-void look_at_surface(ShellResult& r, const CheckOptions& options)
+void look_at_surface(ShellResult& r, const CheckOptions& options, Interrupter* interrupter)
 {
-    r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface);
+    r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface, interrupter);
     if (!may_split_fans(r.report.mesh, options))
         return;
     FanSplit split = split_fans(std::move(r.surface));
     r.surface = std::move(split.mesh);
     r.report.split_vertices = split.vertices;
     r.report.vertex_copies = split.copies;
-    r.report.mesh = check_mesh(r.surface);
+    r.report.mesh = check_mesh(r.surface, interrupter);
 }
 
 void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* interrupter)
@@ -128,7 +128,7 @@ void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOption
         });
     }
     clock.run("check", [&] {
-        look_at_surface(r, options.check);
+        look_at_surface(r, options.check, interrupter);
         require_usable(r.report.mesh, options.check,
                        r.report.repair ? name + " after --repair" : name);
         // After the check, whose findings say which components are inside out.

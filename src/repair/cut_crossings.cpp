@@ -12,9 +12,11 @@
 #include "core/parallel.h"
 #include "mesh/components.h"
 #include "mesh/surface_defects.h"
+#include "mesh/triangle_contacts.h"
 #include "repair/working_surface.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace vdb_shell::repair
 {
@@ -98,26 +100,38 @@ std::vector<char> find_rags(const TriangleMesh& mesh)
 } // namespace
 
 /// Triangles that cross or touch another one. The exact test is defined for triangles with an area
-/// only, so one without area is marked together with everything that its box meets. Pairs are
-/// tested by several threads but marked afterwards by one, in sorted order.
-std::vector<char> crossing_triangles(const TriangleMesh& mesh)
+/// only, so one without area is marked together with everything that its box meets. A pair of which
+/// both are marked already need not be tested, which saves most tests where much crosses; that a
+/// triangle crosses something does not depend on which pair shows it first.
+std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* interrupter)
 {
-    const auto flat = [&](const Vec3I& t) {
-        return exact::collinear(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
+    std::vector<char> flat(mesh.triangles.size());
+    for_each_index(flat.size(), [&](std::size_t t) {
+        const Vec3I& c = mesh.triangles[t];
+        flat[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
+    });
+    const TriangleContacts contacts(mesh.points, mesh.triangles);
+    std::vector<std::atomic<bool>> crossing(mesh.triangles.size());
+    const auto mark = [&](std::uint32_t first, std::uint32_t second) {
+        const auto marked = [&](std::uint32_t t) {
+            return crossing[t].load(std::memory_order_relaxed);
+        };
+        if (marked(first) && marked(second))
+            return false;
+        if (flat[first] || flat[second] || contacts.touch(first, second)) {
+            crossing[first].store(true, std::memory_order_relaxed);
+            crossing[second].store(true, std::memory_order_relaxed);
+        }
+        return false; // no list of the pairs is wanted
     };
-    const auto touch = [&](std::uint32_t first, std::uint32_t second) {
-        const Vec3I &a = mesh.triangles[first], &b = mesh.triangles[second];
-        return flat(a) || flat(b) || exact::triangles_touch(mesh.points, a, b);
-    };
-    std::vector<char> crossing(mesh.triangles.size());
-    for (const auto& [a, b] : overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch))
-        crossing[a] = crossing[b] = 1;
-    return crossing;
+    overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), mark, interrupter);
+    return {crossing.begin(), crossing.end()};
 }
 
-bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report)
+bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report,
+                   Interrupter* interrupter)
 {
-    std::vector<char> drop = crossing_triangles(surface.mesh);
+    std::vector<char> drop = crossing_triangles(surface.mesh, interrupter);
     // A rim that the last round has left belongs to a hole for which no fill was found. It needs
     // more room as well.
     if (round > 0)

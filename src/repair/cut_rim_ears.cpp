@@ -8,6 +8,7 @@
 // nothing: the caller rounds the fill to float32, tests it exactly against the surface and discards
 // it if it crosses.
 
+#include "core/unit_vector.h"
 #include "repair/fill_patch.h"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ public:
             normal_ +=
                 (rim.points[i] - rim.points[0]).cross(rim.points[(i + 1) % n] - rim.points[0]);
         }
-        normal_.normalize();
+        normal_ = unit_vector(normal_);
         for (std::uint32_t i = 0; i < n; ++i)
             enter(i);
     }

@@ -9,6 +9,7 @@
 // before, so the problem is linear and the three axes are apart. Nothing rests on how exactly it is
 // solved: the fill is tested afterwards.
 
+#include "core/parallel.h"
 #include "repair/fill_patch.h"
 
 #include <algorithm>
@@ -113,8 +114,15 @@ void minimise(const std::vector<Row>& rows, int axis, std::vector<double>& x)
     direction = residual;
     double squared = dot(residual, residual);
     const double enough = kGain * kGain * squared;
-    // Without rounding n steps would be enough; a few times as many bound the work with it.
-    for (std::size_t step = 0; step < 4 * n && squared > enough && squared > 0; ++step) {
+    // Without rounding n steps would be enough; a few times as many bound the work with it. Large
+    // patches, from some 5000 points on, end at kMostWork: what is left then is a slow wave over
+    // the whole of the patch, and a second's work.
+    constexpr std::size_t kMostWork = 300'000'000; // terms of rows
+    std::size_t terms = 1;
+    for (const Row& row : rows)
+        terms += row.terms.size();
+    const std::size_t most_steps = std::min(4 * n, kMostWork / terms + 1);
+    for (std::size_t step = 0; step < most_steps && squared > enough && squared > 0; ++step) {
         apply(rows, direction, image);
         const double curvature = dot(direction, image);
         // Along this direction no Laplacian changes, so there is nothing left to gain.
@@ -148,14 +156,18 @@ void fair(Patch& patch, const Rim& rim, bool smooth)
     std::vector<Row> rows;
     for (std::size_t v = smooth ? 0 : fixed; v < patch.points.size(); ++v)
         rows.push_back(laplacian_at(patch, rim, v, neighbours[v]));
-    for (int axis = 0; axis < 3; ++axis) {
-        std::vector<double> x(moving);
-        for (std::size_t i = 0; i < moving; ++i)
-            x[i] = patch.points[fixed + i][axis];
-        minimise(rows, axis, x);
-        for (std::size_t i = 0; i < moving; ++i)
-            patch.points[fixed + i][axis] = x[i];
-    }
+    for_each_index(
+        3,
+        [&](std::size_t k) {
+            const auto axis = static_cast<int>(k);
+            std::vector<double> x(moving);
+            for (std::size_t i = 0; i < moving; ++i)
+                x[i] = patch.points[fixed + i][axis];
+            minimise(rows, axis, x);
+            for (std::size_t i = 0; i < moving; ++i)
+                patch.points[fixed + i][axis] = x[i];
+        },
+        1);
 }
 
 } // namespace vdb_shell::repair

@@ -5,8 +5,9 @@
 // rounded to float32 and tested exactly against the surface, the fills made before, and itself.
 // Holes are filled one after the other in the order of their first sides, since a fill has to keep
 // clear of those before it. Sources: Barequet and Sharir 1995, "Filling gaps in the boundary of a
-// polyhedron"; Liepa 2003, "Filling holes in meshes". The trap is the cost: the tree over the
-// surface is built anew for each hole.
+// polyhedron"; Liepa 2003, "Filling holes in meshes". The trap is the cost: the best triangulation
+// of a rim takes the cube of its length, so the more long rims there are, the sooner one of them
+// counts as too long for it.
 
 #include "core/box_pairs.h"
 #include "core/exact.h"
@@ -35,9 +36,73 @@ BoxTree tree_over(std::vector<FloatBox> boxes)
     return tree;
 }
 
+/// The surface with the fills made so far: trees over its triangles, and the triangles at each
+/// point of a rim. A fill is a tree of its own until there are as many triangles in the trees
+/// behind; they are made one then. So each triangle is put into a tree a logarithm of times, and
+/// there are no more trees than that, however many holes there are.
+class Surroundings
+{
+public:
+    Surroundings(const TriangleMesh& mesh, const std::vector<Hole>& holes)
+        : mesh_(mesh), on_rim_(mesh.points.size()), around_(mesh.points.size())
+    {
+        for (const Hole& hole : holes)
+            for (const std::uint32_t point : hole.points)
+                on_rim_[point] = 1;
+        add_from(0);
+    }
+
+    /// Takes note of the triangles that were appended since.
+    void update()
+    {
+        const std::size_t known = parts_.empty() ? 0 : parts_.back().end;
+        if (known < mesh_.triangles.size())
+            add_from(known);
+    }
+
+    const std::vector<std::uint32_t>& around(std::uint32_t point) const { return around_[point]; }
+
+    template <typename Visit> void for_each_overlap(const FloatBox& box, const Visit& visit) const
+    {
+        for (const Part& part : parts_)
+            part.tree.for_each_overlap(box, [&](int i) { visit(part.begin + std::size_t(i)); });
+    }
+
+private:
+    struct Part {
+        std::size_t begin, end;
+        BoxTree tree;
+    };
+
+    void add_from(std::size_t begin)
+    {
+        const std::size_t end = mesh_.triangles.size();
+        for (std::size_t t = begin; t < end; ++t)
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t point = mesh_.triangles[t][k];
+                // Points of fills are on no rim.
+                if (point < on_rim_.size() && on_rim_[point])
+                    around_[point].push_back(static_cast<std::uint32_t>(t));
+            }
+        while (!parts_.empty() && parts_.back().end - parts_.back().begin <= end - begin) {
+            begin = parts_.back().begin;
+            parts_.pop_back();
+        }
+        parts_.push_back({begin, end,
+                          tree_over(triangle_boxes(mesh_.points,
+                                                   {mesh_.triangles.begin() + std::ptrdiff_t(begin),
+                                                    mesh_.triangles.end()}))});
+    }
+
+    const TriangleMesh& mesh_;
+    std::vector<char> on_rim_;
+    std::vector<std::vector<std::uint32_t>> around_; ///< by point, those of rims only
+    std::vector<Part> parts_;
+};
+
 /// What the fill of a hole has to know of the surface around it. The surface has the earlier fills
 /// in it, so an edge that one of them runs between two points of this rim counts as taken.
-Rim look_around(const TriangleMesh& mesh, const Hole& hole)
+Rim look_around(const TriangleMesh& mesh, const Surroundings& surroundings, const Hole& hole)
 {
     const auto n = static_cast<std::uint32_t>(hole.points.size());
     std::map<std::uint32_t, std::uint32_t> on_rim;
@@ -45,15 +110,11 @@ Rim look_around(const TriangleMesh& mesh, const Hole& hole)
         on_rim[hole.points[i]] = i;
     Rim rim;
     std::vector<std::set<std::uint32_t>> around(n);
-    for (const Vec3I& t : mesh.triangles) {
-        for (int k = 0; k < 3; ++k) {
-            const auto entry = on_rim.find(t[k]);
-            if (entry == on_rim.end())
-                continue;
-            around[entry->second].insert(t[(k + 1) % 3]);
-            around[entry->second].insert(t[(k + 2) % 3]);
-        }
-    }
+    for (std::uint32_t i = 0; i < n; ++i)
+        for (const std::uint32_t t : surroundings.around(hole.points[i]))
+            for (int k = 0; k < 3; ++k)
+                if (mesh.triangles[t][k] != hole.points[i])
+                    around[i].insert(mesh.triangles[t][k]);
     rim.neighbours.resize(n);
     for (std::uint32_t i = 0; i < n; ++i) {
         const Vec3d here(mesh.points[hole.points[i]]);
@@ -104,7 +165,8 @@ public:
     /// Pairs of a new triangle and any other that cross or touch; a new one without area counts as
     /// such a pair. `rest` holds the old triangles. Old ones without area are passed over: they are
     /// no fault of the fill, and the exact test is not defined for them.
-    std::size_t count_crossings(const BoxTree& rest) const
+    /// Counts no further than to `enough`.
+    std::size_t count_crossings(const Surroundings& rest, std::size_t enough) const
     {
         const TriangleMesh& mesh = surface_.mesh;
         const std::vector<FloatBox> boxes =
@@ -112,7 +174,7 @@ public:
                                          mesh.triangles.end()});
         const BoxTree fresh = tree_over(boxes);
         std::size_t crossings = 0;
-        for (std::size_t t = triangles_; t < mesh.triangles.size(); ++t) {
+        for (std::size_t t = triangles_; t < mesh.triangles.size() && crossings < enough; ++t) {
             const Vec3I& mine = mesh.triangles[t];
             if (exact::collinear(mesh.points[mine[0]], mesh.points[mine[1]],
                                  mesh.points[mine[2]])) {
@@ -126,7 +188,7 @@ public:
                     !exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]) &&
                     exact::triangles_touch(mesh.points, mine, c);
             };
-            rest.for_each_overlap(box, [&](int other) { meet(std::size_t(other)); });
+            rest.for_each_overlap(box, meet);
             fresh.for_each_overlap(box, [&](int other) {
                 // Of two new triangles the later one counts the pair.
                 if (triangles_ + std::size_t(other) < t)
@@ -148,43 +210,84 @@ private:
     std::size_t points_, triangles_;
 };
 
-bool is_long(const Rim& rim)
+/// The longest rim that gets the best triangulation: so that all that do take no longer than one of
+/// kLongestOptimalRim.
+std::size_t longest_optimal(const std::vector<Hole>& holes)
 {
-    return rim.points.size() > kLongestOptimalRim;
+    std::vector<std::size_t> lengths;
+    lengths.reserve(holes.size());
+    for (const Hole& hole : holes)
+        lengths.push_back(hole.points.size());
+    std::sort(lengths.begin(), lengths.end());
+    const auto cube = [](std::size_t n) { return double(n) * double(n) * double(n); };
+    double work = 0;
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+        work += cube(lengths[i]);
+        if (work > cube(kLongestOptimalRim))
+            return i == 0 ? kLongestOptimalRim : lengths[i - 1];
+    }
+    return kLongestOptimalRim;
 }
 
-Patch make_patch(const Rim& rim, FillMethod method)
+/// The fills of one rim. Three of them begin with the same triangulation, which is made once.
+class Fills
 {
-    if (is_long(rim))
-        return cut_rim_ears(rim);
-    Patch patch = triangulate_rim(rim, method != FillMethod::area);
-    if (patch.triangles.empty() || method == FillMethod::area || method == FillMethod::dihedral)
+public:
+    Fills(const Rim& rim, std::size_t longest) : rim_(rim), long_(rim.points.size() > longest) {}
+
+    /// In the order in which they are to be tried.
+    std::vector<FillMethod> methods() const
+    {
+        if (long_)
+            return {FillMethod::area};
+        // A flat rim gets a flat lid, also where the surface around it meets the lid at an edge.
+        // The smooth fill would go on with the slope of that and bulge.
+        if (is_planar(rim_))
+            return {FillMethod::membrane, FillMethod::smooth, FillMethod::dihedral,
+                    FillMethod::area};
+        return {FillMethod::smooth, FillMethod::membrane, FillMethod::dihedral, FillMethod::area};
+    }
+
+    Patch make(FillMethod method)
+    {
+        if (long_)
+            return cut_rim_ears(rim_);
+        if (method == FillMethod::area)
+            return triangulate_rim(rim_, false);
+        if (!plain_)
+            plain_ = triangulate_rim(rim_, true);
+        if (plain_->triangles.empty() || method == FillMethod::dihedral)
+            return *plain_;
+        if (!refined_) {
+            refined_ = plain_;
+            refine(*refined_, rim_);
+        }
+        Patch patch = *refined_;
+        fair(patch, rim_, method == FillMethod::smooth);
         return patch;
-    refine(patch, rim);
-    fair(patch, rim, method == FillMethod::smooth);
-    return patch;
-}
+    }
+
+private:
+    const Rim& rim_;
+    bool long_;
+    std::optional<Patch> plain_, refined_;
+};
 
 /// Fills one hole, or leaves the surface as it was.
-void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, HoleFill& fill)
+void fill_hole(WorkingSurface& surface, const Surroundings& rest, const Hole& hole,
+               std::size_t longest, bool keep_crossing, const StageProgress& progress,
+               HoleFill& fill)
 {
-    const Rim rim = look_around(surface.mesh, hole);
-    const BoxTree rest = tree_over(triangle_boxes(surface.mesh.points, surface.mesh.triangles));
-    // A flat rim gets a flat lid, also where the surface around it meets the lid at an edge. The
-    // smooth fill would go on with the slope of that and bulge.
-    std::vector<FillMethod> methods{FillMethod::smooth, FillMethod::membrane, FillMethod::dihedral,
-                                    FillMethod::area};
-    if (is_planar(rim))
-        std::swap(methods[0], methods[1]);
-    if (is_long(rim))
-        methods = {FillMethod::area};
+    const Rim rim = look_around(surface.mesh, rest, hole);
+    Fills fills(rim, longest);
     std::optional<FillMethod> best;
-    for (const FillMethod method : methods) {
-        const Patch patch = make_patch(rim, method);
+    for (const FillMethod method : fills.methods()) {
+        progress.stop_if_interrupted(50);
+        const Patch patch = fills.make(method);
         if (patch.triangles.empty())
             continue;
         Trial trial(surface, hole, patch);
-        const std::size_t crossings = trial.count_crossings(rest);
+        const std::size_t crossings = trial.count_crossings(rest, best ? fill.crossings : SIZE_MAX);
         // Of fills with equally many crossings the first, which is the fairest, is kept.
         if (!best || crossings < fill.crossings) {
             best = method;
@@ -201,7 +304,7 @@ void fill_hole(WorkingSurface& surface, const Hole& hole, bool keep_crossing, Ho
     }
     if (!best || !keep_crossing)
         return;
-    const Trial trial(surface, hole, make_patch(rim, *best));
+    const Trial trial(surface, hole, fills.make(*best));
     fill.method = *best;
     fill.new_points = trial.new_points();
     fill.new_triangles = trial.new_triangles();
@@ -270,6 +373,8 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
     const std::vector<Hole> holes =
         walk_holes(mesh, partner, fans, link_fans(mesh, partner, fans), one_sided);
     const std::vector<Hole> never = holes_of_one_sided(mesh, partner, one_sided);
+    Surroundings surroundings(mesh, holes);
+    const std::size_t longest = longest_optimal(holes);
     for (std::size_t h = 0; h < holes.size(); ++h) {
         progress.stop_if_interrupted(static_cast<int>(100 * h / holes.size()));
         const Hole& hole = holes[h];
@@ -277,7 +382,9 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
         // same figures.
         HoleFill fill = measured(mesh, hole);
         if (hole.points.size() >= 3 && !passes_a_point_twice(hole))
-            fill_hole(surface, hole, options.keep_crossing_fills, fill);
+            fill_hole(surface, surroundings, hole, longest, options.keep_crossing_fills, progress,
+                      fill);
+        surroundings.update();
         report.holes.push_back(fill);
     }
     for (const Hole& hole : never)

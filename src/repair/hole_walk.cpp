@@ -10,6 +10,7 @@
 
 #include "repair/hole_walk.h"
 
+#include "core/unit_vector.h"
 #include "mesh/orientation.h"
 #include "mesh/topology.h"
 
@@ -69,21 +70,24 @@ void pair_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t coun
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
-    // Sides that are paired are taken out, and the search begins anew: wedges within wedges pair
-    // like brackets. What is left at last is open. The sort is stable, so equal angles keep the
-    // order of their triangles.
-    for (std::size_t i = 0; order.size() > 1 && i < order.size();) {
-        const std::size_t j = (i + 1) % order.size();
-        const EdgeUse &here = uses[order[i]], &next = uses[order[j]];
-        if (here.forward || !next.forward) {
-            ++i;
+    // Wedges within wedges pair like brackets, and which bracket closes which does not depend on
+    // where one begins to read, as long as one reads round twice. What is left at last is open. The
+    // sort is stable, so equal angles keep the order of their triangles.
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < 2 * count; ++i) {
+        const EdgeUse& here = uses[order[i % count]];
+        if (partner[key_of(here)] != kUnpaired)
+            continue;
+        if (!here.forward) {
+            if (i < count)
+                open.push_back(order[i]);
             continue;
         }
-        partner[key_of(here)] = key_of(next);
-        partner[key_of(next)] = key_of(here);
-        order.erase(order.begin() + std::ptrdiff_t(std::max(i, j)));
-        order.erase(order.begin() + std::ptrdiff_t(std::min(i, j)));
-        i = 0;
+        if (open.empty())
+            continue;
+        partner[key_of(here)] = key_of(uses[open.back()]);
+        partner[key_of(uses[open.back()])] = key_of(here);
+        open.pop_back();
     }
 }
 
@@ -197,9 +201,8 @@ public:
                 axis = k;
         Vec3d other(0.0);
         other[axis] = 1;
-        x_ = normal.cross(other);
-        x_.normalize();
-        y_ = normal.cross(x_);
+        x_ = unit_vector(normal.cross(other));
+        y_ = unit_vector(normal).cross(x_);
     }
     double angle(std::uint32_t point) const
     {
@@ -220,21 +223,19 @@ std::vector<std::uint32_t> next_clockwise(const TriangleMesh& mesh, const Border
                                           const std::vector<std::uint32_t>& here, const View& view)
 {
     const auto corner = [&](std::uint32_t key) { return mesh.triangles[key / 3][int(key % 3)]; };
+    // Sides that leave the point, by their angles; of equal ones the first stands last, where the
+    // search from above comes to it first.
+    std::vector<std::pair<double, std::size_t>> leaving;
+    for (std::size_t i = 0; i < here.size(); ++i)
+        leaving.emplace_back(view.angle(corner(border.leaves[here[i]])), here.size() - i);
+    std::sort(leaving.begin(), leaving.end());
     std::vector<std::uint32_t> next;
     for (const std::uint32_t fan : here) {
         const double from = view.angle(corner(next_corner(border.comes[fan])));
-        double least = HUGE_VAL;
-        std::uint32_t best = fan;
-        for (const std::uint32_t other : here) {
-            double turn = from - view.angle(corner(border.leaves[other]));
-            if (turn < 0)
-                turn += 2 * M_PI;
-            if (turn < least) {
-                least = turn;
-                best = other;
-            }
-        }
-        next.push_back(best);
+        const auto above =
+            std::upper_bound(leaving.begin(), leaving.end(), std::make_pair(from, here.size()));
+        const auto& nearest = above == leaving.begin() ? leaving.back() : *(above - 1);
+        next.push_back(here[here.size() - nearest.second]);
     }
     std::vector<std::uint32_t> sorted = next;
     std::sort(sorted.begin(), sorted.end());

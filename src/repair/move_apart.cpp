@@ -7,6 +7,8 @@
 // attempt. A group for which none succeeds is put back. Moves are measured on the places at the
 // start, so the order of groups does not matter. Largest and number of moves are reported.
 
+#include "core/parallel.h"
+#include "core/unit_vector.h"
 #include "repair/working_surface.h"
 #include "vdb_shell/mesh/normals.h"
 
@@ -72,8 +74,7 @@ bool points_outside(const TriangleMesh& mesh, const VertexTriangles::Range& cone
         const int k = corner[0] == top ? 0 : corner[1] == top ? 1 : 2;
         const std::uint32_t p = corner[(k + 1) % 3], q = corner[(k + 2) % 3];
         const Vec3d a = Vec3d(mesh.points[p]) - origin, b = Vec3d(mesh.points[q]) - origin;
-        Vec3d normal = a.cross(b);
-        normal.normalize();
+        const Vec3d normal = unit_vector(a.cross(b));
         for (const std::uint32_t end : {p, q})
             edge_normals.try_emplace(end, Vec3d(0.0)).first->second += normal;
         // The foot of the direction on the plane of the face; it counts if it lies in the sector of
@@ -133,24 +134,32 @@ struct Mover {
 
 /// Finds out where the other copies' triangles are, seen from each copy: beyond its surface or in
 /// its solid. One triangle stands for all of a copy, as the sheets of two copies do not cross at
-/// the point if the surface is sound there.
+/// the point if the surface is sound there. Of very many copies each looks at kMostCompared, spread
+/// over the others; where it so misses the one that matters, its move crosses and is put back.
 void find_ways(const std::vector<std::uint32_t>& group, Mover& mover)
 {
+    constexpr std::size_t kMostCompared = 64;
     const TriangleMesh& mesh = mover.surface.mesh;
-    for (const std::uint32_t v : group)
-        for (const std::uint32_t other : group) {
-            const auto cone = mover.around.around(other);
-            if (other == v || cone.size() == 0 || mover.around.around(v).size() == 0)
-                continue;
-            const Vec3I& t = mesh.triangles[*cone.begin()];
-            const Vec3d middle =
-                (Vec3d(mesh.points[t[0]]) + Vec3d(mesh.points[t[1]]) + Vec3d(mesh.points[t[2]])) /
-                3.0;
-            const Vec3d direction = middle - Vec3d(mesh.points[v]);
-            if (direction.length() > 0 &&
-                !points_outside(mesh, mover.around.around(v), v, mover.outward[v], direction))
-                mover.shrinks_void[v] = 1;
-        }
+    const std::size_t stride = group.size() / kMostCompared + 1;
+    const auto finds_within = [&](std::uint32_t v, std::uint32_t other) {
+        const auto cone = mover.around.around(other);
+        if (other == v || cone.size() == 0 || mover.around.around(v).size() == 0)
+            return false;
+        const Vec3I& t = mesh.triangles[*cone.begin()];
+        const Vec3d middle =
+            (Vec3d(mesh.points[t[0]]) + Vec3d(mesh.points[t[1]]) + Vec3d(mesh.points[t[2]])) / 3.0;
+        const Vec3d direction = middle - Vec3d(mesh.points[v]);
+        return direction.length() > 0 &&
+               !points_outside(mesh, mover.around.around(v), v, mover.outward[v], direction);
+    };
+    for_each_index(group.size(), [&](std::size_t i) {
+        bool within = false;
+        // From the next one on, so that each copy looks at others of its own.
+        for (std::size_t k = 1; k < group.size() && !within; k += stride)
+            within = finds_within(group[i], group[(i + k) % group.size()]);
+        if (within)
+            mover.shrinks_void[group[i]] = 1;
+    });
 }
 
 void note_moves(WorkingSurface& surface, const Mover& mover, RepairReport& report)
@@ -171,7 +180,7 @@ void note_moves(WorkingSurface& surface, const Mover& mover, RepairReport& repor
 
 } // namespace
 
-void move_copies_apart(WorkingSurface& surface, RepairReport& report)
+void move_copies_apart(WorkingSurface& surface, RepairReport& report, Interrupter* interrupter)
 {
     if (surface.copies.empty())
         return;
@@ -187,7 +196,7 @@ void move_copies_apart(WorkingSurface& surface, RepairReport& report)
     for (std::size_t round = 0; round <= kAttempts.size(); ++round) {
         for (std::size_t g = 0; g < attempt.size(); ++g)
             mover.place(surface.copies[g], attempt[g]);
-        const std::vector<char> crossing = crossing_triangles(mesh);
+        const std::vector<char> crossing = crossing_triangles(mesh, interrupter);
         bool any = false;
         for (std::size_t g = 0; g < attempt.size(); ++g) {
             if (attempt[g] == kAttempts.size() || !mover.crosses(surface.copies[g], crossing))

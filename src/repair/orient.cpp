@@ -31,6 +31,7 @@ using openvdb::Vec3I;
 struct BadEdge {
     std::size_t uses = 0;
     std::map<std::uint32_t, std::size_t> by_piece;
+    bool changed = false; ///< a piece of it goes
 };
 
 std::vector<BadEdge> bad_edges(const std::vector<EdgeUse>& uses,
@@ -50,60 +51,100 @@ std::vector<BadEdge> bad_edges(const std::vector<EdgeUse>& uses,
     return bad;
 }
 
+/// The bad edges that each piece has.
+std::vector<std::vector<std::uint32_t>> edges_by_piece(const std::vector<BadEdge>& bad,
+                                                       std::size_t pieces)
+{
+    std::vector<std::vector<std::uint32_t>> edges(pieces);
+    for (std::uint32_t e = 0; e < bad.size(); ++e)
+        for (const auto& [piece, uses] : bad[e].by_piece)
+            edges[piece].push_back(e);
+    return edges;
+}
+
 /// Whether `piece` hangs on the rest and every fault of its rim goes with it: each edge of the rim
 /// has an odd number of triangles, and an even one without the piece. An open piece that meets no
 /// other is no sheet but a surface with a hole.
-bool is_sheet(const std::vector<BadEdge>& bad, std::uint32_t piece)
+bool is_sheet(const std::vector<BadEdge>& bad, const std::vector<std::uint32_t>& edges,
+              std::uint32_t piece)
 {
     bool hangs = false;
-    for (const BadEdge& edge : bad) {
-        const auto entry = edge.by_piece.find(piece);
-        if (entry == edge.by_piece.end())
-            continue;
-        if (edge.uses % 2 == 0 || (edge.uses - entry->second) % 2 == 1)
+    for (const std::uint32_t e : edges) {
+        const BadEdge& edge = bad[e];
+        if (edge.changed || edge.uses % 2 == 0 || (edge.uses - edge.by_piece.at(piece)) % 2 == 1)
             return false;
         hangs |= edge.uses > 2;
     }
     return hangs;
 }
 
-} // namespace
+/// The pieces, smallest first, and their areas.
+struct PiecesBySize {
+    std::vector<double> area;
+    std::vector<std::uint32_t> order;
+    double all = 0;
+};
 
-void drop_sheets(WorkingSurface& surface, RepairReport& report)
+PiecesBySize pieces_by_size(const TriangleMesh& mesh, const Orientation& pieces)
+{
+    PiecesBySize sizes;
+    sizes.area.resize(pieces.one_sided.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        sizes.area[pieces.piece_of[t]] += triangle_area(mesh.points, mesh.triangles[t]);
+    sizes.all = std::accumulate(sizes.area.begin(), sizes.area.end(), 0.0);
+    sizes.order.resize(sizes.area.size());
+    std::iota(sizes.order.begin(), sizes.order.end(), 0U);
+    std::stable_sort(sizes.order.begin(), sizes.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return sizes.area[a] < sizes.area[b];
+    });
+    return sizes;
+}
+
+/// Sheets that can be told at one look, by triangle. The smallest first, since of two pieces that
+/// would each do the smaller loss is the better one. The loss of a sheet may join pieces or mend
+/// the rims of others, so what has an edge with it waits for the next look.
+std::vector<char> find_sheets(const TriangleMesh& mesh)
 {
     // A share of the area of what is there at the time. A piece with more than that is taken for a
     // part of the object, not for a sheet on it.
     constexpr double kLargestShare = 0.25;
-    for (bool dropped = true; dropped;) {
-        dropped = false;
-        const TriangleMesh& mesh = surface.mesh;
-        const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
-        const Orientation pieces = consistent_orientation(uses, mesh.triangles.size());
-        const std::vector<BadEdge> bad = bad_edges(uses, pieces.piece_of);
-        std::vector<double> area(pieces.one_sided.size());
-        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-            area[pieces.piece_of[t]] += triangle_area(mesh.points, mesh.triangles[t]);
-        const double all = std::accumulate(area.begin(), area.end(), 0.0);
-        std::vector<std::uint32_t> smallest_first(area.size());
-        std::iota(smallest_first.begin(), smallest_first.end(), 0U);
-        std::stable_sort(smallest_first.begin(), smallest_first.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return area[a] < area[b]; });
-        // One sheet at a time, as its loss may join pieces or mend the rims of others, and the
-        // smallest first, since of two pieces that would each do the smaller loss is the better
-        // one. Each turn removes triangles, so this ends.
-        for (const std::uint32_t piece : smallest_first) {
-            if (area[piece] > kLargestShare * all || !is_sheet(bad, piece))
-                continue;
-            std::vector<char> drop(mesh.triangles.size());
-            for (std::size_t t = 0; t < drop.size(); ++t) {
-                drop[t] = pieces.piece_of[t] == piece;
-                if (drop[t] && surface.source[t] != kNoSource)
-                    add_to(report.sheets, surface.source[t]);
-            }
-            drop_triangles(surface, drop);
-            dropped = true;
-            break;
-        }
+    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const Orientation pieces = consistent_orientation(uses, mesh.triangles.size());
+    std::vector<BadEdge> bad = bad_edges(uses, pieces.piece_of);
+    const auto edges = edges_by_piece(bad, pieces.one_sided.size());
+    const PiecesBySize sizes = pieces_by_size(mesh, pieces);
+    std::vector<char> sheet(sizes.area.size());
+    double left = sizes.all;
+    for (const std::uint32_t piece : sizes.order) {
+        if (sizes.area[piece] > kLargestShare * left || !is_sheet(bad, edges[piece], piece))
+            continue;
+        sheet[piece] = 1;
+        left -= sizes.area[piece];
+        for (const std::uint32_t e : edges[piece])
+            bad[e].changed = true;
+    }
+    std::vector<char> drop(mesh.triangles.size());
+    for (std::size_t t = 0; t < drop.size(); ++t)
+        drop[t] = sheet[pieces.piece_of[t]];
+    return drop;
+}
+
+} // namespace
+
+void drop_sheets(WorkingSurface& surface, const StageProgress& progress, RepairReport& report)
+{
+    // Each look but the last drops triangles, so this ends; sheets that come to light one by one
+    // would take as many looks, and this bounds the time. What is left then is found by the check.
+    constexpr int kMostLooks = 200;
+    for (int look = 0; look < kMostLooks; ++look) {
+        progress.stop_if_interrupted(0);
+        const std::vector<char> drop = find_sheets(surface.mesh);
+        if (std::find(drop.begin(), drop.end(), char(1)) == drop.end())
+            return;
+        for (std::size_t t = 0; t < drop.size(); ++t)
+            if (drop[t] && surface.source[t] != kNoSource)
+                add_to(report.sheets, surface.source[t]);
+        drop_triangles(surface, drop);
     }
 }
 

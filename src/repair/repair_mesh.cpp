@@ -27,9 +27,10 @@ namespace
 {
 
 /// Turns closed components that are oriented against their nesting.
-void turn_by_nesting(repair::WorkingSurface& surface, RepairReport& report)
+void turn_by_nesting(repair::WorkingSurface& surface, RepairReport& report,
+                     Interrupter* interrupter)
 {
-    const MeshCheck check = check_mesh(surface.mesh);
+    const MeshCheck check = check_mesh(surface.mesh, interrupter);
     if (check.inside_out_components() == 0)
         return;
     const std::vector<std::uint32_t> component_of = component_of_triangles(
@@ -47,14 +48,17 @@ void close_up(repair::WorkingSurface& surface, const RepairOptions& options, Rep
     // Copies of an earlier round have been moved, or put back because no move helped: they are not
     // moved again.
     surface.copies.clear();
-    repair::drop_sheets(surface, report);
+    const StageProgress progress(interrupter, "mending");
+    repair::drop_sheets(surface, progress, report);
     repair::orient(surface, report);
+    progress.stop_if_interrupted(20);
     repair::part_fans(surface, report);
+    progress.stop_if_interrupted(30);
     repair::fill_holes(surface, options, report, interrupter);
-    turn_by_nesting(surface, report);
-    repair::move_copies_apart(surface, report);
+    turn_by_nesting(surface, report, interrupter);
+    repair::move_copies_apart(surface, report, interrupter);
     // Components that touched have been moved apart, so their nesting may come out otherwise now.
-    turn_by_nesting(surface, report);
+    turn_by_nesting(surface, report, interrupter);
 }
 
 /// Leaves out points that no triangle uses, so that every point has a pillar to stand on.
@@ -135,14 +139,14 @@ RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
     // so that only this bound is sure to end the loop.
     constexpr int kMostCuts = 6;
     for (int round = 0; round < kMostCuts && options.cut_crossings; ++round) {
-        if (!repair::cut_crossings(surface, round, report))
+        if (!repair::cut_crossings(surface, round, report, interrupter))
             break;
         close_up(surface, options, report, interrupter);
     }
     drop_unused_points(surface.mesh, report);
     for (const std::uint32_t source : surface.source)
         report.kept_triangles += source != kNoSource;
-    report.after = check_mesh(surface.mesh);
+    report.after = check_mesh(surface.mesh, interrupter);
     return {std::move(surface.mesh), std::move(surface.source), std::move(report)};
 }
 

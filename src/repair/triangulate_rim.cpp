@@ -8,6 +8,7 @@
 // a part is chosen before the triangle beyond its chord is known. All in doubles, for the fill is
 // tested afterwards.
 
+#include "core/unit_vector.h"
 #include "repair/fill_patch.h"
 
 #include <algorithm>
@@ -165,7 +166,7 @@ bool is_planar(const Rim& rim)
     }
     if (!(normal.length() > 0))
         return false;
-    normal.normalize();
+    normal = unit_vector(normal);
     return std::all_of(rim.points.begin(), rim.points.end(), [&](const Vec3d& p) {
         return std::abs(normal.dot(p - centre)) <= kFlat * length;
     });

@@ -12,6 +12,7 @@
 #include "mesh/equal_points.h"
 #include "mesh/surface_defects.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -34,15 +35,28 @@ Cell cell_of(const openvdb::Vec3s& point, double size)
     return cell;
 }
 
+/// Cells as wide as the tolerance, but no more of them along an axis than an integer can number:
+/// cells may be wider than the tolerance, they then just hold more points.
+double cell_size(const std::vector<openvdb::Vec3s>& points, double tolerance)
+{
+    constexpr double kMostCells = 1e18; // under 2^60
+    double farthest = 0;
+    for (const openvdb::Vec3s& point : points)
+        for (int axis = 0; axis < 3; ++axis)
+            farthest = std::max(farthest, std::abs(double(point[axis])));
+    return std::max(tolerance, farthest / kMostCells);
+}
+
 /// For each point the first point within the tolerance that stands for itself. Only such points are
 /// put into the grid, which is why a point is never compared with one that has become another.
 std::vector<std::uint32_t> first_near_point(const std::vector<openvdb::Vec3s>& points,
                                             double tolerance)
 {
     std::map<Cell, std::vector<std::uint32_t>> grid;
+    const double size = cell_size(points, tolerance);
     std::vector<std::uint32_t> first(points.size());
     for (std::uint32_t v = 0; v < points.size(); ++v) {
-        const Cell cell = cell_of(points[v], tolerance);
+        const Cell cell = cell_of(points[v], size);
         first[v] = v;
         for (std::int64_t i = 0; i < 27; ++i) {
             const auto entry =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/stage_progress.h"
 #include "mesh/topology.h"
 #include "vdb_shell/repair/repair_mesh.h"
 
@@ -29,7 +30,7 @@ void drop_degenerate(WorkingSurface& surface, double sliver_height, RepairReport
 void drop_duplicates(WorkingSurface& surface, RepairReport& report);
 /// Sheets: pieces without which every edge of their rim has fewer faults; see
 /// docs/stages/repair.md.
-void drop_sheets(WorkingSurface& surface, RepairReport& report);
+void drop_sheets(WorkingSurface& surface, const StageProgress& progress, RepairReport& report);
 void orient(WorkingSurface& surface, RepairReport& report);
 /// Gives every fan of triangles its own point and every pair of triangles its own edge. Open fans
 /// share their point where the holes between them can be walked round.
@@ -37,12 +38,13 @@ void part_fans(WorkingSurface& surface, RepairReport& report);
 void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
                 Interrupter* interrupter);
 /// Triangles that cross or touch another one, or have no area.
-std::vector<char> crossing_triangles(const TriangleMesh& mesh);
+std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* interrupter);
 /// Drops crossing triangles, from round 1 on also those at open rims, from round 2 on with growing
 /// rings of neighbours; and the small pieces that this cuts off. False when there is nothing to
 /// cut.
-bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report);
+bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report,
+                   Interrupter* interrupter);
 /// Moves points that were parted out of each other's way.
-void move_copies_apart(WorkingSurface& surface, RepairReport& report);
+void move_copies_apart(WorkingSurface& surface, RepairReport& report, Interrupter* interrupter);
 
 } // namespace vdb_shell::repair

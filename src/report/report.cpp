@@ -339,6 +339,9 @@ void add_shell(ordered_json& json, const ShellReport& report)
     json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
                       {"pinned_vertices", report.pinned_vertices},
+                      {"demanded_pins", defect_json(report.demanded_pins)},
+                      {"triangles_without_tet", defect_json(report.triangles_without_tet)},
+                      {"without_tet_demanded", report.without_tet_demanded},
                       {"ripples", report.ripples}};
     json["tets"] = tets_json(report);
 }

@@ -153,6 +153,14 @@ void concession_lines(std::ostringstream& out, const ShellReport& report)
                  number(report.scale->pinned, 12) + " of them pinned");
 }
 
+std::string first_of(const Defect<std::uint32_t>& elements)
+{
+    std::string text;
+    for (const std::uint32_t index : elements.first)
+        text += (text.empty() ? "" : ", ") + std::to_string(index);
+    return text + (elements.first.size() < elements.count ? ", ..." : "");
+}
+
 std::string shown_share(const Overlaps& overlaps)
 {
     return number(overlaps.certified_prisms(), 12) + " of " + number(overlaps.prisms, 12) +
@@ -233,7 +241,13 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
     constexpr double kDegrees = 57.29577951308232;
     line(out, "prisms",
          number(report.prisms, 12) + ", " + number(report.pinned_vertices, 12) +
-             " pinned vertices, " + number(report.ripples, 12) + " ripples");
+             " pinned vertices, " + number(report.demanded_pins.count, 12) +
+             " that geometry demands, " + number(report.ripples, 12) + " ripples");
+    if (report.triangles_without_tet.count > 0)
+        line(out, "",
+             number(report.triangles_without_tet.count, 12) + " triangles have no tet, " +
+                 number(report.without_tet_demanded, 12) +
+                 " of them at three demanded pins: " + first_of(report.triangles_without_tet));
     line(out, "tets",
          number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
              " inverted, " + number(report.signs.flat.count, 12) + " flat, " +

@@ -67,9 +67,10 @@ struct InspectOptions {
 };
 OptionList describe(InspectOptions& options);
 
-/// Looks at a surface however bad it is. Preconditions and exactness as check_mesh; blind vertices
-/// and thin triangles are measured in double. Throws InvalidOption; never for a bad surface.
-MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options = {});
+/// Looks at a surface however bad it is. Preconditions and exactness as check_mesh; thin triangles
+/// are measured in double. Throws InvalidOption, Cancelled; never for a bad surface.
+MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& options = {},
+                            Interrupter* interrupter = nullptr);
 
 /// One kind of thing that inspect_mesh found.
 struct Finding {

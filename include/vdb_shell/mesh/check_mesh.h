@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 #include "vdb_shell/options/describe.h"
 
@@ -74,8 +75,9 @@ OptionList describe(CheckOptions& options);
 /// Looks at everything that the stages after this one rely on. Exact predicates, no tolerance.
 /// Precondition, which read_mesh guarantees: points within kLargestCoordinate, corners that index
 /// them; else InvalidOption. Never throws for a bad surface: the findings are the result.
-/// Degenerate and duplicate triangles are listed as such, not among the self-intersections.
-MeshCheck check_mesh(const TriangleMesh& mesh);
+/// Degenerate triangles and repeats are listed as such, not among the self-intersections. The
+/// interrupter may be null; throws Cancelled.
+MeshCheck check_mesh(const TriangleMesh& mesh, Interrupter* interrupter = nullptr);
 
 /// Throws GeometryError with counts and first offenders by index when the mesh cannot be worked
 /// with under `options`; `name` (the file) opens the message, which ends in the option that helps,

@@ -107,6 +107,12 @@ struct ShellReport {
     std::optional<CoreReport> cores;         ///< absent unless there were some
     std::vector<LayerFigures> layers;        ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
+    /// Vertices from which no direction sees all their triangles: geometry demands their pins.
+    Defect<std::uint32_t> demanded_pins;
+    /// Triangles that no tet stands on, all of whose corners are pinned; and how many of them have
+    /// three demanded pins.
+    Defect<std::uint32_t> triangles_without_tet;
+    std::size_t without_tet_demanded = 0;
     TetSigns signs;
     Conformity conformity;
     QualityReport quality;
