@@ -21,7 +21,7 @@ using openvdb::Vec3s;
 
 /// Rounding to float32 may go inwards, and an extent that is too small makes viewers cull what they
 /// should show. So each side is moved to the next float outwards where rounding went the wrong way.
-std::string extent_of(const Vec3d& low, const Vec3d& high)
+std::string extent_between(const Vec3d& low, const Vec3d& high)
 {
     Vec3s corners[2];
     for (int axis = 0; axis < 3; ++axis) {
@@ -40,7 +40,7 @@ std::string extent_of(const Vec3d& low, const Vec3d& high)
 std::string extent_of(const std::vector<Vec3s>& points)
 {
     const Bounds bounds = points.empty() ? Bounds{} : bounds_of(points);
-    return extent_of(bounds.low, bounds.high);
+    return extent_between(bounds.low, bounds.high);
 }
 
 std::string extent_of_volume(const ShellFile& shell)
@@ -58,7 +58,7 @@ std::string extent_of_volume(const ShellFile& shell)
     }
     const Vec3d shift = shell.placement.shift();
     // No active voxel at all left the box at its start values, which are inverted.
-    return low[0] > high[0] ? extent_of({}) : extent_of(low + shift, high + shift);
+    return low[0] > high[0] ? extent_of({}) : extent_between(low + shift, high + shift);
 }
 
 } // namespace vdb_shell

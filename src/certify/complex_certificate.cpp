@@ -19,6 +19,7 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "mesh/exact_winding.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_contacts.h"
 
@@ -33,12 +34,6 @@ namespace
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 using Pair = std::array<std::uint32_t, 2>;
-
-exact::Tet corners_of(const TetMesh& mesh, std::size_t tet)
-{
-    const openvdb::Vec4I& t = mesh.tets[tet];
-    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
-}
 
 /// Closed, oriented, manifold, and no two vertices in one place.
 void check_outer_surface(const ShellStack& stack, ComplexCertificate& certificate)
@@ -233,19 +228,11 @@ void check_bare_triangles(const FreeFaces& free, const std::vector<char>& degene
             add_to(certificate.tets_through_outer, Pair{tet, f});
 }
 
-/// Whether the point, which is not on the outer surface, is behind it: its winding number, by the
-/// exact crossings of a ray.
+/// Whether the point, which is not on the outer surface, is behind it.
 bool behind_surface(const ShellStack& stack, const Vec3s& point)
 {
-    const std::vector<Vec3s>& outer = stack.surface(0);
-    int winding = 0;
-    for (const Vec3I& t : stack.triangles()) {
-        bool on_surface = false;
-        winding += exact::crossing_above(point, outer[t[0]], outer[t[1]], outer[t[2]], on_surface);
-        if (on_surface)
-            return false;
-    }
-    return winding > 0;
+    const ExactWinding winding = exact_winding(point, stack.surface(0), stack.triangles());
+    return winding.number > 0 && !winding.on_surface;
 }
 
 /// A piece of tets without an outer triangle of its own hangs on others by edges or corners only.

@@ -178,12 +178,6 @@ void list_near(const SortedPoints& sorted, const CellRange& box, const FloatPlan
 
 } // namespace
 
-std::array<Vec3s, 4> corners_of(const TetMesh& tets, std::size_t tet)
-{
-    const openvdb::Vec4I& t = tets.tets[tet];
-    return {tets.points[t[0]], tets.points[t[1]], tets.points[t[2]], tets.points[t[3]]};
-}
-
 TetBox box_of(const std::array<Vec3s, 4>& p)
 {
     using openvdb::math::maxComponent;

@@ -27,8 +27,6 @@ struct SignedTets {
 };
 SignedTets signed_tets(const TetMesh& tets, const Bounds& bounds);
 
-std::array<openvdb::Vec3s, 4> corners_of(const TetMesh& tets, std::size_t tet);
-
 struct TetBox {
     openvdb::Vec3s low, high;
 };

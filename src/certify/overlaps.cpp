@@ -9,9 +9,10 @@
 
 #include "vdb_shell/certify/overlaps.h"
 
-#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include "certify/certificate_findings.h"
+#include "certify/tet_faces.h"
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
@@ -24,12 +25,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-exact::Tet corners_of(const TetMesh& mesh, std::size_t tet)
-{
-    const openvdb::Vec4I& t = mesh.tets[tet];
-    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
-}
 
 std::vector<int> signs_of(const TetMesh& mesh)
 {

@@ -16,6 +16,7 @@
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "mesh/exact_winding.h"
 
 #include <algorithm>
 #include <utility>
@@ -57,32 +58,15 @@ std::vector<Piece> gather_pieces(const PrismShell& shell,
     return pieces;
 }
 
-/// A triangle that the upward ray from `point` cannot meet. The comparisons are exact and strict,
-/// so nothing that the ray touches is excluded.
-bool misses_ray(const Vec3s& point, const Vec3s& a, const Vec3s& b, const Vec3s& c)
-{
-    for (int k = 0; k < 2; ++k)
-        if ((a[k] < point[k] && b[k] < point[k] && c[k] < point[k]) ||
-            (a[k] > point[k] && b[k] > point[k] && c[k] > point[k]))
-            return true;
-    return a[2] < point[2] && b[2] < point[2] && c[2] < point[2];
-}
-
+/// A point on the surface would be a contact, and pairs in contact do not come here.
 int winding_number(const std::vector<Vec3s>& points, const PrismShell& shell, const Piece& piece,
                    const Vec3s& at)
 {
-    int winding = 0;
-    bool on_surface = false;
-    for (const std::uint32_t t : piece.triangles) {
-        const Vec3I& v = shell.triangles[t];
-        const Vec3s &a = points[v[0]], &b = points[v[1]], &c = points[v[2]];
-        // The half-open rule of crossing_above counts a ray through an edge or a corner once, so no
-        // ray has to be tried again in another direction. A point on the surface would be a
-        // contact, and pairs in contact do not come here.
-        if (!misses_ray(at, a, b, c))
-            winding += exact::crossing_above(at, a, b, c, on_surface);
-    }
-    return winding;
+    const auto corners_of = [&](std::size_t i) {
+        const Vec3I& v = shell.triangles[piece.triangles[i]];
+        return exact::Triangle{points[v[0]], points[v[1]], points[v[2]]};
+    };
+    return exact_winding(at, piece.triangles.size(), corners_of).number;
 }
 
 bool in_region(const PrismShell& shell, const Piece& piece, const Vec3s& at)

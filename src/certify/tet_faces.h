@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/Types.h>
+#include "vdb_shell/shell/tessellate.h"
 
 #include <array>
 #include <cstddef>
@@ -16,6 +16,12 @@ inline openvdb::Vec3I tet_face(const openvdb::Vec4I& tet, std::size_t opposite)
 {
     const auto& face = kTetFaces[opposite];
     return {tet[face[0]], tet[face[1]], tet[face[2]]};
+}
+
+inline std::array<openvdb::Vec3s, 4> corners_of(const TetMesh& mesh, std::size_t tet)
+{
+    const openvdb::Vec4I& t = mesh.tets[tet];
+    return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
 }
 
 } // namespace vdb_shell

@@ -147,7 +147,7 @@ bool was_given(const BoundOption& bound)
            (bound.shorthand_given && bound.shorthand_given->count() > 0);
 }
 
-std::string text_of(const std::filesystem::path& preset)
+std::string text_of_file(const std::filesystem::path& preset)
 {
     std::ifstream in(preset, std::ios::binary);
     std::ostringstream text;
@@ -258,7 +258,7 @@ void apply(BoundOptions& bound)
     const BoundOption* preset = find(bound, kPresetFlag);
     if (preset && was_given(*preset)) {
         const std::string file = preset->given->results().back();
-        set_from_text(bound, text_of(file), file);
+        set_from_text(bound, text_of_file(file), file);
     }
     for (BoundOption& option : bound.options)
         if (was_given(option))

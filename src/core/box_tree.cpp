@@ -11,8 +11,6 @@
 
 #include "core/parallel.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <cassert>
 #include <limits>
 
@@ -122,7 +120,7 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
         return;
     }
     // The halves are disjoint ranges of the items, so both can be split at once.
-    tbb::parallel_invoke([&] { split(items, begin, middle); }, [&] { split(items, middle, end); });
+    run_together([&] { split(items, begin, middle); }, [&] { split(items, middle, end); });
 }
 
 int BoxTree::add_node(int begin, int end)

@@ -84,7 +84,8 @@ public:
     /// Makes ready for widen(); to be called after each build().
     void index_parents();
     /// Box i becomes as much larger as to hold `box` too, at a cost of the depth of the tree.
-    /// Precondition: index_parents.
+    /// Precondition: index_parents. For boxes that stay and are soon built anew; those that come
+    /// and go one by one lie in resample/loose_grid.h.
     void widen(std::size_t i, const FloatBox& box);
 
     /// Calls visit(i) for every box i that overlaps `query`.

@@ -9,11 +9,11 @@
 #include "vdb_shell/field/given_level_set.h"
 
 #include "field/field_sampler.h"
+#include "field/value_range.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/vdb_header.h"
 
 #include <openvdb/io/File.h>
-#include <openvdb/tools/Count.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,7 +198,7 @@ std::string why_not_steppable(const openvdb::FloatGrid& grid, const TriangleMesh
     // No point of the solid is deeper than half the diagonal of its box, so no more is wanted.
     const double deepest = 0.5 * diagonal_of(bounds_of(surface.points));
     const double wanted = std::min(options.interior_depth.value_or(deepest), deepest);
-    const double depth = -double(openvdb::tools::minMax(grid.tree()).min());
+    const double depth = -double(value_range(grid).least);
     if (depth < wanted && !all_inside_is_active(grid))
         return text("its band inside is ", depth / voxel, " voxels deep, ", wanted / voxel,
                     " are wanted");

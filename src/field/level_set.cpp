@@ -10,14 +10,13 @@
 
 #include "core/stage_progress.h"
 #include "field/cavities.h"
-#include "field/latched_interrupter.h"
 #include "field/level_set_checks.h"
+#include "field/mesh_distances.h"
+#include "field/value_range.h"
 #include "mesh/triangle_area.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 
-#include <openvdb/tools/Count.h>
-#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
@@ -129,22 +128,14 @@ void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions&
 openvdb::FloatGrid::Ptr convert(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
                                 const BandVoxels& band, Interrupter* interrupter)
 {
-    LatchedInterrupter latched(interrupter);
-    openvdb::util::NullInterrupter& tool = latched;
-    auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
-        tool, transform, mesh.points, mesh.triangles, {}, static_cast<float>(band.exterior),
-        static_cast<float>(band.interior));
-    // OpenVDB returns an unfinished grid when it is stopped and does not say that it did.
-    if (latched.stopped())
-        throw Cancelled();
-    return grid;
+    return signed_distances(mesh, transform, band.exterior, band.interior, interrupter);
 }
 
 /// The depth of the solid so far in voxels, and one voxel more, so that a cavity's inactive
 /// background is beyond every value of the solid.
 double deepest_voxels(const openvdb::FloatGrid& grid)
 {
-    return 1.0 - openvdb::tools::minMax(grid.tree()).min() / grid.voxelSize()[0];
+    return 1.0 - value_range(grid).least / grid.voxelSize()[0];
 }
 
 /// OpenVDB's flood fill takes everything inside the outermost surface for solid, so what stands

@@ -11,11 +11,10 @@
 
 #include "core/stage_progress.h"
 #include "field/contour_mapped.h"
+#include "field/value_range.h"
 #include "field/wrap_field.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
-
-#include <openvdb/tools/Count.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +93,7 @@ openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
     auto field = wrap_field(pieces, winding, options.sheet_voxels, progress);
     // A solid that is smaller than a voxel can slip between the voxel centres. As plates its
     // triangles cannot, so there always is a surface.
-    if (!(openvdb::tools::minMax(field->tree()).min() < 0)) {
+    if (!(value_range(*field).least < 0)) {
         pieces = all_sheets(triangles);
         field = wrap_field(pieces, winding, options.sheet_voxels, progress);
     }

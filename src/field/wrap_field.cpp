@@ -10,9 +10,9 @@
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
+#include "field/mesh_distances.h"
 #include "resample/triangle_pieces.h"
 
-#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
@@ -94,21 +94,16 @@ double area_of(const TriangleCorners& t)
 
 openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pieces, double band)
 {
-    if (pieces.empty())
-        return openvdb::FloatGrid::create(static_cast<float>(band));
-    std::vector<Vec3s> points;
-    std::vector<openvdb::Vec3I> triangles;
+    TriangleMesh mesh;
     // Pieces do not share points, since the distance does not need it.
     for (const TriangleCorners& piece : pieces) {
-        const auto first = static_cast<openvdb::Vec3I::ValueType>(points.size());
+        const auto first = static_cast<openvdb::Vec3I::ValueType>(mesh.points.size());
         for (const Vec3d& corner : piece)
-            points.emplace_back(corner);
-        triangles.emplace_back(first, first + 1, first + 2);
+            mesh.points.emplace_back(corner);
+        mesh.triangles.emplace_back(first, first + 1, first + 2);
     }
-    openvdb::util::NullInterrupter never;
-    return openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(
-        never, *openvdb::math::Transform::createLinearTransform(1.0), points, triangles, {},
-        static_cast<float>(band));
+    return unsigned_distances(mesh, *openvdb::math::Transform::createLinearTransform(1.0), band,
+                              nullptr);
 }
 
 /// The parts of the field at a voxel. An accessor must not be shared, so each range of voxels has

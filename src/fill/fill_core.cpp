@@ -17,7 +17,7 @@
 #include "fill/mesher_files.h"
 #include "fill/mesher_result.h"
 #include "fill/outside_program.h"
-#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include <algorithm>
 #include <array>

@@ -15,6 +15,7 @@
 
 #include "core/dispatch.h"
 #include "core/simd-inl.h"
+#include "core/symmetric.h"
 #include "growth/barrier.h"
 
 #include <algorithm>
@@ -40,33 +41,6 @@ constexpr int kNewtonSteps = 3;
 constexpr double kDamped = 0.25;
 constexpr double kConverged = 0.05;
 
-/// Symmetric, by columns of the lower triangle.
-struct Curvature {
-    double xx, xy, xz, yy, yz, zz;
-};
-
-/// Solves h dx = -g by Cholesky; false where h is not safely positive. Comparisons are written so
-/// that a NaN is refused like a negative pivot.
-HWY_INLINE bool solve_positive(const Curvature& h, const Vec3d& g, Vec3d& dx)
-{
-    const double l00 = std::sqrt(h.xx);
-    const double l10 = h.xy / l00, l20 = h.xz / l00;
-    const double d1 = h.yy - l10 * l10;
-    if (!(l00 > 0) || !(d1 > 0))
-        return false;
-    const double l11 = std::sqrt(d1), l21 = (h.yz - l20 * l10) / l11;
-    const double d2 = h.zz - l20 * l20 - l21 * l21;
-    if (!(d2 > 0))
-        return false;
-    const double l22 = std::sqrt(d2);
-    const double y0 = -g[0] / l00, y1 = (-g[1] - l10 * y0) / l11;
-    const double y2 = (-g[2] - l20 * y0 - l21 * y1) / l22;
-    dx[2] = y2 / l22;
-    dx[1] = (y1 - l21 * dx[2]) / l11;
-    dx[0] = (y0 - l10 * dx[1] - l20 * dx[2]) / l00;
-    return true;
-}
-
 /// Where x + t dx leaves the ball. Precondition: x lies in it.
 HWY_INLINE double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx)
 {
@@ -81,7 +55,7 @@ HWY_INLINE double room_in_ball(const Ball& ball, const Vec3d& x, const Vec3d& dx
 
 /// Adds gradient and curvature of -log(r^2 - |x - c|^2), whose weight is that of one tet. An
 /// infinite radius, and a vertex that is not inside, mean that there is no such bound.
-HWY_INLINE void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curvature& h)
+HWY_INLINE void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Symmetric& h)
 {
     const Vec3d arm = x - ball.centre;
     const double room = ball.radius * ball.radius - arm.lengthSqr();
@@ -93,7 +67,9 @@ HWY_INLINE void add_ball(const Ball& ball, const Vec3d& x, Vec3d& gradient, Curv
     h.xy += n[0] * n[1], h.xz += n[0] * n[2], h.yz += n[1] * n[2];
 }
 
-/// LinearBounds::add_prism, of corners relative to the vertex.
+/// LinearBounds::add_prism, of corners relative to the vertex. prism_lanes.cpp has the same bases
+/// in doubles, four at a time, where a sign is to be proven; a hint can do with floats, of which
+/// eight are one block of bounds.
 void bound_prism(const std::array<Vec3d, 5>& corner, const Vec3d& here, double scale, Block& out)
 {
     // By axis; the last three lanes are not picked.
@@ -141,7 +117,7 @@ HWY_INLINE double wide_sum(Floats x)
 }
 
 /// Adds gradient and curvature of the logarithms.
-HWY_INLINE void add_logarithms(const Block* first, const Block* last, Vec3d& gradient, Curvature& h)
+HWY_INLINE void add_logarithms(const Block* first, const Block* last, Vec3d& gradient, Symmetric& h)
 {
     Floats gx(0.0F), gy(0.0F), gz(0.0F), xx(0.0F), xy(0.0F), xz(0.0F), yy(0.0F), yz(0.0F), zz(0.0F);
     for (const Block* b = first; b != last; ++b) {
@@ -197,7 +173,7 @@ void newton_minimum(Block* first, Block* last, const Ball& ball, const Vec3d& gr
     x = Vec3d(0.0);
     for (int step = 0; step < kNewtonSteps; ++step) {
         Vec3d g = gradient, dx;
-        Curvature h{};
+        Symmetric h{};
         add_logarithms(first, last, g, h);
         add_ball(ball, x, g, h);
         const double trace = h.xx + h.yy + h.zz;
@@ -207,7 +183,7 @@ void newton_minimum(Block* first, Block* last, const Ball& ball, const Vec3d& gr
         // of the trace makes the matrix positive and hardly changes the step in the other
         // directions.
         h.xx += 1e-9 * trace, h.yy += 1e-9 * trace, h.zz += 1e-9 * trace;
-        if (!solve_positive(h, g, dx))
+        if (!solve_positive(h, -g, dx))
             break;
         const double decrement = std::sqrt(std::max(0.0, -g.dot(dx)));
         const double damped = decrement > kDamped ? 1 / (1 + decrement) : 1;

@@ -12,8 +12,6 @@
 
 #include "core/parallel.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -100,7 +98,7 @@ private:
         const auto left = [&] { halve(first, mid); };
         const auto right = [&] { halve(mid, last); };
         if (begin(last) - begin(first) > kLeastParallel) {
-            tbb::parallel_invoke(left, right);
+            run_together(left, right);
         } else {
             left();
             right();

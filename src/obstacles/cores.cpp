@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "mesh/components.h"
+#include "mesh/exact_winding.h"
 #include "mesh/topology.h"
 #include "obstacles/offset_surface.h"
 #include "vdb_shell/core/error.h"
@@ -137,12 +138,7 @@ void require_no_contact(const std::string& surface, const std::vector<CoreMesh>&
 /// Of a closed mesh that does not hold the point.
 int winding_number(const TriangleMesh& mesh, const Vec3s& point)
 {
-    int winding = 0;
-    bool on_surface = false;
-    for (const Vec3I& t : mesh.triangles)
-        winding += exact::crossing_above(point, mesh.points[t[0]], mesh.points[t[1]],
-                                         mesh.points[t[2]], on_surface);
-    return winding;
+    return exact_winding(point, mesh.points, mesh.triangles).number;
 }
 
 /// Of each part of a mesh the first triangle and a corner of it. As nothing touches, that point

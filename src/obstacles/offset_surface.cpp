@@ -7,7 +7,7 @@
 
 #include "obstacles/offset_surface.h"
 
-#include "field/latched_interrupter.h"
+#include "field/mesh_distances.h"
 #include "obstacles/nearest_core.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/field/contour.h"
@@ -15,7 +15,6 @@
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
-#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
@@ -45,20 +44,8 @@ constexpr int kMostRounds = 8;
 openvdb::FloatGrid::Ptr distances_to(const TriangleMesh& mesh, double voxel, double depth,
                                      Interrupter* interrupter)
 {
-    LatchedInterrupter latched(interrupter);
-    openvdb::util::NullInterrupter& tool = latched;
-    const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-    std::vector<Vec3s> points;
-    points.reserve(mesh.points.size());
-    for (const Vec3s& p : mesh.points)
-        points.emplace_back(transform->worldToIndex(openvdb::Vec3d(p)));
-    const openvdb::tools::QuadAndTriangleDataAdapter<Vec3s, Vec3I> data(points, mesh.triangles);
-    const auto band = static_cast<float>(depth / voxel);
-    auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        tool, data, *transform, band, band, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-    if (latched.stopped())
-        throw Cancelled();
-    return grid;
+    return unsigned_distances(mesh, *openvdb::math::Transform::createLinearTransform(voxel),
+                              depth / voxel, interrupter);
 }
 
 /// The distances less `iso`: negative nearer than that.

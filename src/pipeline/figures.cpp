@@ -9,11 +9,11 @@
 #include "pipeline/figures.h"
 
 #include "core/parallel.h"
+#include "field/value_range.h"
 #include "mesh/most_visible.h"
 #include "mesh/surface_defects.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/Count.h>
 
 #include <algorithm>
 #include <numeric>
@@ -29,7 +29,7 @@ void measure_field(FieldReport& report, const openvdb::FloatGrid& level_set)
     report.active_voxels = level_set.activeVoxelCount();
     report.memory_bytes = level_set.memUsage();
     // The field is negative inside, so the deepest voxel is the smallest.
-    report.interior_depth = -double(openvdb::tools::minMax(level_set.tree()).min());
+    report.interior_depth = -double(value_range(level_set).least);
 }
 
 std::vector<double> lengths_of(const PrismShell& shell)

@@ -9,11 +9,11 @@
 
 #include "pipeline/sides.h"
 
+#include "field/value_range.h"
 #include "mesh/triangle_area.h"
 #include "step/thickness.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/Count.h>
 
 #include <algorithm>
 #include <utility>
@@ -31,7 +31,7 @@ std::optional<double> longest_line(const LineStepOptions& options,
 {
     std::optional<double> longest = options.thickness;
     if (thickness_grid) {
-        const double painted = openvdb::tools::minMax(thickness_grid->tree()).max();
+        const double painted = value_range(*thickness_grid).greatest;
         const double background = thickness_grid->background();
         const double deepest = std::max(painted, background);
         if (deepest > 0.0)

@@ -193,4 +193,23 @@ TetMesh make_tets(const ShellStack& stack)
                           stack.tapered);
 }
 
+double tet_volume(const TetMesh& mesh, std::size_t first_layer)
+{
+    // In one thread, so that the last bit of the sum does not depend on the number of threads.
+    double six_volumes = 0;
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+        if (first_layer > 0 && mesh.prism_layer[t] < first_layer)
+            continue; // tets of no layers have no list of them
+        const openvdb::Vec4I& tet = mesh.tets[t];
+        // Relative to the tet's own first corner: differences of near float32 points are exact in
+        // doubles, so the volume is as accurate far from the origin.
+        const openvdb::Vec3d a(mesh.points[tet[0]]);
+        const openvdb::Vec3d ab = openvdb::Vec3d(mesh.points[tet[1]]) - a;
+        const openvdb::Vec3d ac = openvdb::Vec3d(mesh.points[tet[2]]) - a;
+        const openvdb::Vec3d ad = openvdb::Vec3d(mesh.points[tet[3]]) - a;
+        six_volumes += ab.cross(ac).dot(ad);
+    }
+    return six_volumes / 6;
+}
+
 } // namespace vdb_shell

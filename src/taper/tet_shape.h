@@ -3,6 +3,8 @@
 
 // The shape of one tet as a function of one of its corners: what tapering minimises.
 
+#include "core/symmetric.h"
+
 #include <openvdb/Types.h>
 
 #include <array>
@@ -41,46 +43,6 @@ inline double distortion_of_amips(double amips)
 inline double amips_of_distortion(double distortion)
 {
     return 3 * std::cbrt(distortion * distortion);
-}
-
-/// A symmetric 3 x 3 matrix.
-struct Symmetric {
-    double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-
-    /// Adds w u u^T.
-    void add(double w, const Vec3d& u)
-    {
-        xx += w * u[0] * u[0], xy += w * u[0] * u[1], xz += w * u[0] * u[2];
-        yy += w * u[1] * u[1], yz += w * u[1] * u[2], zz += w * u[2] * u[2];
-    }
-    /// Adds w (u v^T + v u^T).
-    void add(double w, const Vec3d& u, const Vec3d& v)
-    {
-        xx += 2 * w * u[0] * v[0], yy += 2 * w * u[1] * v[1], zz += 2 * w * u[2] * v[2];
-        xy += w * (u[0] * v[1] + u[1] * v[0]), xz += w * (u[0] * v[2] + u[2] * v[0]);
-        yz += w * (u[1] * v[2] + u[2] * v[1]);
-    }
-    void add_identity(double w) { xx += w, yy += w, zz += w; }
-};
-
-/// Solves h x = g by Cholesky; false where h is not safely positive. Comparisons are written so
-/// that a NaN is refused like a negative pivot.
-inline bool solve_positive(const Symmetric& h, const Vec3d& g, Vec3d& x)
-{
-    const double l00 = std::sqrt(h.xx);
-    const double l10 = h.xy / l00, l20 = h.xz / l00;
-    const double d1 = h.yy - l10 * l10;
-    if (!(l00 > 0) || !(d1 > 0))
-        return false;
-    const double l11 = std::sqrt(d1), l21 = (h.yz - l20 * l10) / l11;
-    const double d2 = h.zz - l20 * l20 - l21 * l21;
-    if (!(d2 > 0))
-        return false;
-    const double y0 = g[0] / l00, y1 = (g[1] - l10 * y0) / l11;
-    x[2] = (g[2] - l20 * y0 - l21 * y1) / d2;
-    x[1] = (y1 - l21 * x[2]) / l11;
-    x[0] = (y0 - l10 * x[1] - l20 * x[2]) / l00;
-    return true;
 }
 
 /// Gradient of six_volumes in corner `free`. A rotation of four corners by one is an odd

@@ -11,6 +11,7 @@
 #include "vdb_shell/options/option.h"
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/shell/surface_bounds.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,21 +149,6 @@ WantedBound judge_whole(BoundKind kind, double asked, double reached, bool large
     return bound;
 }
 
-double fill_of(const TetMesh& tets, const ShellStack& stack, const TriangleMesh& surface)
-{
-    double volume = 0;
-    for (std::size_t t = 0; t < tets.tets.size(); ++t) {
-        if (tets.prism_layer[t] < stack.skin)
-            continue; // outside, no part of the solid
-        const openvdb::Vec4I& tet = tets.tets[t];
-        const Vec3d a(tets.points[tet[0]]);
-        volume += (Vec3d(tets.points[tet[1]]) - a)
-                      .cross(Vec3d(tets.points[tet[2]]) - a)
-                      .dot(Vec3d(tets.points[tet[3]]) - a);
-    }
-    return volume / 6 / signed_volume(surface.points, surface.triangles);
-}
-
 } // namespace
 
 const NameTable<BoundKind>& names(BoundKind)
@@ -237,7 +223,10 @@ BoundsReport judge_bounds(const ShellStack& stack, const TetMesh& tets, const Tr
         add(judge_shapes(at, shapes, BoundKind::edge_ratio, &TetShape::edge_ratio,
                          *wanted.edge_ratio, false));
     if (wanted.fill)
-        add(judge_whole(BoundKind::fill, *wanted.fill, fill_of(tets, stack, surface), true));
+        // What lies outside of the skin is no part of the solid.
+        add(judge_whole(
+            BoundKind::fill, *wanted.fill,
+            tet_volume(tets, stack.skin) / signed_volume(surface.points, surface.triangles), true));
     if (wanted.tets)
         add(judge_whole(BoundKind::tets, double(*wanted.tets), double(tets.tets.size()), false));
     return report;

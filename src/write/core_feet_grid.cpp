@@ -20,7 +20,7 @@ namespace
 
 using openvdb::Vec3s;
 using openvdb::points::AttributeHandle;
-using Leaf = openvdb::points::PointDataTree::LeafNodeType;
+using PointLeaf = openvdb::points::PointDataTree::LeafNodeType;
 
 constexpr const char* kCore = "core";
 constexpr const char* kTriangle = "core_triangle";
@@ -38,7 +38,7 @@ std::vector<T> column(const std::vector<CoreFoot>& feet, const Get& get)
 }
 
 template <typename T>
-AttributeHandle<T> handle_of(const Leaf& leaf, const char* attribute, std::size_t rows,
+AttributeHandle<T> handle_of(const PointLeaf& leaf, const char* attribute, std::size_t rows,
                              const std::string& name)
 {
     const auto* found = leaf.attributeSet().getConst(attribute);

@@ -3,8 +3,7 @@
 
 #include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/write/shell_points.h"
-
-#include <openvdb/points/PointDataGrid.h>
+#include "write/point_grid_instances.h"
 
 #include <string>
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "vdb_shell/core/error.h"
+#include "write/point_grid_instances.h"
 
 #include <openvdb/points/AttributeArray.h>
-#include <openvdb/points/PointDataGrid.h>
 
 #include <cmath>
 #include <cstdint>

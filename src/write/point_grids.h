@@ -2,8 +2,7 @@
 #pragma once
 
 #include "vdb_shell/write/shell_points.h"
-
-#include <openvdb/points/PointDataGrid.h>
+#include "write/point_grid_instances.h"
 
 #include <string>
 

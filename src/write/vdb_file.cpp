@@ -19,11 +19,11 @@
 #include "vdb_shell/io/vdb_header.h"
 #include "write/core_feet_grid.h"
 #include "write/core_grids.h"
+#include "write/point_grid_instances.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 
 #include <openvdb/io/File.h>
-#include <openvdb/points/PointDataGrid.h>
 
 #include <algorithm>
 #include <cmath>

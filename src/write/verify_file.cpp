@@ -16,6 +16,7 @@
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include <nlohmann/json.hpp>
 #include <openvdb/tools/Interpolation.h>

@@ -4,7 +4,7 @@
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/certify/stack_certificate.h"
-#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include "support/certificates.h"
 #include "support/tapered.h"

@@ -3,7 +3,7 @@
 
 #include "support/filled.h"
 #include "vdb_shell/certify/stack_certificate.h"
-#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include "support/shapes.h"
 #include "support/shells.h"
-#include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

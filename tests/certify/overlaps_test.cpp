@@ -4,6 +4,7 @@
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include "core/exact.h"
 #include "support/broken_shells.h"

@@ -4,7 +4,7 @@
 #include "support/files.h"
 #include "support/filled.h"
 #include "support/stacks.h"
-#include "vdb_shell/certify/tet_signs.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include "fill/outside_program.h"
 

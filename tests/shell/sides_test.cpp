@@ -10,6 +10,7 @@
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/growth/grow.h"
+#include "vdb_shell/shell/tessellate.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

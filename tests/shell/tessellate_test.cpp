@@ -232,4 +232,26 @@ TEST(Ripple, UsesAllSixCodesAboutEquallyOften)
         EXPECT_NEAR(times, 1000, 4 * 29);
 }
 
+TEST(TetVolume, IsAsAccurateFarFromTheOrigin)
+{
+    // Coordinates that float32 holds exactly at both places.
+    TetMesh mesh;
+    for (const Vec3s& p : {Vec3s(0, 0, 0), Vec3s(4, 0, 0), Vec3s(0, 4, 0), Vec3s(0, 0, 4)})
+        mesh.points.push_back(p + Vec3s(8388608, -8388608, 4194304));
+    mesh.tets = {openvdb::Vec4I(0, 1, 2, 3)};
+    EXPECT_DOUBLE_EQ(tet_volume(mesh), 64.0 / 6);
+    EXPECT_EQ(tet_volume(TetMesh()), 0);
+}
+
+TEST(TetVolume, LeavesOutLayersFurtherOut)
+{
+    TetMesh mesh;
+    mesh.points = {Vec3s(0, 0, 0), Vec3s(1, 0, 0), Vec3s(0, 1, 0), Vec3s(0, 0, 1), Vec3s(0, 0, -2)};
+    mesh.tets = {openvdb::Vec4I(0, 1, 2, 3), openvdb::Vec4I(0, 2, 1, 4)};
+    mesh.prism_layer = {0, 1};
+    EXPECT_DOUBLE_EQ(tet_volume(mesh), 3.0 / 6);
+    EXPECT_DOUBLE_EQ(tet_volume(mesh, 1), 2.0 / 6);
+    EXPECT_EQ(tet_volume(mesh, 2), 0);
+}
+
 } // namespace

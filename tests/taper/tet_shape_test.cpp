@@ -10,6 +10,7 @@
 namespace
 {
 
+using namespace vdb_shell;
 using namespace vdb_shell::taper;
 
 const TetCorners kRegular{Vec3d(1, 1, 1), Vec3d(1, -1, -1), Vec3d(-1, -1, 1), Vec3d(-1, 1, -1)};

@@ -7,6 +7,7 @@
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/report/report.h"
+#include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/write/shell_points.h"
 #include "vdb_shell/write/tet_file.h"
 #include "vdb_shell/write/verify_file.h"

@@ -18,8 +18,4 @@ struct TetSigns {
 
 TetSigns count_tet_signs(const TetMesh& tets);
 
-/// Sum of the signed volumes of the tets, in index order, world units cubed. Each volume is taken
-/// relative to a corner of its tet, so it is as accurate far from the origin.
-double tet_volume(const TetMesh& tets);
-
 } // namespace vdb_shell

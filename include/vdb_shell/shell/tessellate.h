@@ -62,4 +62,9 @@ PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options);
 /// has no point in the result.
 TetMesh make_tets(const PrismShell& shell, const PrismSplit& split);
 
+/// Sum of the signed volumes of the tets of layer `first_layer` and of those further in, in index
+/// order, world units cubed. Each volume is taken relative to a corner of its tet, so it is as
+/// accurate far from the origin.
+double tet_volume(const TetMesh& tets, std::size_t first_layer = 0);
+
 } // namespace vdb_shell

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The grid of points' indices and its tree, compiled once (point_grid_instances.h).
+
+#include "write/point_grid_instances.h"
+
+template class openvdb::Grid<openvdb::tools::PointIndexTree>;
+template class openvdb::tree::Tree<openvdb::tools::PointIndexTree::RootNodeType>;
