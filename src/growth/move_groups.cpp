@@ -262,13 +262,15 @@ private:
     bool allowed(const std::vector<int>& faces)
     {
         hits_.clear();
-        return std::all_of(faces.begin(), faces.end(),
-                           [&](int f) { return prism_valid(s_, f) && !holds_component(s_, f); }) &&
-               clear_of_others(faces) && hits_.empty() && clear_among(faces);
+        for (const int f : faces)
+            if (!prism_valid(s_, f) || holds_component(s_, f))
+                return false;
+        list_hits(faces);
+        return hits_.empty() && clear_among(faces);
     }
 
-    /// Lists the first triangles that those of the group meet; true.
-    bool clear_of_others(const std::vector<int>& faces)
+    /// The first triangles that those of the group meet.
+    void list_hits(const std::vector<int>& faces)
     {
         constexpr std::size_t kEnough = 24; // for as many planes: the next try shows the others
         for (const int f : faces) {
@@ -283,9 +285,8 @@ private:
                     hits_.push_back({f, g, true});
             });
             if (hits_.size() == kEnough)
-                break;
+                return;
         }
-        return true;
     }
     bool clear_among(const std::vector<int>& faces)
     {
