@@ -11,10 +11,10 @@
 
 #include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
+#include "core/classes.h"
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <tuple>
 
 namespace vdb_shell
@@ -44,30 +44,6 @@ std::array<std::uint32_t, 3> ascending(const Vec3I& face)
     std::sort(corners.begin(), corners.end());
     return corners;
 }
-
-/// Classes of numbers, each called by its smallest.
-class Classes
-{
-public:
-    explicit Classes(std::size_t count) : parent_(count)
-    {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t first(std::uint32_t i)
-    {
-        while (parent_[i] != i)
-            i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::uint32_t i, std::uint32_t j)
-    {
-        i = first(i), j = first(j);
-        parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// The outer triangles by points; outer vertices that no tet has are added to the points.
 void append_outer(const ShellStack& stack, const TetMesh& tets, FreeFaces& free)

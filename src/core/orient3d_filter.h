@@ -27,6 +27,21 @@ inline int certain_sign(double det, double permanent, double error = kOrientErro
     return (det > bound) - (det < -bound);
 }
 
+/// Sign of d . (u x w) where doubles decide it for certain, else 0: d counts as given, so
+/// differences and products are rounded as in an orientation, or less.
+inline int certain_triple_sign(const openvdb::Vec3d& d, const openvdb::Vec3d& u,
+                               const openvdb::Vec3d& w, double error = kOrientError)
+{
+    double det = 0, permanent = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        const double left = u[a] * w[b], right = u[b] * w[a];
+        det += d[axis] * (left - right);
+        permanent += std::abs(d[axis]) * (std::abs(left) + std::abs(right));
+    }
+    return certain_sign(det, permanent, error);
+}
+
 /// The plane of a triangle, and the sides of it that points lie on. Points are float32 values held
 /// as doubles.
 class PlaneFilter

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/latched_interrupter.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/core/interrupter.h"
-
-#include <atomic>
-#include <thread>
 
 namespace vdb_shell
 {
@@ -15,19 +12,10 @@ namespace vdb_shell
 class PolledStop
 {
 public:
-    explicit PolledStop(Interrupter* interrupter)
-        : interrupter_(interrupter), owner_(std::this_thread::get_id())
-    {
-    }
+    explicit PolledStop(Interrupter* interrupter) : latch_(interrupter) {}
 
     /// Whether what is left to do is to be left out. From any thread.
-    bool wanted() const
-    {
-        if (interrupter_ && !wanted_ && std::this_thread::get_id() == owner_ &&
-            interrupter_->wasInterrupted())
-            wanted_ = true;
-        return wanted_;
-    }
+    bool wanted() const { return latch_.wasInterrupted(); }
     /// After the loop, whose result is not whole then.
     void throw_if_wanted() const
     {
@@ -36,9 +24,7 @@ public:
     }
 
 private:
-    Interrupter* interrupter_;
-    std::thread::id owner_;
-    mutable std::atomic<bool> wanted_{false};
+    mutable LatchedInterrupter latch_;
 };
 
 } // namespace vdb_shell

@@ -5,7 +5,7 @@
 
 #include "field/mesh_distances.h"
 
-#include "field/latched_interrupter.h"
+#include "core/latched_interrupter.h"
 #include "vdb_shell/core/error.h"
 
 #include <openvdb/tools/MeshToVolume.h>

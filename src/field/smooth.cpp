@@ -7,10 +7,10 @@
 
 #include "vdb_shell/field/smooth.h"
 
+#include "core/latched_interrupter.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "field/field_sampler.h"
-#include "field/latched_interrupter.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 

@@ -10,16 +10,15 @@
 
 #include "core/parallel.h"
 #include "core/propose_in_blocks.h"
+#include "core/six_volumes.h"
 #include "growth/barrier.h"
 #include "growth/move_tests.h"
-#include "growth/prolongate.h"
 #include "growth/ray_hit.h"
 #include "growth/separation.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -43,14 +42,6 @@ struct Proposal {
     LinearBounds bounds;
     Vec3d step{0.0};
 };
-
-/// The gradient of a tet's volume6 in its corner k.
-Vec3d volume6_gradient(const std::array<Vec3d, 4>& p, std::size_t k)
-{
-    const Vec3d &q = p[(k + 1) % 4], &r = p[(k + 2) % 4], &t = p[(k + 3) % 4];
-    const Vec3d n = (r - q).cross(t - q);
-    return k % 2 == 0 ? -n : n;
-}
 
 bool has_common_corner(const GrowState& s, int f, int g)
 {
@@ -199,7 +190,7 @@ private:
             for (const OrientedTet& tet : tables().twelve) {
                 if (dropped(s_, f, tet.pillar))
                     continue;
-                std::array<Vec3d, 4> p;
+                TetCorners p;
                 for (std::size_t k = 0; k < 4; ++k)
                     p[k] = corner_of(s_, f, tet.corner[k]);
                 Vec3d slope(0.0);
@@ -207,7 +198,7 @@ private:
                     if (tet.corner[k] >= 3)
                         if (const double w = weight[s_.mesh->corner(f, tet.corner[k] - 3)]; w > 0)
                             slope += w * volume6_gradient(p, k);
-                const double volume = (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
+                const double volume = six_volumes(p);
                 const double steepness = slope.length();
                 if (steepness * out.ball.radius > kLeastLoss * volume && steepness > 0)
                     out.bounds.add_unit(Vec3s(slope / steepness), volume / steepness);
@@ -355,24 +346,6 @@ std::vector<Group> groups_of(const std::vector<GroupShare>& shares)
 }
 
 } // namespace
-
-std::vector<GroupShare> group_shares(const TriangleMesh& mesh, const TriangleMesh& coarse,
-                                     const MultilevelSchedule& schedule)
-{
-    // With less a vertex hardly moves, but costs as much.
-    constexpr double kLeastWeight = 0.05;
-    const std::vector<CoarsePoint> points = nearest_coarse_points(mesh, coarse, schedule);
-    std::vector<GroupShare> shares;
-    for (std::size_t v = 0; v < points.size(); ++v)
-        for (std::size_t k = 0; k < 3; ++k)
-            if (points[v].weight[k] > kLeastWeight)
-                shares.push_back(
-                    {static_cast<int>(coarse.triangles[points[v].triangle][static_cast<int>(k)]),
-                     static_cast<int>(v), points[v].weight[k]});
-    std::stable_sort(shares.begin(), shares.end(),
-                     [](const GroupShare& x, const GroupShare& y) { return x.group < y.group; });
-    return shares;
-}
 
 std::size_t move_groups(GrowState& s, const std::vector<GroupShare>& shares,
                         const StageProgress& progress)

@@ -2,25 +2,13 @@
 #pragma once
 
 #include "core/stage_progress.h"
+#include "growth/group_shares.h"
 #include "growth/grow_state.h"
-#include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <vector>
 
 namespace vdb_shell::growth
 {
-
-/// A vertex's part in the move of a group.
-struct GroupShare {
-    int group, vertex;
-    double weight; ///< of the group's move, from 0 to 1
-};
-
-/// By group, and in a group by vertex. The groups are the vertices of a coarser surface of about
-/// the same shape, and the weights the hat functions of its triangles: the coordinates of a
-/// vertex's nearest point on it.
-std::vector<GroupShare> group_shares(const TriangleMesh& mesh, const TriangleMesh& coarse,
-                                     const MultilevelSchedule& schedule);
 
 /// Moves the inner points of many vertices at once, group after group, each in the direction in
 /// which the volume inside the inner surface falls, as far as a barrier on the tets around the

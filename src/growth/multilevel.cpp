@@ -9,6 +9,7 @@
 
 #include "growth/multilevel.h"
 
+#include "growth/group_shares.h"
 #include "growth/initialise.h"
 #include "growth/mend_prolonged.h"
 #include "growth/move_groups.h"
@@ -100,11 +101,12 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
                                        const Directions& lines, const TriangleMesh& coarser,
                                        const std::vector<Vec3d>& coarser_inner, const LevelJob& job)
 {
-    const Pillars pillars =
-        prolonged_pillars(coarser, coarser_inner, mesh, lines,
-                          bends_towards(job.triangles, s.schedule), s.schedule.multilevel);
+    const MultilevelSchedule& schedule = s.schedule.multilevel;
+    const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarser, schedule);
+    const Pillars pillars = prolonged_pillars(coarser, coarser_inner, mesh, nearest, lines,
+                                              bends_towards(job.triangles, s.schedule), schedule);
     std::vector<double> lost = mend_prolonged(s, pillars.lines, pillars.length, job.progress);
-    move_groups(s, group_shares(mesh, coarser, s.schedule.multilevel), job.progress);
+    move_groups(s, group_shares(coarser, nearest), job.progress);
     return lost;
 }
 

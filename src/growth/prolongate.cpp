@@ -108,10 +108,9 @@ std::vector<CoarsePoint> nearest_coarse_points(const TriangleMesh& mesh, const T
 }
 
 Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
-                          const TriangleMesh& mesh, const Directions& lines, Bends bends,
-                          const MultilevelSchedule& schedule)
+                          const TriangleMesh& mesh, const std::vector<CoarsePoint>& nearest,
+                          const Directions& lines, Bends bends, const MultilevelSchedule& schedule)
 {
-    const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarse, schedule);
     std::vector<Vec3s> inner(mesh.points.size());
     for_each_index(inner.size(), [&](std::size_t v) {
         inner[v] = Vec3s(end_in_prism(coarse, coarse_inner, nearest[v]));

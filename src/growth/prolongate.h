@@ -47,7 +47,7 @@ std::vector<CoarsePoint> nearest_coarse_points(const TriangleMesh& mesh, const T
 /// poor visibility goes along the vertex's line instead, as far.
 Pillars prolonged_pillars(const TriangleMesh& coarse,
                           const std::vector<openvdb::Vec3d>& coarse_inner, const TriangleMesh& mesh,
-                          const Directions& lines, Bends bends,
-                          const MultilevelSchedule& schedule = {});
+                          const std::vector<CoarsePoint>& nearest, const Directions& lines,
+                          Bends bends, const MultilevelSchedule& schedule = {});
 
 } // namespace vdb_shell::growth

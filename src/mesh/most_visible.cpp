@@ -144,20 +144,11 @@ Vec3d inward(const Vec3d& apex, const exact::Side& side)
     return (Vec3d(side[1]) - apex).cross(Vec3d(side[0]) - apex);
 }
 
-/// Whether doubles show that d sees all sides; false tells nothing. d counts as given, so the
-/// differences and products are rounded as in an orientation, or less.
+/// Whether doubles show that d sees all sides; false tells nothing.
 bool surely_sees(const Vec3d& apex, const std::vector<exact::Side>& sides, const Vec3d& d)
 {
     return std::all_of(sides.begin(), sides.end(), [&](const exact::Side& side) {
-        const Vec3d u = Vec3d(side[1]) - apex, w = Vec3d(side[0]) - apex;
-        double det = 0, permanent = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-            const double left = u[a] * w[b], right = u[b] * w[a];
-            det += d[axis] * (left - right);
-            permanent += std::abs(d[axis]) * (std::abs(left) + std::abs(right));
-        }
-        return exact::certain_sign(det, permanent) > 0;
+        return exact::certain_triple_sign(d, Vec3d(side[1]) - apex, Vec3d(side[0]) - apex) > 0;
     });
 }
 

@@ -43,15 +43,8 @@ bool large_fan_surely_embedded(const std::vector<Vec3s>& points, std::size_t ape
     std::size_t rises = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3d u = spoke(i), w = spoke(i + 1);
-        double det = 0, permanent = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-            const double left = u[a] * w[b], right = u[b] * w[a];
-            det += sum[axis] * (left - right);
-            permanent += std::abs(sum[axis]) * (std::abs(left) + std::abs(right));
-        }
         // The margin of Fan::surely_embedded.
-        if (exact::certain_sign(det, permanent, 3 * exact::kOrientError) <= 0)
+        if (exact::certain_triple_sign(sum, u, w, 3 * exact::kOrientError) <= 0)
             return false;
         rises += below(u) && !below(w);
     }

@@ -13,6 +13,7 @@
 
 #include "core/box_pairs.h"
 #include "core/box_tree.h"
+#include "core/classes.h"
 #include "core/exact.h"
 #include "mesh/surface_defects.h"
 #include "mesh/triangle_area.h"
@@ -20,7 +21,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -98,14 +98,14 @@ public:
     Regions(const TriangleMesh& mesh, const std::vector<Group>& groups)
         : mesh_(mesh), groups_(groups), edges_(edges_of(groups)), region_(groups.size())
     {
-        std::iota(region_.begin(), region_.end(), 0U);
+        Classes classes(groups.size());
         for_each_edge(edges_, [&](std::size_t begin, std::size_t end) {
             if (end - begin == 2 && repeated(edges_[begin].group) &&
                 repeated(edges_[begin + 1].group))
-                join(edges_[begin].group, edges_[begin + 1].group);
+                classes.unite(edges_[begin].group, edges_[begin + 1].group);
         });
         for (std::uint32_t g = 0; g < groups_.size(); ++g)
-            region_[g] = root_of(g);
+            region_[g] = classes.first(g);
     }
 
     /// By region whether one of each triangle stays.
@@ -147,18 +147,6 @@ private:
     {
         return mesh_.triangles[groups_[g].triangles.front()];
     }
-    std::uint32_t root_of(std::uint32_t g)
-    {
-        while (region_[g] != g)
-            g = region_[g] = region_[region_[g]];
-        return g;
-    }
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = root_of(a), b = root_of(b);
-        region_[std::max(a, b)] = std::min(a, b);
-    }
-
     /// By region: the edges that need it to be even, less those that are even without it. An edge
     /// where a region has an even number of triangles, or nothing else is, tells nothing.
     std::vector<std::int64_t> count_votes() const

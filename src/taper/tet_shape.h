@@ -3,23 +3,17 @@
 
 // The shape of one tet as a function of one of its corners: what tapering minimises.
 
+#include "core/six_volumes.h"
 #include "core/symmetric.h"
 
 #include <openvdb/Types.h>
 
-#include <array>
 #include <cmath>
 
 namespace vdb_shell::taper
 {
 
 using openvdb::Vec3d;
-using TetCorners = std::array<Vec3d, 4>;
-
-inline double six_volumes(const TetCorners& p)
-{
-    return (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
-}
 
 inline double squared_edges(const TetCorners& p)
 {
@@ -43,14 +37,6 @@ inline double distortion_of_amips(double amips)
 inline double amips_of_distortion(double distortion)
 {
     return 3 * std::cbrt(distortion * distortion);
-}
-
-/// Gradient of six_volumes in corner `free`. A rotation of four corners by one is an odd
-/// permutation, hence the sign.
-inline Vec3d volume6_gradient(const TetCorners& p, std::size_t free)
-{
-    const Vec3d &q = p[(free + 1) % 4], &r = p[(free + 2) % 4], &t = p[(free + 3) % 4];
-    return (free % 2 == 0 ? -1.0 : 1.0) * (r - q).cross(t - q);
 }
 
 /// A power of the distortion: the larger, the more the worst tets count.

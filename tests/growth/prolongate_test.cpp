@@ -25,6 +25,11 @@ double fill_of(const PrismShell& shell)
                    signed_volume(shell.outer, shell.triangles);
 }
 
+std::vector<growth::CoarsePoint> nearest(const TriangleMesh& mesh, const TriangleMesh& coarse)
+{
+    return growth::nearest_coarse_points(mesh, coarse, MultilevelSchedule{});
+}
+
 TEST(Prolongate, PillarsEndWhereThoseOfTheCoarseShellDo)
 {
     // The coarse shell of a sphere ends at a third of its radius.
@@ -35,8 +40,8 @@ TEST(Prolongate, PillarsEndWhereThoseOfTheCoarseShellDo)
     Directions lines;
     lines.inward.assign(fine.points.size(), Vec3d(0.0));
     lines.visibility.assign(fine.points.size(), 0.7);
-    const growth::Pillars pillars =
-        growth::prolonged_pillars(coarse, inner, fine, lines, growth::Bends::kept);
+    const growth::Pillars pillars = growth::prolonged_pillars(
+        coarse, inner, fine, nearest(fine, coarse), lines, growth::Bends::kept);
     for (std::size_t v = 0; v < fine.points.size(); ++v) {
         const Vec3d end = Vec3d(fine.points[v]) + pillars.length[v] * pillars.lines.inward[v];
         // On a chord of the inner sphere, which lies up to 0.035 below its arc.
@@ -57,8 +62,8 @@ TEST(Prolongate, APillarThatWouldLeaveOnTheOuterSideGoesAlongTheLine)
     for (const Vec3s& p : sphere.points)
         lines.inward.push_back(-Vec3d(p).unit());
     lines.visibility.assign(sphere.points.size(), 1.0);
-    const growth::Pillars pillars =
-        growth::prolonged_pillars(sphere, outside, sphere, lines, growth::Bends::kept);
+    const growth::Pillars pillars = growth::prolonged_pillars(
+        sphere, outside, sphere, nearest(sphere, sphere), lines, growth::Bends::kept);
     for (std::size_t v = 0; v < sphere.points.size(); ++v) {
         EXPECT_EQ(pillars.lines.inward[v], lines.inward[v]);
         EXPECT_NEAR(pillars.length[v], 0.5, 1e-6);
@@ -79,7 +84,7 @@ TEST(Prolongate, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
     const auto tip = std::find(fine.points.begin(), fine.points.end(), coarse.points[0]);
     ASSERT_NE(tip, fine.points.end());
     const auto length = [&](growth::Bends bends) {
-        return growth::prolonged_pillars(coarse, inner, fine, lines, bends)
+        return growth::prolonged_pillars(coarse, inner, fine, nearest(fine, coarse), lines, bends)
             .length[std::size_t(tip - fine.points.begin())];
     };
     EXPECT_NEAR(length(growth::Bends::kept), 0.7, 1e-6);
