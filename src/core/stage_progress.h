@@ -32,6 +32,9 @@ public:
             throw Cancelled();
     }
 
+    /// For what asks it on its own (core/polled_stop.h); may be null.
+    Interrupter* interrupter() const { return interrupter_; }
+
 private:
     Interrupter* interrupter_;
 };

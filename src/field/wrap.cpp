@@ -89,7 +89,7 @@ openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
                                  const StageProgress& progress)
 {
     const WindingNumber winding(triangles);
-    WrapPieces pieces = sort_pieces(triangles, winding, progress);
+    WrapPieces pieces = sort_pieces(winding, progress);
     auto field = wrap_field(pieces, winding, options.sheet_voxels, progress);
     // A solid that is smaller than a voxel can slip between the voxel centres. As plates its
     // triangles cannot, so there always is a surface.

@@ -10,12 +10,14 @@
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
+#include "core/polled_stop.h"
 #include "field/mesh_distances.h"
 #include "resample/triangle_pieces.h"
 
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdb_shell
@@ -43,35 +45,68 @@ constexpr double kBandVoxels = 3.0;
 // Turns the fall of the winding number across a gap into a field about as steep as a distance.
 // Times 1 - kInsideWinding it is no less than the band, so closed solids reach their full depth.
 constexpr double kVoxelsPerTurn = 8.0;
+// How many pieces and voxels ask for the winding number together: with fewer the tree is walked
+// more often, with more less of it is far from all of them.
+constexpr std::size_t kPiecesAtOnce = 64;
+constexpr int kBlockSideLog = 2;
+constexpr std::size_t kBlockVoxels = std::size_t(1) << (3 * kBlockSideLog);
 
 enum class Part : char { boundary, sheet, interior };
 
-/// By how much the winding number is short of the inside, in turns; negative in the solid. The
+/// By how much a winding number is short of the inside, in turns; negative in the solid. The
 /// absolute value lets a component be inside out.
-double winding_field(const WindingNumber& winding, const Vec3d& point)
+double short_of_inside(float turns)
 {
-    return kInsideWinding - std::abs(winding.at(point));
+    return kInsideWinding - std::abs(double(turns));
 }
 
-Part part_of(const TriangleCorners& piece, const WindingNumber& winding)
+/// A piece's middle and unit normal; without area it has none, and no sides to look at.
+struct Stance {
+    Vec3d centre, normal;
+    bool has_sides;
+    /// 1 or -1 where just one side is inside the solid: which one, along the normal.
+    int inner_side = 0;
+};
+
+Stance stance_of(const TriangleCorners& piece)
 {
-    Vec3d normal = (piece[1] - piece[0]).cross(piece[2] - piece[0]);
-    // A piece without area has no sides to look at. As a sheet it at least leaves a trace.
-    if (!normal.normalize())
-        return Part::sheet;
-    const Vec3d centre = (piece[0] + piece[1] + piece[2]) / 3.0;
-    const auto inside = [&](double offset) {
-        return winding_field(winding, centre + offset * normal) < 0;
-    };
-    const auto surely_inside = [&](double offset) {
-        return winding_field(winding, centre + offset * normal) < kInsideWinding - kSureWinding;
-    };
-    const bool above = inside(kBesideVoxels), below = inside(-kBesideVoxels);
-    if (above && below)
-        return Part::interior;
-    if (above)
-        return surely_inside(kSolidVoxels) ? Part::boundary : Part::sheet;
-    return below && surely_inside(-kSolidVoxels) ? Part::boundary : Part::sheet;
+    Stance stance{(piece[0] + piece[1] + piece[2]) / 3.0,
+                  (piece[1] - piece[0]).cross(piece[2] - piece[0]), true};
+    stance.has_sides = stance.normal.normalize();
+    return stance;
+}
+
+/// What a run of pieces is, which stand near each other: first just above and below each, then
+/// where only one side is inside, at the depth at which a solid is one.
+void sort_run(const TriangleCorners* pieces, std::size_t count, const WindingNumber& winding,
+              Part* parts)
+{
+    std::array<Stance, kPiecesAtOnce> stances;
+    std::array<Vec3d, 2 * kPiecesAtOnce> points;
+    std::array<float, 2 * kPiecesAtOnce> turns{};
+    for (std::size_t i = 0; i < count; ++i) {
+        stances[i] = stance_of(pieces[i]);
+        points[2 * i] = stances[i].centre + kBesideVoxels * stances[i].normal;
+        points[2 * i + 1] = stances[i].centre - kBesideVoxels * stances[i].normal;
+    }
+    winding.around(points.data(), 2 * count, turns.data());
+    std::size_t deep = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool above = short_of_inside(turns[2 * i]) < 0;
+        const bool below = short_of_inside(turns[2 * i + 1]) < 0;
+        parts[i] = above && below && stances[i].has_sides ? Part::interior : Part::sheet;
+        if (above == below || !stances[i].has_sides)
+            continue; // without area it leaves a trace as a sheet
+        stances[i].inner_side = above ? 1 : -1;
+        points[deep++] =
+            stances[i].centre + stances[i].inner_side * kSolidVoxels * stances[i].normal;
+    }
+    winding.around(points.data(), deep, turns.data());
+    deep = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        if (stances[i].inner_side != 0 &&
+            short_of_inside(turns[deep++]) < kInsideWinding - kSureWinding)
+            parts[i] = Part::boundary;
 }
 
 /// A large triangle may bound the solid in one part and stick out of it in another, so it is judged
@@ -106,8 +141,8 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
                               nullptr);
 }
 
-/// The parts of the field at a voxel. An accessor must not be shared, so each range of voxels has
-/// an object of its own.
+/// The parts of the field at voxels. An accessor must not be shared, so each range of voxels has an
+/// object of its own.
 class FieldValues
 {
 public:
@@ -118,9 +153,20 @@ public:
     {
     }
 
-    float at(const Coord& voxel)
+    /// At voxels of one block.
+    void at(const Coord* voxels, std::size_t count, float* values)
     {
-        const double turns = winding_field(winding_, voxel.asVec3d());
+        std::array<Vec3d, kBlockVoxels> points;
+        for (std::size_t i = 0; i < count; ++i)
+            points[i] = voxels[i].asVec3d();
+        winding_.around(points.data(), count, values);
+        for (std::size_t i = 0; i < count; ++i)
+            values[i] = value(voxels[i], short_of_inside(values[i]));
+    }
+
+private:
+    float value(const Coord& voxel, double turns)
+    {
         // On a triangle that bounds a solid the winding number jumps and the distance is 0. In a
         // gap the distance is not small, but the winding number passes its threshold continuously.
         // So the smaller of both has its zero set on the triangles and across the gaps.
@@ -130,7 +176,6 @@ public:
         return static_cast<float>(std::min(solid, double(sheet_.getValue(voxel)) - sheet_voxels_));
     }
 
-private:
     openvdb::FloatGrid::ConstAccessor boundary_, sheet_;
     const WindingNumber& winding_;
     double sheet_voxels_;
@@ -145,11 +190,30 @@ template <typename Visit> void for_each_neighbour(const Coord& voxel, const Visi
                     visit(voxel.offsetBy(i, j, k));
 }
 
+Coord block_of(const Coord& voxel)
+{
+    return voxel >> kBlockSideLog;
+}
+
+/// By block, and in a block by coordinate: the order does not depend on how the voxels were found.
 void sort_and_unite(std::vector<Coord>& voxels)
 {
-    // Sorted, the order does not depend on how the voxels were found.
-    std::sort(voxels.begin(), voxels.end());
+    std::sort(voxels.begin(), voxels.end(), [](const Coord& a, const Coord& b) {
+        const Coord block_a = block_of(a), block_b = block_of(b);
+        return block_a == block_b ? a < b : block_a < block_b;
+    });
     voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+}
+
+/// Where each block begins in sorted voxels, and their number.
+std::vector<std::size_t> block_begins(const std::vector<Coord>& voxels)
+{
+    std::vector<std::size_t> begins;
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+        if (i == 0 || block_of(voxels[i]) != block_of(voxels[i - 1]))
+            begins.push_back(i);
+    begins.push_back(voxels.size());
+    return begins;
 }
 
 std::vector<Coord> band_voxels(const openvdb::FloatGrid& boundary, const openvdb::FloatGrid& sheet)
@@ -193,12 +257,18 @@ std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
 
 } // namespace
 
-WrapPieces sort_pieces(const std::vector<TriangleCorners>& triangles, const WindingNumber& winding,
-                       const StageProgress& progress)
+WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progress)
 {
-    const std::vector<TriangleCorners> all = cut_up(triangles);
+    const std::vector<TriangleCorners> all = cut_up(winding.triangles());
     std::vector<Part> parts(all.size());
-    for_each_index(all.size(), [&](std::size_t i) { parts[i] = part_of(all[i], winding); });
+    const PolledStop stop(progress.interrupter());
+    for_each_index((all.size() + kPiecesAtOnce - 1) / kPiecesAtOnce, [&](std::size_t run) {
+        if (stop.wanted())
+            return;
+        const std::size_t begin = run * kPiecesAtOnce;
+        sort_run(&all[begin], std::min(kPiecesAtOnce, all.size() - begin), winding, &parts[begin]);
+    });
+    stop.throw_if_wanted();
     progress.stop_if_interrupted(20);
     WrapPieces pieces;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -237,14 +307,17 @@ openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber
     // ends on triangles only. Followed from their band, no part of it is missed. Each pass computes
     // voxels that had no value before, so the loop ends when the surface is closed.
     std::vector<Coord> fresh = band_voxels(*boundary, *sheet);
+    const PolledStop stop(progress.interrupter());
     while (!fresh.empty()) {
         progress.stop_if_interrupted(50);
         std::vector<float> computed(fresh.size());
-        for_each_range(fresh.size(), [&](std::size_t begin, std::size_t end) {
-            FieldValues at(*boundary, *sheet, winding, sheet_voxels);
-            for (std::size_t i = begin; i < end; ++i)
-                computed[i] = at.at(fresh[i]);
+        const std::vector<std::size_t> begins = block_begins(fresh);
+        for_each_range(begins.size() - 1, [&](std::size_t begin, std::size_t end) {
+            FieldValues values_at(*boundary, *sheet, winding, sheet_voxels);
+            for (std::size_t b = begin; b < end && !stop.wanted(); ++b)
+                values_at.at(&fresh[begins[b]], begins[b + 1] - begins[b], &computed[begins[b]]);
         });
+        stop.throw_if_wanted();
         for (std::size_t i = 0; i < fresh.size(); ++i)
             values.setValue(fresh[i], computed[i]);
         fresh = beyond_sign_changes(fresh, *field);

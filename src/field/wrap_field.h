@@ -17,8 +17,7 @@ struct WrapPieces {
     std::vector<TriangleCorners> boundary, sheet;
     double boundary_area = 0, sheet_area = 0, interior_area = 0;
 };
-WrapPieces sort_pieces(const std::vector<TriangleCorners>& triangles, const WindingNumber& winding,
-                       const StageProgress& progress);
+WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progress);
 
 /// Takes all pieces for sheets: what is left when no voxel is inside otherwise.
 WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles);

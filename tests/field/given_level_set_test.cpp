@@ -85,8 +85,7 @@ TEST_F(GivenLevelSet, AmbiguousMissingAndWrongGridsAreRefusedByName)
     const auto a = sphere_field(0.3), b = a->deepCopy();
     a->setName("hull");
     b->setName("core");
-    auto vectors = openvdb::Vec3SGrid::create();
-    vectors->setName("velocity");
+    const auto vectors = empty_grid("vec3s", "velocity");
     const auto path = write({a, b, vectors});
     expect_refusal<ReadError>(path, "", {"in.vdb", "2 float level sets", "hull", "core"});
     expect_refusal<ReadError>(path, "shell", {"in.vdb", "no grid \"shell\"", "hull"});

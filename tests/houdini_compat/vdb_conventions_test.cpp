@@ -48,7 +48,7 @@ PointDataGrid::Ptr make_points(const char* name)
 /// Grids that keep every rule, and so does the file's metadata.
 struct Scene {
     FloatGrid::Ptr surface, density;
-    Vec3SGrid::Ptr velocity;
+    GridBase::Ptr velocity;
     PointDataGrid::Ptr points, more_points;
     GridPtrVec extra;
     MetaMap metadata;
@@ -66,8 +66,7 @@ struct Scene {
         density->setGridClass(GRID_FOG_VOLUME);
         density->setSaveFloatAsHalf(true);
         density->tree().setValue(Coord(1, 2, 3), 65504.0f);
-        velocity = Vec3SGrid::create();
-        velocity->setName("v");
+        velocity = empty_grid("vec3s", "v");
         velocity->setGridClass(GRID_STAGGERED);
         velocity->setVectorType(VEC_CONTRAVARIANT_RELATIVE);
         velocity->insertMeta("gravity", Vec3SMetadata(Vec3s(0, -9.81f, 0)));
@@ -90,13 +89,6 @@ struct Wrong {
     std::function<void(Scene&)> change;
 };
 
-template <typename Grid> typename Grid::Ptr named(const char* name)
-{
-    auto grid = Grid::create();
-    grid->setName(name);
-    return grid;
-}
-
 Metadata::Ptr half_vector()
 {
     // Of a type that no table of Houdini has.
@@ -115,12 +107,12 @@ std::vector<Wrong> wrong_names_and_classes()
         {"unique-name", "points", "", [](Scene& s) { s.more_points->setName("points"); }},
         {"name-for-class", "surface", "", [](Scene& s) { s.surface->setGridClass(GRID_UNKNOWN); }},
         {"name-for-class", "density", "", [](Scene& s) { s.density->setGridClass(GRID_UNKNOWN); }},
-        {"type", "inside", "", [](Scene& s) { s.extra.push_back(named<MaskGrid>("inside")); }},
+        {"type", "inside", "", [](Scene& s) { s.extra.push_back(empty_grid("mask", "inside")); }},
         {"class", "v", "class",
          [](Scene& s) { s.velocity->insertMeta("class", StringMetadata("Staggered")); }},
         {"level-set", "whole", "",
          [](Scene& s) {
-             s.extra.push_back(named<Int32Grid>("whole"));
+             s.extra.push_back(empty_grid("int32", "whole"));
              s.extra[0]->setGridClass(GRID_LEVEL_SET);
          }},
         {"level-set", "surface", "",
@@ -134,12 +126,12 @@ std::vector<Wrong> wrong_names_and_classes()
          [](Scene& s) { s.density->tree().root().setBackground(1.0f, false); }},
         {"fog-volume", "whole", "",
          [](Scene& s) {
-             s.extra.push_back(named<BoolGrid>("whole"));
+             s.extra.push_back(empty_grid("bool", "whole"));
              s.extra[0]->setGridClass(GRID_FOG_VOLUME);
          }},
         {"staggered", "speed", "",
          [](Scene& s) {
-             s.extra.push_back(named<FloatGrid>("speed"));
+             s.extra.push_back(empty_grid("float", "speed"));
              s.extra[0]->setGridClass(GRID_STAGGERED);
          }},
         {"vector-type", "surface", "vector_type",
@@ -149,12 +141,12 @@ std::vector<Wrong> wrong_names_and_classes()
         {"vector-meaning", "v", "vector_type",
          [](Scene& s) { s.velocity->setVectorType(VEC_COVARIANT); }},
         {"vector-meaning", "gradient", "vector_type",
-         [](Scene& s) { s.extra.push_back(named<Vec3DGrid>("gradient")); }},
+         [](Scene& s) { s.extra.push_back(empty_grid("vec3d", "gradient")); }},
         {"vector-meaning", "N", "vector_type",
-         [](Scene& s) { s.extra.push_back(named<Vec3SGrid>("N")); }},
+         [](Scene& s) { s.extra.push_back(empty_grid("vec3s", "N")); }},
         {"half", "whole", "is_saved_as_half_float",
          [](Scene& s) {
-             s.extra.push_back(named<Int32Grid>("whole"));
+             s.extra.push_back(empty_grid("int32", "whole"));
              s.extra[0]->setSaveFloatAsHalf(true);
          }},
         {"half-range", "density", "is_saved_as_half_float",

@@ -28,6 +28,14 @@ openvdb::FloatGrid::Ptr sphere_field(double depth)
     return mesh_to_level_set(icosphere(1.0, 3), options);
 }
 
+openvdb::GridBase::Ptr empty_grid(const std::string& value_type, const std::string& name)
+{
+    openvdb::initialize();
+    const auto grid = openvdb::GridBase::createGrid("Tree_" + value_type + "_5_4_3");
+    grid->setName(name);
+    return grid;
+}
+
 openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,
                                                double voxel_size)
 {

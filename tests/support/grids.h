@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-#include <openvdb/points/PointDataGrid.h>
+#include "core/grid_instances.h"
+#include "write/point_grid_instances.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-// OpenVDB's templates that tests make grids with, compiled once: each takes half a minute.
+// OpenVDB's templates that tests make grids with, compiled once: each takes half a minute. The same
+// goes for Grid<>::create() of any type but float, so other grids come from OpenVDB's registry.
 
 namespace vdb_shell::test
 {
@@ -18,6 +19,9 @@ openvdb::FloatGrid::Ptr sphere_level_set(float radius, float voxel_size);
 
 /// A unit sphere's level set of voxels of 0.05 named "surface", with values down to that depth.
 openvdb::FloatGrid::Ptr sphere_field(double depth);
+
+/// An empty grid of those values, named as OpenVDB's trees name them: "vec3s", "int32", "mask".
+openvdb::GridBase::Ptr empty_grid(const std::string& value_type, const std::string& name);
 
 /// A grid of points with exact positions, in voxels of that size.
 openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,

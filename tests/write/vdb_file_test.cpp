@@ -3,6 +3,7 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include "support/files.h"
+#include "support/grids.h"
 #include "support/shapes.h"
 #include "write/hand_made.h"
 
@@ -298,8 +299,7 @@ TEST(ReadFloatGrid, FindsByNameOrAlone)
     one->setName("thickness");
     one->tree().setValueOn({1, 2, 3}, 0.5f);
     one->setSaveFloatAsHalf(true);
-    const auto other = openvdb::DoubleGrid::create(1.0);
-    other->setName("precise");
+    const auto other = test::empty_grid("double", "precise");
     openvdb::io::File((folder / "t.vdb").string()).write(openvdb::GridPtrVec{one, other});
     EXPECT_EQ(read_float_grid(folder / "t.vdb", "")->tree().getValue({1, 2, 3}), 0.5f);
     EXPECT_EQ(read_float_grid(folder / "t.vdb", "thickness")->background(), 0.25f);
