@@ -77,7 +77,8 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     GrowResult result;
     GrowReport& report = result.report;
     Started started = start_growth(s, mesh, directions, stepped, start, options, progress);
-    report.released += static_cast<std::size_t>(release_pins(s, started.lines.visibility));
+    report.released += static_cast<std::size_t>(
+        release_pins(s, started.lines.visibility, PillarsBesidePin::shortened));
     // A prolonged shell has left the lines.
     if (started.from == StartedFrom::lines)
         lengthen_if_useful(s, started.lines, options, progress);

@@ -6,10 +6,13 @@
 namespace vdb_shell::growth
 {
 
+/// What may be done to the pillars beside a pinned vertex that they leave no direction.
+enum class PillarsBesidePin { kept, shortened };
+
 /// Gives pinned vertices a pillar again where the exact tests allow one: a start that is thin may
 /// have been lost in the rounding of the coordinates, or neighbours in the way have moved. In the
 /// order of the indices, each vertex tried a bounded number of times. Returns how many were
 /// released. Precondition: the inner tree has been built; its boxes are left as this needs them.
-int release_pins(GrowState& s, const std::vector<double>& visibility);
+int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBesidePin beside);
 
 } // namespace vdb_shell::growth

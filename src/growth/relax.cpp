@@ -215,7 +215,8 @@ void relax(GrowState& s, const std::vector<double>& visibility, const GrowOption
         progress.stop_if_interrupted(100 * round / relax_options.most_rounds);
         // Ever more seldom: a pin that cannot go now will hardly be able to in the next round.
         if (is_power_of_two_or_zero(round))
-            report.released += static_cast<std::size_t>(release_pins(s, visibility));
+            report.released +=
+                static_cast<std::size_t>(release_pins(s, visibility, PillarsBesidePin::kept));
         if (!relaxation.round(report))
             break;
     }

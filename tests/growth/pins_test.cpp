@@ -5,12 +5,14 @@
 #include "growth/initialise.h"
 #include "growth/move_tests.h"
 #include "growth/predicates.h"
+#include "growth/violations.h"
 #include "support/shapes.h"
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/step/directions.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -18,6 +20,24 @@ namespace
 {
 
 using namespace vdb_shell;
+
+/// Whether inner triangle f meets no other.
+bool clear(const growth::GrowState& s, int f)
+{
+    const growth::InnerTriangle triangle(s, f);
+    for (int g = 0; g < s.mesh->face_count(); ++g)
+        if (triangle.meets_outer(g) || (g != f && triangle.meets_inner(g)))
+            return false;
+    return true;
+}
+
+void expect_valid(const growth::GrowState& s)
+{
+    for (int f = 0; f < s.mesh->face_count(); ++f) {
+        EXPECT_TRUE(growth::prism_valid(s, f)) << f;
+        EXPECT_TRUE(clear(s, f)) << f;
+    }
+}
 
 TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
 {
@@ -33,16 +53,79 @@ TEST(Pins, AreReleasedWhereTheExactTestsAllowItAndNotWithoutVisibility)
         s.pinned[v] = 1;
         s.b[v] = s.a[v];
     }
-    EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0)), 0);
-    EXPECT_EQ(growth::release_pins(s, directions.visibility), 3);
-    for (int f = 0; f < mesh.face_count(); ++f) {
-        EXPECT_TRUE(growth::prism_valid(s, f));
-        const growth::InnerTriangle triangle(s, f);
-        for (int g = 0; g < mesh.face_count(); ++g)
-            EXPECT_FALSE(triangle.meets_outer(g) || (g != f && triangle.meets_inner(g)));
-    }
+    EXPECT_EQ(growth::release_pins(s, std::vector<double>(s.b.size(), 0.0),
+                                   growth::PillarsBesidePin::shortened),
+              0);
+    EXPECT_EQ(growth::release_pins(s, directions.visibility, growth::PillarsBesidePin::kept), 3);
+    expect_valid(s);
     for (const int v : {0, 1, 11})
         EXPECT_NE(s.b[v], s.a[v]);
+}
+
+// A vertex of a scanned hammer and two rings around it, as growth came upon it: the surface leaves
+// vertex 4 a direction, the long pillars beside it none. Vertex 6 is pinned as well.
+TEST(Pins, AreReleasedByShorteningThePillarsThatLeaveNoDirection)
+{
+    TriangleMesh patch;
+    patch.points = {
+        {-0.0666489974f, 0.240922004f, 1.31606603f}, {-0.0423990004f, 0.240054995f, 1.30983305f},
+        {-0.0247179996f, 0.241646007f, 1.31958795f}, {-0.0209129993f, 0.239775002f, 1.31107402f},
+        {-0.0335180014f, 0.242434993f, 1.32223797f}, {-0.0113779996f, 0.241573006f, 1.32670796f},
+        {-0.0542830005f, 0.242008001f, 1.32983696f}, {-0.0298629999f, 0.246963993f, 1.33577204f},
+        {-0.0230119992f, 0.246375993f, 1.33394301f}, {-0.00540400017f, 0.240300998f, 1.33795798f},
+        {-0.0443800017f, 0.243808001f, 1.33604205f}, {-0.0600030012f, 0.242327005f, 1.34311497f},
+        {-0.0221040007f, 0.246757001f, 1.338817f},   {-0.0319069996f, 0.245669007f, 1.34502494f},
+        {-0.0747530013f, 0.241707996f, 1.34364104f}, {-0.0478189997f, 0.243189007f, 1.34683204f}};
+    patch.triangles = {{3, 1, 2},   {2, 1, 6},    {6, 4, 2},    {5, 3, 2},   {1, 0, 6},
+                       {5, 2, 8},   {4, 6, 10},   {8, 4, 7},    {2, 4, 8},   {14, 6, 0},
+                       {10, 7, 4},  {8, 9, 5},    {10, 6, 11},  {7, 12, 8},  {9, 8, 12},
+                       {6, 14, 11}, {15, 10, 11}, {13, 10, 15}, {7, 10, 13}, {12, 7, 13}};
+    const std::vector<openvdb::Vec3s> inner = {{-0.0668844208f, 0.188681379f, 1.31690311f},
+                                               {-0.0451119095f, 0.229998216f, 1.3125999f},
+                                               {-0.0252777189f, 0.241342768f, 1.32036197f},
+                                               {-0.0633692592f, 0.0908759758f, 1.30123305f},
+                                               {-0.0335180014f, 0.242434993f, 1.32223797f},
+                                               {-0.0194509886f, 0.218504205f, 1.32542336f},
+                                               {-0.0542830005f, 0.242008001f, 1.32983696f},
+                                               {-0.0308174379f, 0.242812514f, 1.33524466f},
+                                               {-0.0234992094f, 0.244435355f, 1.33373368f},
+                                               {-0.0693478584f, 0.0368232317f, 1.33616006f},
+                                               {-0.0466065519f, 0.233885199f, 1.33468521f},
+                                               {-0.0713027716f, 0.178802997f, 1.34000468f},
+                                               {-0.0853439793f, 0.0178102143f, 1.33877361f},
+                                               {-0.08753784f, 0.0181829277f, 1.34142542f},
+                                               {-0.0779920369f, 0.222780228f, 1.34203458f},
+                                               {-0.0916419849f, 0.00921160448f, 1.33990109f}};
+    const Directions directions = directions_along(patch, pseudo_normals(patch));
+    const growth::Connectivity mesh = growth::connect(patch.points.size(), patch.triangles);
+    const std::vector<double> cap(patch.points.size(), std::numeric_limits<double>::infinity());
+    growth::GrowState s = growth::make_state(mesh, patch.points, cap);
+    s.b.assign(inner.begin(), inner.end());
+    s.pinned[4] = s.pinned[6] = 1;
+    std::vector<double> visibility(s.b.size(), 0.0);
+    visibility[4] = directions.visibility[4];
+    ASSERT_GT(visibility[4], 0.1);
+    // It builds the tree of the inner triangles.
+    const auto bad =
+        growth::violating_faces(s, std::vector<std::uint8_t>(patch.triangles.size(), 1), true);
+    EXPECT_EQ(std::count(bad.begin(), bad.end(), 1), 0);
+    const std::vector<openvdb::Vec3d> before = s.b;
+    EXPECT_EQ(growth::release_pins(s, visibility, growth::PillarsBesidePin::kept), 0);
+    EXPECT_EQ(s.b, before) << "a release that fails changes nothing";
+    EXPECT_NE(s.pinned[4], 0);
+    EXPECT_EQ(growth::release_pins(s, visibility, growth::PillarsBesidePin::shortened), 1);
+    EXPECT_NE(s.b[4], s.a[4]);
+    expect_valid(s);
+    // Only the pillars beside it may have changed, each to a half of a half of what it was.
+    for (int u = 0; u < mesh.vertices; ++u) {
+        const openvdb::Vec3d was = before[u] - s.a[u], now = s.b[u] - s.a[u];
+        if (u != 4 && s.b[u] != before[u]) {
+            const auto beside = growth::neighbours(mesh, 4);
+            EXPECT_NE(std::find(beside.begin(), beside.end(), u), beside.end());
+            EXPECT_NEAR(was.cross(now).length(), 0, 1e-5 * was.length());
+            EXPECT_LT(now.length(), 0.51 * was.length());
+        }
+    }
 }
 
 } // namespace
