@@ -32,6 +32,7 @@ def arguments():
     parser.add_argument("--turn", type=float, default=20, help="degrees around the upright axis")
     parser.add_argument("--size", type=int, default=240, help="pixels of a picture's side")
     parser.add_argument("--samples", type=int, default=16)
+    parser.add_argument("--levels", type=int, default=255, help="of each colour in the sheet; 20 make a small file")
     return parser.parse_args(own)
 
 
@@ -142,9 +143,10 @@ def pixels(picture):
     return np.array(image.pixels[:]).reshape(height, width, 4)
 
 
-def write_sheet(path, rows):
+def write_sheet(path, rows, levels):
     # Blender's rows of pixels run upwards.
     whole = np.concatenate([np.concatenate([pixels(p) for p in row], 1) for row in reversed(rows)], 0)
+    whole = np.round(whole * levels) / levels
     sheet = bpy.data.images.new("sheet", whole.shape[1], whole.shape[0])
     sheet.pixels = whole.ravel().tolist()
     sheet.filepath_raw, sheet.file_format = str(pathlib.Path(path).resolve()), "PNG"
@@ -167,7 +169,7 @@ def main():
         sign.body = options.names[number] if number < len(options.names) else folder.name
         pictures = {i: render(frame, placing, skin) for i, frame in enumerate(frames) if options.all or i in shown}
         rows.append([pictures[i] for i in sorted(shown)])
-    write_sheet(options.sheet, rows)
+    write_sheet(options.sheet, rows, options.levels)
     print(f"sheet: {len(rows)} rows of {len(rows[0])} pictures")
 
 
