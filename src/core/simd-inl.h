@@ -273,6 +273,17 @@ using Integers = Group<std::int32_t, kLanes>;
 using FloatPoint = std::array<Floats, 3>;   ///< by axis
 using DoublePoint = std::array<Doubles, 3>; ///< by axis
 
+template <class Lanes>
+HWY_INLINE Lanes dot(const std::array<Lanes, 3>& a, const std::array<Lanes, 3>& b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class Lanes>
+HWY_INLINE std::array<Lanes, 3> cross(const std::array<Lanes, 3>& a, const std::array<Lanes, 3>& b)
+{
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 template <class T, std::size_t N> HWY_INLINE void lower_to(Group<T, N>& least, Group<T, N> other)
 {
     least = lesser(other, least);

@@ -28,11 +28,6 @@ namespace
 
 using namespace simd::HWY_NAMESPACE;
 
-HWY_INLINE Floats dot(const FloatPoint& a, const FloatPoint& b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 HWY_INLINE FloatPoint to(const std::array<float, 3>& a, const FloatPoint& from)
 {
     return {Floats(a[0]) - from[0], Floats(a[1]) - from[1], Floats(a[2]) - from[2]};
@@ -49,9 +44,7 @@ HWY_INLINE void add(const NearTriangle& triangle, const FloatPoint& p, HalfAngle
     const FloatPoint a = to(triangle[0], p), b = to(triangle[1], p), c = to(triangle[2], p);
     const Floats la = square_root(dot(a, a)), lb = square_root(dot(b, b)),
                  lc = square_root(dot(c, c));
-    const FloatPoint cross{b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2],
-                           b[0] * c[1] - b[1] * c[0]};
-    const Floats y = dot(a, cross);
+    const Floats y = dot(a, cross(b, c));
     const Floats x = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
     // In the triangle's plane the angle is 0, and on the triangle itself the mean of both sides.
     const auto flat = absolute(y) <= zero;

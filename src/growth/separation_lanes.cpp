@@ -38,17 +38,6 @@ constexpr float kClose = 0.004F, kErrorOfRoom = 1e-5F;
 // Of the squared sine between two edges: below it only their ends are looked at.
 constexpr float kParallel = 1e-3F;
 
-template <class Lanes>
-HWY_INLINE Lanes dot(const std::array<Lanes, 3>& a, const std::array<Lanes, 3>& b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-HWY_INLINE FloatPoint cross(const FloatPoint& a, const FloatPoint& b)
-{
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 HWY_INLINE FloatPoint difference(const FloatPoint& a, const FloatPoint& b)
 {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
