@@ -14,6 +14,7 @@
 #include "vdb_shell/write/shell_points.h"
 
 #include "core_columns.h"
+#include "geometry_digest.h"
 #include "shell_names.h"
 
 #include <nlohmann/json.hpp>
@@ -385,17 +386,14 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     add_primitive_attributes(file, parts, geometry);
     add_primitive_groups(file, parts, geometry);
     add_detail(file, geometry);
+    // Last, for they are of all that is there.
+    add_text(geometry, kDigests, digests_of(geometry));
     return geometry;
 }
 
 void write_shell_geometry(const std::filesystem::path& path, const ShellFile& file, OutputSet* with)
 {
     write_geometry(path, shell_geometry(file), with);
-}
-
-ShellFile read_shell_geometry(const std::filesystem::path& path)
-{
-    return shell_of_geometry(read_geometry(path).geometry, path.string());
 }
 
 } // namespace vdb_shell::houdini

@@ -7,10 +7,12 @@
 // written. Whether the shell is valid is not tested here; `check` certifies it afresh.
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/write/shell_points.h"
 
 #include "core_columns.h"
+#include "geometry_digest.h"
 #include "shell_columns.h"
 
 #include <cmath>
@@ -281,7 +283,14 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
         refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
                          detail.text(kChecksum));
     file.core_feet = read_core_attributes(geometry, points, file.stack, name);
+    // After the others, whose messages say more.
+    file.digests = require_digests(geometry, name);
     return file;
+}
+
+ShellFile read_shell_geometry(const std::filesystem::path& path)
+{
+    return shell_of_geometry(read_geometry(path).geometry, path.string());
 }
 
 } // namespace vdb_shell::houdini

@@ -55,6 +55,16 @@ nlohmann::ordered_json stored_json(const std::filesystem::path& path, const char
     }
 }
 
+/// What reading has held against the file's own digests, and what it has not looked at.
+void print_checks(const ShellFile& file)
+{
+    if (file.digests > 0)
+        std::cout << "  checked: " << file.digests << " digests of its parts hold\n";
+    else
+        std::cout << "  it has no digests of its parts\n";
+    std::cout << "  not checked: certificate and figures (vdb_shell check)\n";
+}
+
 void print_grid(const openvdb::FloatGrid& grid)
 {
     std::cout << "  " << grid.getName() << ": "
@@ -109,6 +119,7 @@ int run_info(const FileArguments& arguments)
     for (const openvdb::FloatGrid::Ptr& grid : {file.surface, file.depth})
         if (grid)
             print_grid(*grid);
+    print_checks(file);
     std::cout << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
     return success;
 }

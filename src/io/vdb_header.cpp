@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Walks the outer form of a .vdb file, header, metadata and the table of grids, before OpenVDB gets
-// to read it, because OpenVDB does not notice a file that ends too early. No length is believed:
-// each is held against what is left of the file, so no memory is taken by a damaged number, and
-// each turn of a loop reads at least some bytes, so that a wrong count ends at the end of the file.
-// Grids are skipped, not read; the time does not depend on their size. Numbers are in the byte
-// order of the machine, as OpenVDB writes them. Trap: what is inside a grid may still be damaged.
+// Walks all bytes of a .vdb that OpenVDB is going to decode, before it does, for OpenVDB 10 trusts
+// what it reads: it notices neither the end of a file nor a length that does not fit
+// (docs/security.md has the argument why what passes is safe). No length is believed: each is held
+// against what is left of the file, so no memory is taken by a damaged number, and each turn of a
+// loop reads at least some bytes, so that a wrong count ends at the end of the file. Grids of other
+// types than floats and points are skipped behind their transform; nothing decodes them. Trap: this
+// has to read exactly what OpenVDB reads, no more and no less.
 
 #include "vdb_shell/io/vdb_header.h"
 
-#include "vdb_shell/core/error.h"
+#include "io/vdb_seal.h"
+#include "io/vdb_walk.h"
+#include "vdb_shell/io/read_file.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
+#include <openvdb/io/Compression.h>
+#include <openvdb/openvdb.h>
+
 #include <string>
-#include <system_error>
 
 namespace vdb_shell
 {
@@ -26,122 +26,17 @@ namespace
 
 namespace fs = std::filesystem;
 
-// Before version 222 voxels were compressed in another way.
+// Before version 222 voxels were compressed in another way; before 224 points were stored in
+// another.
 constexpr std::int64_t kMagic = 0x56444220;
-constexpr std::uint32_t kOldestVersion = 222, kNewestVersion = 224;
+constexpr std::uint32_t kOldestVersion = 222, kNewestVersion = 224, kPointsVersion = 224;
 constexpr std::uint64_t kUuidLength = 36;
+constexpr const char* kFloats = "Tree_float_5_4_3";
+constexpr const char* kPoints = "Tree_ptdataidx32_5_4_3";
+constexpr std::string_view kHalfMark = "_HalfFloat";
 
-/// A file being walked; every read is held against what is left of it.
-class Walk
+std::uint32_t walk_header(VdbCursor& walk)
 {
-public:
-    explicit Walk(const fs::path& path) : name_(path.string())
-    {
-        std::error_code error;
-        const fs::file_status status = fs::status(path, error);
-        if (!fs::exists(status))
-            fail("there is no such file");
-        if (!fs::is_regular_file(status))
-            fail("it is not a regular file");
-        size_ = fs::file_size(path, error);
-        stream_.open(path, std::ios::binary);
-        if (error || !stream_)
-            fail(std::string("cannot be opened: ") + std::strerror(errno));
-    }
-
-    template <typename T> T number(const char* what)
-    {
-        T value{};
-        need(sizeof value, what);
-        stream_.read(reinterpret_cast<char*>(&value), sizeof value);
-        at_ += sizeof value;
-        return value;
-    }
-
-    /// A length followed by that many bytes; only short ones are kept.
-    std::string text(const char* what)
-    {
-        constexpr std::uint32_t kKept = 256;
-        const auto length = number<std::uint32_t>(what);
-        need(length, what);
-        std::string value(std::min(length, kKept), '\0');
-        stream_.read(value.data(), std::streamsize(value.size()));
-        go_to(at_ + length);
-        return value;
-    }
-
-    void skip(std::uint64_t bytes, const char* what)
-    {
-        need(bytes, what);
-        go_to(at_ + bytes);
-    }
-
-    void go_to(std::uint64_t place)
-    {
-        stream_.seekg(std::streamoff(place));
-        at_ = place;
-    }
-
-    [[noreturn]] void fail(const std::string& what) const { throw ReadError(name_ + ": " + what); }
-    std::uint64_t size() const { return size_; }
-    std::uint64_t at() const { return at_; }
-
-private:
-    void need(std::uint64_t bytes, const char* what) const
-    {
-        // Written as a difference, which cannot overflow: the place is never beyond the end.
-        if (bytes > size_ - at_)
-            fail(std::string("the file is truncated or damaged: ") + what + " at byte " +
-                 std::to_string(at_) + " needs " + std::to_string(bytes) + " bytes, the file has " +
-                 std::to_string(size_));
-    }
-
-    std::string name_;
-    std::ifstream stream_;
-    std::uint64_t size_ = 0, at_ = 0;
-};
-
-void walk_metadata(Walk& walk)
-{
-    const auto count = walk.number<std::uint32_t>("the number of metadata");
-    for (std::uint32_t i = 0; i < count; ++i) {
-        walk.text("a metadata name");
-        walk.text("a metadata type");
-        walk.skip(walk.number<std::uint32_t>("a metadata size"), "a metadata value");
-    }
-}
-
-void walk_grids(Walk& walk)
-{
-    const auto count = walk.number<std::int32_t>("the number of grids");
-    if (count < 0)
-        walk.fail("the number of grids is " + std::to_string(count));
-    for (std::int32_t i = 0; i < count; ++i) {
-        std::string name = walk.text("a grid's name");
-        // Where names repeat, a separator and a number follow.
-        constexpr char kSeparator = 30;
-        name = name.substr(0, name.find(kSeparator));
-        walk.text("a grid's type");
-        walk.text("a grid's instance parent");
-        const auto grid = walk.number<std::int64_t>("a grid's position");
-        const auto blocks = walk.number<std::int64_t>("a grid's block position");
-        const auto end = walk.number<std::int64_t>("a grid's end");
-        // Grids stand one after the other behind their descriptors, so each position must be at or
-        // behind the one before; that also keeps the walk from running in a circle.
-        const bool ordered = grid >= std::int64_t(walk.at()) && blocks >= grid && end >= blocks;
-        if (!ordered || std::uint64_t(end) > walk.size())
-            walk.fail("the file is truncated or damaged: grid \"" + name +
-                      "\" is said to span bytes " + std::to_string(grid) + " to " +
-                      std::to_string(end) + ", the file has " + std::to_string(walk.size()));
-        walk.go_to(std::uint64_t(end));
-    }
-}
-
-} // namespace
-
-void require_whole_vdb(const fs::path& path)
-{
-    Walk walk(path);
     if (walk.size() == 0)
         walk.fail("the file is empty");
     if (walk.size() < sizeof kMagic || walk.number<std::int64_t>("the magic number") != kMagic)
@@ -151,13 +46,155 @@ void require_whole_vdb(const fs::path& path)
         walk.fail("its .vdb format version is " + std::to_string(version) + ", versions " +
                   std::to_string(kOldestVersion) + " to " + std::to_string(kNewestVersion) +
                   " can be read");
-    walk.skip(2 * sizeof(std::uint32_t), "the library version");
-    const bool has_offsets = walk.number<char>("the offsets flag") != 0;
-    walk.skip(kUuidLength, "the UUID");
-    walk_metadata(walk);
-    // A file written as a stream has no table of grids to check.
-    if (has_offsets)
-        walk_grids(walk);
+    walk.take(2 * sizeof(std::uint32_t), "the library version");
+    const auto offsets = walk.number<std::uint8_t>("the offsets flag");
+    // Of a stream OpenVDB decodes all grids when it is opened, of whatever type they are.
+    if (offsets == 0)
+        walk.fail("it was written as a stream, without the places of its grids, and cannot be "
+                  "checked before it is decoded; write it as a file");
+    walk.require(offsets == 1, "the offsets flag is neither 0 nor 1");
+    walk.take(kUuidLength, "the UUID");
+    return version;
+}
+
+/// A name without the number that stands behind it, and a separator, where names repeat.
+std::string plain_name(std::string_view name)
+{
+    constexpr char kSeparator = 30;
+    return std::string(name.substr(0, name.find(kSeparator)));
+}
+
+VdbGridPart walk_descriptor(VdbCursor& walk)
+{
+    VdbGridPart part;
+    part.descriptor = walk.at();
+    part.name = plain_name(walk.text("a grid's name"));
+    part.type = walk.text("a grid's type");
+    if (part.type.size() >= kHalfMark.size() &&
+        part.type.compare(part.type.size() - kHalfMark.size(), kHalfMark.size(), kHalfMark) == 0) {
+        part.half = true;
+        part.type.resize(part.type.size() - kHalfMark.size());
+    }
+    const std::string_view parent = walk.text("a grid's instance parent");
+    part.parent = plain_name(parent);
+    walk.require(part.parent.empty() == parent.empty(), "a tree shared with a grid without a name");
+    const auto grid = walk.number<std::int64_t>("a grid's position");
+    const auto blocks = walk.number<std::int64_t>("a grid's block position");
+    const auto end = walk.number<std::int64_t>("a grid's end");
+    // Grids stand one after the other behind their descriptors, so each position must be at or
+    // behind the one before; that also keeps the walk from running in a circle.
+    // Where there is no tree of its own there are no blocks, and OpenVDB writes 0.
+    const bool ordered = grid >= std::int64_t(walk.at()) && end >= grid &&
+                         (!part.parent.empty() || (blocks >= grid && end >= blocks));
+    if (!ordered || std::uint64_t(end) > walk.size())
+        walk.fail("the file is truncated or damaged: grid " + vdb_shell::quoted(part.name) +
+                  " is said to span bytes " + std::to_string(grid) + " to " + std::to_string(end) +
+                  ", the file has " + std::to_string(walk.size()));
+    part.grid = std::uint64_t(grid);
+    part.blocks = std::uint64_t(blocks);
+    part.end = std::uint64_t(end);
+    return part;
+}
+
+/// OpenVDB reads half floats where the metadata say so, whatever the descriptor says.
+bool is_half(const VdbCursor& walk, const VdbGridPart& part, const std::vector<VdbEntry>& metadata)
+{
+    bool stated = false;
+    for (const VdbEntry& entry : metadata)
+        if (entry.name == openvdb::GridBase::META_SAVE_HALF_FLOAT) {
+            walk.require(entry.type == "bool", "a mark of half floats that is no bool");
+            stated = entry.value[0] != 0;
+        }
+    walk.require(stated == part.half, "half floats in one place and not in another");
+    return stated;
+}
+
+/// Reading a grid that shares a tree decodes the other grid, found by its name and of whatever
+/// type.
+void require_parents(const VdbCursor& walk, const std::vector<VdbGridPart>& grids)
+{
+    for (const VdbGridPart& part : grids) {
+        if (part.parent.empty())
+            continue;
+        bool found = false;
+        for (const VdbGridPart& other : grids) {
+            // OpenVDB looks for "name[2]" before it takes that for the second grid of this name.
+            if (!other.name.empty() && other.name.back() == ']')
+                walk.fail("grid " + vdb_shell::quoted(other.name) +
+                          " has a name like that of a repeated one, in a file with shared trees");
+            if (other.name != part.parent)
+                continue;
+            found = true;
+            if (other.type != part.type)
+                walk.fail("grid " + vdb_shell::quoted(part.name) + " shares the tree of " +
+                          vdb_shell::quoted(other.name) + ", which is of another type");
+        }
+        if (!found)
+            walk.fail("grid " + vdb_shell::quoted(part.name) + " shares the tree of " +
+                      vdb_shell::quoted(part.parent) + ", which is not there");
+    }
+}
+
+void walk_grid(VdbCursor& walk, const VdbGridPart& part, std::uint32_t version)
+{
+    using namespace openvdb::io;
+    walk.enter_grid(part.name);
+    walk.go_to(part.grid);
+    VdbCoding coding;
+    coding.compression = walk.number<std::uint32_t>("the compression");
+    constexpr std::uint32_t kKnown = COMPRESS_ZIP | COMPRESS_ACTIVE_MASK | COMPRESS_BLOSC;
+    walk.require((coding.compression & ~kKnown) == 0, "an unknown compression");
+    const std::vector<VdbEntry> metadata = walk_metadata(walk);
+    walk_transform(walk);
+    const bool points = part.type == kPoints;
+    if (!part.parent.empty() || (!points && part.type != kFloats))
+        return;
+    if (points && version < kPointsVersion)
+        walk.fail("its points are of .vdb format version " + std::to_string(version) +
+                  ", those of version " + std::to_string(kPointsVersion) + " can be read");
+    coding.half = is_half(walk, part, metadata) && !points;
+    const std::vector<std::uint16_t> leaves = walk_topology(walk, coding);
+    walk.require(walk.at() == part.blocks, "the topology does not end where the voxels begin");
+    if (points)
+        walk_points(walk, leaves.size());
+    else
+        walk_voxels(walk, coding, leaves);
+    walk.require(walk.at() == part.end, "the grid does not end where its descriptor says");
+}
+
+} // namespace
+
+VdbOutline walk_outline(VdbCursor& walk)
+{
+    VdbOutline outline;
+    outline.version = walk_header(walk);
+    outline.metadata = walk_metadata(walk);
+    const auto count = walk.number<std::int32_t>("the number of grids");
+    if (count < 0)
+        walk.fail("the number of grids is " + std::to_string(count));
+    for (std::int32_t i = 0; i < count; ++i) {
+        outline.grids.push_back(walk_descriptor(walk));
+        walk.go_to(outline.grids.back().end);
+    }
+    require_parents(walk, outline.grids);
+    return outline;
+}
+
+void require_whole_vdb(std::string_view bytes, const std::string& name)
+{
+    // The walk asks OpenVDB for the sizes of the types that it knows.
+    openvdb::initialize();
+    VdbCursor walk(bytes, name);
+    const VdbOutline outline = walk_outline(walk);
+    // Most damage ends here. What was sealed by somebody who means harm is walked all the same.
+    check_seal(bytes, name);
+    for (const VdbGridPart& part : outline.grids)
+        walk_grid(walk, part, outline.version);
+}
+
+void require_whole_vdb(const fs::path& path)
+{
+    require_whole_vdb(read_whole_file(path), path.string());
 }
 
 } // namespace vdb_shell

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Writes a shell as .vdb (level set, depth, three grids of points, metadata) and reads it back bit
-// for bit. Reading trusts nothing: the outer structure of the file is checked before OpenVDB sees
-// it (io), the metadata and the grids by their own readers, and last the checksum of all arrays.
-// Whatever a library throws at damaged data leaves here as ReadError; what OpenVDB fails to notice
-// in the data of voxels can crash it (docs/file_format.md). A trap: floats are certified in
-// the mesh's own frame, so grids are moved by their transforms only and no coordinate is ever
-// changed.
+// for bit. Reading trusts nothing: all that OpenVDB goes by is walked before OpenVDB sees the file
+// (io), the metadata and the grids are checked by their own readers, and last the checksum of all
+// arrays. Whatever a library throws at damaged data leaves here as ReadError. A trap: floats are
+// certified in the mesh's own frame, so grids are moved by their transforms only and no coordinate
+// is ever changed.
 
 #include "vdb_shell/write/vdb_file.h"
 
@@ -15,10 +14,12 @@
 
 #include "core/parallel.h"
 #include "io/vdb_archive.h"
+#include "io/vdb_seal.h"
 #include "vdb_shell/core/output_set.h"
 #include "vdb_shell/io/vdb_header.h"
 #include "write/core_feet_grid.h"
 #include "write/core_grids.h"
+#include "write/file_digests.h"
 #include "write/point_grid_instances.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
@@ -108,17 +109,39 @@ std::string list_of_grids(openvdb::io::File& file)
     return list.empty() ? "no grids" : list;
 }
 
-template <typename Grid>
-typename Grid::Ptr read_grid(openvdb::io::File& file, const std::string& where, const char* name)
+/// A file of which all is known before a grid is decoded.
+struct OpenFile {
+    explicit OpenFile(const fs::path& where)
+        : path(where), file(where.string()), digests(metadata_of(file), where)
+    {
+    }
+    static openvdb::MetaMap metadata_of(openvdb::io::File& file)
+    {
+        open_file(file);
+        return *file.getMetadata();
+    }
+    ShellInfo info() const { return info_from_metadata(*file.getMetadata(), path); }
+
+    fs::path path;
+    openvdb::io::File file;
+    StatedDigests digests;
+};
+
+template <typename Grid> typename Grid::Ptr read_grid(OpenFile& from, const char* name)
 {
+    openvdb::io::File& file = from.file;
+    const std::string where = from.path.string();
     if (!file.hasGrid(name))
         throw ReadError(where + ": grid \"" + name + "\" is missing");
-    const GridBase::Ptr grid = file.readGrid(name);
-    auto typed = openvdb::gridPtrCast<Grid>(grid);
-    if (!typed)
-        throw ReadError(where + ": grid \"" + name + "\" has type " + grid->type() + ", expected " +
+    // The type comes first: grids of other types have not been held against the file, so nothing
+    // may decode them.
+    const std::string type = file.readGridMetadata(name)->type();
+    if (type != Grid::gridType())
+        throw ReadError(where + ": grid \"" + name + "\" has type " + type + ", expected " +
                         Grid::gridType());
-    return typed;
+    const auto grid = openvdb::gridPtrCast<Grid>(file.readGrid(name));
+    from.digests.require(*grid);
+    return grid;
 }
 
 /// All that lies in the file of the points; the core's only where there is one.
@@ -127,15 +150,23 @@ struct AllPoints {
     CoreGrids core;
 };
 
-AllPoints read_points_of(openvdb::io::File& file, const std::string& where, bool with_core)
+AllPoints read_points_of(OpenFile& file, bool with_core)
 {
     using openvdb::points::PointDataGrid;
-    return {{read_grid<PointDataGrid>(file, where, kPointsGrid),
-             read_grid<PointDataGrid>(file, where, kPrismsGrid),
-             read_grid<PointDataGrid>(file, where, kTetsGrid)},
-            with_core ? CoreGrids{read_grid<PointDataGrid>(file, where, kCorePointsGrid),
-                                  read_grid<PointDataGrid>(file, where, kCoreTetsGrid)}
+    return {{read_grid<PointDataGrid>(file, kPointsGrid),
+             read_grid<PointDataGrid>(file, kPrismsGrid),
+             read_grid<PointDataGrid>(file, kTetsGrid)},
+            with_core ? CoreGrids{read_grid<PointDataGrid>(file, kCorePointsGrid),
+                                  read_grid<PointDataGrid>(file, kCoreTetsGrid)}
                       : CoreGrids{}};
+}
+
+/// With digests of all that it holds.
+void write_sealed(const fs::path& path, openvdb::GridPtrVec grids, openvdb::MetaMap metadata)
+{
+    add_digests(metadata, grids);
+    write_vdb_archive(path, std::move(grids), metadata);
+    seal_vdb(path);
 }
 
 /// Runs `read`, turning what OpenVDB and the allocator throw at damaged data into ReadError. Errors
@@ -154,26 +185,22 @@ template <typename Read> auto guarded(const fs::path& path, const Read& read)
     }
 }
 
-/// The point grids of another file must be those of this shell.
-void require_same_shell(const ShellInfo& main, const fs::path& points)
-{
-    // Names prove nothing: a file of the same name may be left from an earlier run.
-    const ShellInfo beside = read_shell_info(points);
-    if (beside.checksum != main.checksum)
-        throw ReadError(points.string() + ": its points are those of another shell: checksum " +
-                        beside.checksum + ", expected " + main.checksum);
-}
-
-AllPoints find_points(openvdb::io::File& main, const ShellInfo& info, const fs::path& path)
+/// Adds the digests of another file to those of the first.
+AllPoints find_points(OpenFile& main, const ShellInfo& info, std::size_t& digests)
 {
     const bool with_core = info.core_tets > 0;
-    if (info.points_at == path)
-        return read_points_of(main, path.string(), with_core);
+    if (info.points_at == main.path)
+        return read_points_of(main, with_core);
     return guarded(info.points_at, [&] {
-        require_same_shell(info, info.points_at);
-        openvdb::io::File file(info.points_at.string());
-        open_file(file);
-        return read_points_of(file, info.points_at.string(), with_core);
+        OpenFile beside(info.points_at);
+        // Names prove nothing: a file of the same name may be left from an earlier run.
+        const std::string found = beside.info().checksum;
+        if (found != info.checksum)
+            throw ReadError(info.points_at.string() +
+                            ": its points are those of another shell: checksum " + found +
+                            ", expected " + info.checksum);
+        digests += beside.digests.count();
+        return read_points_of(beside, with_core);
     });
 }
 
@@ -229,14 +256,14 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
         add_points_metadata(*grid, metadata);
 
     write_together(with, [&](OutputSet& set) {
+        if (!beside)
+            std::move(points.begin(), points.end(), std::back_inserter(volumes));
         set.write(path, [&](const fs::path& temporary) {
-            if (!beside)
-                std::move(points.begin(), points.end(), std::back_inserter(volumes));
-            write_vdb_archive(temporary, std::move(volumes), metadata);
+            write_sealed(temporary, std::move(volumes), metadata);
         });
         if (beside)
             set.write(points_file_of(path), [&](const fs::path& temporary) {
-                write_vdb_archive(temporary, std::move(points), metadata);
+                write_sealed(temporary, std::move(points), metadata);
             });
     });
 }
@@ -253,14 +280,12 @@ ShellInfo read_shell_info(const fs::path& path)
 ShellFile read_shell_vdb(const fs::path& path)
 {
     return guarded(path, [&] {
-        // The metadata come first, through a file object of their own: they are small, and most
-        // files that are no shell are refused by them before a grid is loaded.
-        const ShellInfo info = read_shell_info(path);
-        openvdb::io::File file(path.string());
-        open_file(file);
+        OpenFile file(path);
+        const ShellInfo info = file.info();
         ShellFile result;
-        result.surface = read_grid<FloatGrid>(file, path.string(), kSurfaceGrid);
-        result.depth = read_grid<FloatGrid>(file, path.string(), kDepthGrid);
+        result.digests = file.digests.count();
+        result.surface = read_grid<FloatGrid>(file, kSurfaceGrid);
+        result.depth = read_grid<FloatGrid>(file, kDepthGrid);
         result.placement = info.placement;
         // In memory all is in the mesh's frame, which the pillars are in. Moving back undoes the
         // writer's step on the transform alone.
@@ -269,7 +294,7 @@ ShellFile read_shell_vdb(const fs::path& path)
         const ShellCounts counts{info.vertices,    info.points,   info.tet_points, info.prisms,
                                  info.tets,        info.layers,   info.skin,       info.tapered,
                                  info.core_points, info.core_tets};
-        const AllPoints points = find_points(file, info, path);
+        const AllPoints points = find_points(file, info, result.digests);
         const std::string name = info.points_at.string();
         read_point_grids(points.shell, counts, name, result.stack, result.tets);
         if (points.core.tets)
@@ -313,11 +338,11 @@ FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
             throw ReadError(path.string() + ": has no grid \"" + name + "\"; it has " +
                             list_of_grids(file));
         }
-        auto grid = openvdb::gridPtrCast<FloatGrid>(file.readGrid(chosen));
-        if (!grid)
+        // As in read_grid, only what the walk has covered may be decoded.
+        if (!file.readGridMetadata(chosen)->isType<FloatGrid>())
             throw ReadError(path.string() + ": grid \"" + chosen +
                             "\" is not a float grid; the file has " + list_of_grids(file));
-        return grid;
+        return openvdb::gridPtrCast<FloatGrid>(file.readGrid(chosen));
     });
 }
 

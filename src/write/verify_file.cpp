@@ -232,6 +232,15 @@ Verification verify_depth(const ShellFile& file, Interrupter* interrupter)
                 std::to_string(depth->activeVoxelCount()) + " expected"};
 }
 
+/// Reading has held them against the file, and refuses it where one differs.
+Verification tell_digests(const ShellFile& file)
+{
+    return {"parts are those that were written", true,
+            file.digests > 0 ? std::to_string(file.digests) + " digests of grids, attributes and "
+                                                              "metadata hold"
+                             : "it has no digests; changed values may go unnoticed"};
+}
+
 } // namespace
 
 std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter)
@@ -260,6 +269,7 @@ std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* inter
         found.push_back(verify_level_set(file, report));
         found.push_back(verify_depth(file, interrupter));
     }
+    found.push_back(tell_digests(file));
     return found;
 }
 

@@ -39,6 +39,8 @@ struct ShellFile {
     Placement placement{};
     std::vector<CoreFoot> core_feet{}; ///< by vertex; empty where there were no cores
     CoreTets core{};                   ///< empty where nothing fills the shell
+    /// Digests of parts of the file that held when it was read; 0 where it has none.
+    std::size_t digests = 0;
 };
 
 enum class PointPlacement {
@@ -87,19 +89,21 @@ FloatGridPtr shell_depth_grid(const TetMesh& tets, double voxel_size,
                               Interrupter* interrupter = nullptr);
 
 /// Writes grids and metadata as docs/file_format.md says; `file` is not changed. The file (with
-/// PointPlacement::beside both files) appears whole or not at all. Same bytes for the same input,
-/// but for OpenVDB's random UUID (bytes 21 to 56). Throws InvalidOption when a grid is missing,
-/// when stack and tets do not fit together as make_tets leaves them, and when a distance is beyond
-/// what the half floats that are asked for can hold; WriteError.
+/// PointPlacement::beside both files) appears whole or not at all. Same bytes for the same input:
+/// where OpenVDB draws a random UUID stands a digest of the file. Throws InvalidOption when a grid
+/// is missing, when stack and tets do not fit together as make_tets leaves them, and when a
+/// distance is beyond what the half floats that are asked for can hold; WriteError.
 void write_shell_vdb(const std::filesystem::path& path, const ShellFile& file,
                      const VdbWriteOptions& options = {}, OutputSet* with = nullptr);
 
 /// Reads what write_shell_vdb wrote, bit for bit (half floats as they were rounded, the mark that
-/// they were saved so kept); finds points that stand beside the file. Throws
-/// ReadError with file, grid, attribute and index for anything that is missing or out of range.
+/// they were saved so kept); finds points that stand beside the file. Throws ReadError with file,
+/// grid, attribute and index for anything that is missing, out of range, or not what the file's own
+/// digests say. Files without digests are read (ShellFile::digests is 0). Nothing of the file is
+/// decoded before require_whole_vdb has passed it.
 ShellFile read_shell_vdb(const std::filesystem::path& path);
 
-/// The metadata alone, in no time. Throws ReadError as read_shell_vdb does.
+/// The metadata alone, without a grid. Throws ReadError as read_shell_vdb does.
 ShellInfo read_shell_info(const std::filesystem::path& path);
 
 /// NAME.points.vdb for NAME.vdb: where PointPlacement::beside puts the point grids.

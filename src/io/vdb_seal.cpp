@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The digest of a .vdb's bytes, in the one place of the file that its own digest can stand in: the
+// UUID, which OpenVDB draws at random and reads as a name and no more. A mark at its start tells it
+// from a random one. One flipped bit changes one character of the mark, so a mark with one wrong
+// character is a damaged seal and not a missing one; a random UUID has seven of its eight
+// characters with probability 3e-8. What is in the entry with the digests finds the damaged part,
+// and decides nothing.
+
+#include "io/vdb_seal.h"
+
+#include "io/vdb_walk.h"
+#include "vdb_shell/core/digest.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/io/read_file.h"
+
+#include <openvdb/Exceptions.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+namespace vdb_shell
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kUuid = 21, kUuidLength = 36; ///< bytes
+constexpr std::string_view kMark = "7664625f";      ///< "vdb_"
+constexpr std::size_t kPartDigits = 16;
+
+std::string uuid_of(std::string_view bytes)
+{
+    Digest digest;
+    digest.add(bytes.data(), kUuid);
+    digest.add(bytes.data() + kUuid + kUuidLength, bytes.size() - kUuid - kUuidLength);
+    // A UUID of version 8, whose bits are free but for these two digits.
+    const std::string hex = digest.hex();
+    return std::string(kMark) + "-" + hex.substr(0, 4) + "-8" + hex.substr(4, 3) + "-8" +
+           hex.substr(7, 3) + "-" + hex.substr(10, 12);
+}
+
+bool has_seal(std::string_view bytes)
+{
+    if (bytes.size() < kUuid + kUuidLength)
+        return false;
+    std::size_t same = 0;
+    for (std::size_t i = 0; i < kMark.size(); ++i)
+        same += bytes[kUuid + i] == kMark[i];
+    return same + 1 >= kMark.size();
+}
+
+/// A part of the file, and where the digits of its bytes' digest stand.
+struct Part {
+    std::string name;
+    std::string digits;
+    std::size_t place = 0; ///< of the digits, 0 where there is no room for them
+};
+
+std::string digits_of(Digest& digest)
+{
+    return digest.hex().substr(0, kPartDigits);
+}
+
+const VdbEntry* digests_entry(const VdbOutline& outline)
+{
+    for (const VdbEntry& entry : outline.metadata)
+        if (entry.name == kDigestsKey)
+            return &entry;
+    return nullptr;
+}
+
+/// All bytes before the first grid but for the UUID and the entry with the digests.
+std::string head_digits(std::string_view bytes, const VdbOutline& outline, const VdbEntry& entry)
+{
+    const std::size_t end = outline.grids.empty() ? bytes.size() : outline.grids[0].descriptor;
+    const auto begin = std::size_t(entry.value.data() - bytes.data());
+    const std::size_t behind = begin + entry.value.size();
+    Digest digest;
+    digest.add(bytes.data(), kUuid);
+    digest.add(bytes.data() + kUuid + kUuidLength, begin - kUuid - kUuidLength);
+    digest.add(bytes.data() + behind, end - behind);
+    return digits_of(digest);
+}
+
+/// Where the digits of a part stand: a line of three words that begins with its name.
+std::size_t place_of(std::string_view bytes, const VdbEntry& entry, const std::string& name)
+{
+    std::size_t line = 0;
+    while (line < entry.value.size()) {
+        const std::size_t end = std::min(entry.value.find('\n', line), entry.value.size());
+        std::istringstream words{std::string(entry.value.substr(line, end - line))};
+        std::string first, values, digits;
+        if (words >> first >> values >> digits && first == name && digits.size() == kPartDigits)
+            return std::size_t(entry.value.data() - bytes.data()) + end - kPartDigits;
+        line = end + 1;
+    }
+    return 0;
+}
+
+std::vector<Part> parts_of(std::string_view bytes, const VdbOutline& outline)
+{
+    std::vector<Part> parts;
+    const VdbEntry* const entry = digests_entry(outline);
+    if (!entry)
+        return parts;
+    parts.push_back({"metadata", head_digits(bytes, outline, *entry), 0});
+    for (const VdbGridPart& grid : outline.grids) {
+        Digest digest;
+        digest.add(bytes.data() + grid.descriptor, grid.end - grid.descriptor);
+        parts.push_back({grid.name, digits_of(digest), 0});
+    }
+    for (Part& part : parts)
+        part.place = place_of(bytes, *entry, part.name);
+    return parts;
+}
+
+/// What differs, in words. Precondition: something does.
+std::string damaged_part(std::string_view bytes, const std::string& name)
+{
+    VdbCursor walk(bytes, name);
+    for (const Part& part : parts_of(bytes, walk_outline(walk)))
+        if (part.place && bytes.substr(part.place, kPartDigits) != part.digits)
+            return part.name == "metadata" ? "its metadata"
+                                           : "grid " + vdb_shell::quoted(part.name);
+    return "no grid and no other metadata but the digests themselves";
+}
+
+} // namespace
+
+void seal_vdb(const fs::path& path)
+{
+    std::string bytes;
+    try {
+        bytes = read_whole_file(path);
+    } catch (const ReadError& error) {
+        throw openvdb::IoError(error.what());
+    }
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    const auto put = [&](std::size_t place, const std::string& text) {
+        bytes.replace(place, text.size(), text);
+        file.seekp(std::streamoff(place));
+        file.write(text.data(), std::streamsize(text.size()));
+    };
+    VdbCursor walk(bytes, path.string());
+    for (const Part& part : parts_of(bytes, walk_outline(walk)))
+        if (part.place)
+            put(part.place, part.digits);
+    put(kUuid, uuid_of(bytes));
+    file.close();
+    if (!file)
+        throw openvdb::IoError("the digests of the bytes cannot be written");
+}
+
+bool check_seal(std::string_view bytes, const std::string& name)
+{
+    if (!has_seal(bytes))
+        return false;
+    if (bytes.substr(kUuid, kUuidLength) != uuid_of(bytes))
+        throw ReadError(name +
+                        ": the file is damaged: its bytes are not those that were written; " +
+                        damaged_part(bytes, name) + " differs");
+    return true;
+}
+
+} // namespace vdb_shell
