@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """How full the default's shells are on large surfaces that nobody made for a textbook, for docs/measurements/scans.md.
 
-    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST]
+    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST] [--wall]
 
 LIST has a line "tuning NAME" or "judging NAME" for each mesh, found as NAME.obj or NAME.off in one of the folders; what
 is not there is left out and named. --before is a binary of an older version. Each build is one run on one thread; times
 are processor times, so other work on the machine matters little. Where TetGen is installed its time is measured too.
+--wall: also the wall time of a build with a .vdb on all threads over TetGen's, the better of two runs each, for a machine
+that does nothing else.
 """
 import argparse
 import pathlib
@@ -15,6 +17,7 @@ import shutil
 import statistics
 import subprocess
 import tempfile
+import time
 
 from runs import build, replace_tables, table
 from shape_figures import read_list
@@ -28,6 +31,7 @@ def arguments():
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("folders", type=pathlib.Path, nargs="+")
     parser.add_argument("--before", help="the binary of an older version")
+    parser.add_argument("--wall", action="store_true")
     parser.add_argument("--meshes", type=pathlib.Path,
                         default=pathlib.Path(__file__).parent.parent / "measurements/scan_meshes.txt")
     return parser.parse_args()
@@ -39,7 +43,7 @@ def find(name, folders):
 
 
 def tetgen_seconds(mesh):
-    """Processor time of tetgen -pY on the same surface; nothing where it is not installed or fails."""
+    """Processor and wall time of tetgen -pY on the same surface; nothing where it is not installed or fails."""
     if not shutil.which("tetgen"):
         return None
     with tempfile.TemporaryDirectory() as folder:
@@ -56,26 +60,38 @@ def tetgen_seconds(mesh):
             surface.write_text("\n".join(lines) + "\n")
         else:
             shutil.copy(mesh, surface)
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
         done = subprocess.run(["tetgen", "-pYQ", surface.name], cwd=folder, capture_output=True, check=False)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        wall, after = time.monotonic() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode != 0:
             return None
-        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall
 
 
-def row_of(mesh, command, before):
+def wall_seconds(command, mesh):
+    """Of a build that writes a .vdb, on all threads."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.monotonic()
+        subprocess.run([command, "build", "-q", "-o", f"{folder}/shell.vdb", mesh], check=True)
+        return time.monotonic() - begin
+
+
+def row_of(mesh, command, before, wall):
     now = build(command, mesh, [])
     if now["exit"] != 0:
         raise SystemExit(f"{mesh}: {now['message']}")
-    return {"now": now, "then": build(before, mesh, []) if before else None, "tetgen": tetgen_seconds(mesh)}
+    row = {"now": now, "then": build(before, mesh, []) if before else None, "tetgen": tetgen_seconds(mesh)}
+    if wall and row["tetgen"]:
+        row["wall"] = (min(wall_seconds(command, mesh) for _ in range(2)) /
+                       min(row["tetgen"][1], tetgen_seconds(mesh)[1]))
+    return row
 
 
 def cells(name, half, row):
     now, then, tetgen = row["now"], row["then"], row["tetgen"]
     made = [name, half, f"{now['triangles']:,}", f"{now['fill']:.4f}", str(now["pinned"]),
-            "yes" if now["certified"] else "no",
-            f"{now['seconds'] / tetgen:.2f}" if tetgen else "-"]
+            str(now["demanded_pins"]), str(now["without_tet"]), "yes" if now["certified"] else "no",
+            f"{now['seconds'] / tetgen[0]:.2f}" if tetgen else "-", f"{row['wall']:.2f}" if "wall" in row else "-"]
     if then:
         made += [f"{then['fill']:.4f}", str(then["pinned"]), f"{now['seconds'] / then['seconds']:.2f}"]
     return made
@@ -83,7 +99,8 @@ def cells(name, half, row):
 
 def means(half, rows):
     now = [row["now"]["fill"] for row in rows]
-    made = [f"mean of {half}", half, "", f"{statistics.mean(now):.4f}", "", "", ""]
+    made = [f"mean of {half}", half, "", f"{statistics.mean(now):.4f}", "", "", "", "", "",
+            f"{statistics.mean(row['wall'] for row in rows):.2f}" if all("wall" in row for row in rows) else ""]
     if rows[0]["then"]:
         made += [f"{statistics.mean(row['then']['fill'] for row in rows):.4f}", "",
                  f"{statistics.mean(row['now']['seconds'] / row['then']['seconds'] for row in rows):.2f}"]
@@ -92,7 +109,8 @@ def means(half, rows):
 
 def main():
     options = arguments()
-    head = ["mesh", "half", "triangles", "fill", "pins", "certified", "time / TetGen -pY"]
+    head = ["mesh", "half", "triangles", "fill", "pins", "demanded", "without a tet", "certified",
+            "time / TetGen -pY", "wall time / TetGen -pY"]
     if options.before:
         head += ["fill before", "pins before", "time / before"]
     lines, missing, by_half = [], [], {}
@@ -101,7 +119,7 @@ def main():
         if mesh is None:
             missing.append(name)
             continue
-        row = row_of(mesh, options.command, options.before)
+        row = row_of(mesh, options.command, options.before, options.wall)
         by_half.setdefault(half, []).append(row)
         lines.append(cells(name, half, row))
         print(" ".join(lines[-1]), flush=True)
