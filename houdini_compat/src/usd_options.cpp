@@ -19,9 +19,11 @@ const NameTable<UpAxis>& names(UpAxis)
 
 OptionList describe(UsdOptions& o)
 {
-    return in_group("Output", {option("up_axis", o.up_axis, "--up-axis", "What a .usda says is up"),
+    return in_group("Output", {option("up_axis", o.up_axis, "--up-axis", "What a .usda says is up")
+                                   .needing("--output .usda"),
                                option("meters_per_unit", o.meters_per_unit, "--metres-per-unit",
                                       "What a .usda says a world unit is")
+                                   .needing("--output .usda")
                                    .with_names({"--meters-per-unit"})
                                    .within(above(0)),
                                option("frames_per_second", o.frames_per_second, "",

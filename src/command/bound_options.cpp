@@ -16,7 +16,9 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -210,15 +212,52 @@ void settle_exclusions(BoundOptions& bound)
     }
 }
 
+/// One of Option::needs; an option that this command does not have is not missed.
+bool is_there(BoundOptions& bound, const std::string& needed)
+{
+    std::istringstream words(needed);
+    std::string flag;
+    words >> flag;
+    const BoundOption* other = find(bound, flag);
+    if (!other)
+        return true;
+    const std::vector<std::string> values{std::istream_iterator<std::string>(words), {}};
+    const auto one_of_them = [&](const std::string& value) {
+        return std::find(values.begin(), values.end(), value) != values.end();
+    };
+    if (values.empty())
+        // It may also come from the file, which shows only in the value: it is no longer the
+        // default.
+        return was_given(*other) || !(other->option.get() == other->default_value);
+    if (!other->option.repeated)
+        return one_of_them(text_of(other->option.get()));
+    const std::vector<std::string> files = other->given->results();
+    return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
+        std::string extension = std::filesystem::path(file).extension().string();
+        std::transform(extension.begin(), extension.end(), extension.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return one_of_them(extension);
+    });
+}
+
+bool has_what_it_needs(BoundOptions& bound, const std::string& needs)
+{
+    static const std::string kOr = " or ";
+    for (std::size_t begin = 0; begin < needs.size();) {
+        const std::size_t end = std::min(needs.find(kOr, begin), needs.size());
+        if (is_there(bound, needs.substr(begin, end - begin)))
+            return true;
+        begin = end + kOr.size();
+    }
+    return needs.empty();
+}
+
 void require_needs(BoundOptions& bound)
 {
     for (const BoundOption& one : bound.options) {
-        if (one.option.needs.empty() || !was_given(one))
-            continue;
-        const BoundOption* other = find(bound, one.option.needs);
-        // What is needed may also come from the file, which shows only in the value: it is no
-        // longer the default.
-        if (other && !was_given(*other) && other->option.get() == other->default_value)
+        // A flag that is turned off asks for nothing.
+        const bool asks = was_given(one) && one.option.get() != OptionValue(false);
+        if (asks && !has_what_it_needs(bound, one.option.needs))
             throw InvalidOption(one.option.flag + " needs " + one.option.needs);
     }
 }

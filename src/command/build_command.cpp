@@ -133,10 +133,6 @@ void require_sensible(const BuildArguments& arguments)
     if (arguments.shell.core_fill.wanted())
         require_places_for_core(arguments.outputs);
     require_program(arguments.shell.core_fill);
-    const RemeshOptions& remesh = arguments.shell.remesh;
-    if (!remesh.wanted() && (remesh.tolerance || !arguments.remesh_map.empty()))
-        throw InvalidOption(std::string(remesh.tolerance ? "--remesh-tolerance" : "--remesh-map") +
-                            " needs --remesh-edge-length or --remesh-to");
     if (!arguments.remesh_map.empty())
         require_map_extension(arguments.remesh_map);
     require_possible_files(arguments);
@@ -196,7 +192,8 @@ OptionSections describe(BuildArguments& a)
                "Write all figures as JSON; - is standard output, in place of the text"),
         option("", a.remesh_map, "--remesh-map",
                "Write where each vertex before remeshing lies on the surface after it, and the "
-               "other way round: .json or .csv"),
+               "other way round: .json or .csv")
+            .needing("--remesh-edge-length or --remesh-to"),
         option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
         option("", a.progress, "--progress", "Name each stage on standard error as it begins")};
     const Option painted = option("", a.thickness_grid, "--thickness-grid",

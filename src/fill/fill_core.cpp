@@ -208,12 +208,15 @@ OptionList describe(CoreFillOptions& o)
          option("radius_edge_ratio", o.radius_edge_ratio, "--core-fill-ratio",
                 "Bound on circumscribed radius over shortest edge of a tet of the core (tetgen); 0 "
                 "for as few tets as possible")
+             .needing("--core-fill tetgen")
              .within(at_least(0)),
          option("edge_length", o.edge_length, "--core-fill-edge-length",
                 "Largest edge length in the core, world units; unset: what the surface allows")
+             .needing("--core-fill")
              .in(Unit::world_length)
              .within(above(0)),
          option("seconds", o.seconds, "--core-fill-seconds", "Time limit of that program, seconds")
+             .needing("--core-fill")
              .within(above(0))
              .not_stored()});
 }

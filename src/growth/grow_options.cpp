@@ -46,15 +46,18 @@ OptionList describe(GrowOptions& o)
          option("flips", o.flips, "--flips", "Turn diagonals for room and for quality"),
          option("coarse_from", o.coarse_from, "--coarse-from",
                 "Triangles from which on growth begins on a coarser surface; 0: never")
+             .needing("--method certified thickest")
              .in(Unit::count),
          // May be unset, which is not the same as 40: then growth on a prolonged shell ends as soon
          // as a round wins little for its cost.
          option("free_rounds", o.free_rounds, "--free-rounds",
                 "Upper bound on rounds of free moves [40; after a coarser surface as many as pay]")
+             .needing("--method certified thickest")
              .in(Unit::count)
              .within(at_least(0)),
          option("min_quality", o.min_quality, "--min-quality",
                 "Mean ratio that tets should reach, at a cost in thickness; 0 asks for none")
+             .needing("--method certified thickest")
              .within(at_least(0).below(1))});
 }
 

@@ -57,8 +57,6 @@ void read_face(ObjScan& obj, std::string_view rest, std::size_t line)
     std::int64_t largest = -1;
     obj.polygon.clear();
     for (std::string_view word = cut_word(rest); !word.empty(); word = cut_word(rest)) {
-        if (word[0] == '#') // a comment behind the corners
-            break;
         const std::string_view vertex = word.substr(0, word.find('/'));
         const std::int64_t given = parse_integer(obj.name, face, vertex);
         // Indices count from 1. A given 0 becomes -1 here and is refused like all that is out of
@@ -119,10 +117,12 @@ void refuse_lost_surface(const ObjScan& obj, std::string_view keyword, std::size
 void read_statement(ObjScan& obj, std::string_view line, std::size_t number)
 {
     const std::string_view keyword = cut_word(line);
+    // A comment may touch the value before it.
+    const std::string_view values = line.substr(0, line.find('#'));
     if (keyword == "v")
-        read_vertex(obj, line, number);
+        read_vertex(obj, values, number);
     else if (keyword == "f" || keyword == "fo") // the form of version 2.11
-        read_face(obj, line, number);
+        read_face(obj, values, number);
     else if (!keyword.empty() && keyword[0] != '#')
         refuse_lost_surface(obj, keyword, number);
 }

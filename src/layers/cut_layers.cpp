@@ -79,6 +79,13 @@ void append_layers(const PrismShell& whole, const PrismSplit& split, bool above_
     }
 }
 
+std::size_t count_empty(const ShellStack& stack)
+{
+    return std::size_t(
+        std::count_if(stack.layers.begin(), stack.layers.end(),
+                      [](const PrismShell& layer) { return layer.outer == layer.inner; }));
+}
+
 } // namespace
 
 OptionList describe(LayerOptions& o)
@@ -92,6 +99,7 @@ OptionList describe(LayerOptions& o)
                          .with_shorthand("--layers-auto", "0"),
                      option("grading", o.grading, "--layer-grading",
                             "Thickness of each layer over that of the one nearer to the surface")
+                         .needing("--layers")
                          .within(above(0))});
 }
 
@@ -136,6 +144,7 @@ LayerResult cut_layers(const ShellStack& stack, const LayerOptions& options, Pri
         if (k + 1 == stack.skin)
             result.stack.skin = result.stack.layers.size();
     }
+    result.report.empty = count_empty(result.stack);
     return result;
 }
 

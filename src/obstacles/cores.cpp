@@ -224,6 +224,7 @@ OptionList describe(CoreOptions& o)
          option("reach", o.reach, "--core-reach",
                 "A pillar counts as ended at a core if no more than this share of its length is "
                 "left to it")
+             .needing("--core")
              .in(Unit::share)
              .within(at_least(0))});
 }

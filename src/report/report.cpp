@@ -179,7 +179,7 @@ ordered_json layers_json(const ShellReport& report)
 
 ordered_json cut_json(const LayerReport& cut)
 {
-    return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}};
+    return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}, {"empty_layers", cut.empty}};
 }
 
 ordered_json core_fill_json(const CoreFillReport& fill)

@@ -103,7 +103,10 @@ void layer_lines(std::ostringstream& out, const ShellReport& report)
         line(out, "layers",
              number(report.layers.size(), 12) + "; " + number(report.cut->moved, 12) +
                  " points between them moved, " + number(report.cut->uncut, 12) +
-                 " pillars left whole");
+                 " pillars left whole" +
+                 (report.cut->empty == 0
+                      ? std::string()
+                      : "; " + number(report.cut->empty, 12) + " LAYERS ARE EMPTY"));
     for (std::size_t k = 0; k < report.layers.size(); ++k) {
         const LayerFigures& layer = report.layers[k];
         const std::string label = "  layer " + number(k);

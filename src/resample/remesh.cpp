@@ -179,10 +179,12 @@ OptionList describe(RemeshOptions& o)
          option("tolerance", o.tolerance, "--remesh-tolerance",
                 "Farthest that remeshing may part the surfaces, world units; unset: half the "
                 "length times the sine of half the feature angle")
+             .needing("--remesh-edge-length or --remesh-to")
              .in(Unit::world_length)
              .within(above(0)),
          option("feature_angle_radians", o.feature_angle_radians, "--remesh-feature-angle",
                 "Remeshing keeps edges at which the surface turns by more than this, radians")
+             .needing("--remesh-edge-length or --remesh-to")
              .in(Unit::radians)
              .within(above(0).at_most(kLargestAngle))});
 }

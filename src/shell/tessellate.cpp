@@ -158,10 +158,11 @@ const NameTable<SplitRule>& names(SplitRule)
 
 OptionList describe(SplitOptions& o)
 {
-    return in_group(
-        "Tets",
-        {option("rule", o.rule, "--split", "How the prisms' diagonals are chosen"),
-         option("seed", o.seed, "--ripple-seed", "Seed of the ripple method").in(Unit::seed)});
+    return in_group("Tets",
+                    {option("rule", o.rule, "--split", "How the prisms' diagonals are chosen"),
+                     option("seed", o.seed, "--ripple-seed", "Seed of the ripple method")
+                         .needing("--split ripple")
+                         .in(Unit::seed)});
 }
 
 PrismSplit split_prisms(const PrismShell& shell, const SplitOptions& options)

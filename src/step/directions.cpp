@@ -82,14 +82,15 @@ const NameTable<DirectionSource>& names(DirectionSource)
 
 OptionList describe(DirectionOptions& o)
 {
-    return in_group(
-        "Lines",
-        {option("source", o.source, "--directions", "Where the lines' directions come from"),
-         option("perturbation_radians", o.perturbation_radians, "--perturb",
-                "Largest random tilt of a direction, radians")
-             .in(Unit::radians)
-             .within(at_least(0).below(kMostRadians)),
-         option("seed", o.seed, "--perturb-seed", "Seed of the random tilt").in(Unit::seed)});
+    return in_group("Lines", {option("source", o.source, "--directions",
+                                     "Where the lines' directions come from"),
+                              option("perturbation_radians", o.perturbation_radians, "--perturb",
+                                     "Largest random tilt of a direction, radians")
+                                  .in(Unit::radians)
+                                  .within(at_least(0).below(kMostRadians)),
+                              option("seed", o.seed, "--perturb-seed", "Seed of the random tilt")
+                                  .needing("--perturb")
+                                  .in(Unit::seed)});
 }
 
 Directions directions_along(const TriangleMesh& mesh, std::vector<Vec3d> outward)

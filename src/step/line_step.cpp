@@ -153,24 +153,29 @@ OptionList describe(LineStepOptions& o)
         "Lines",
         {option("test", o.test, "--stop-test", "When a line stops"),
          option("rho", o.rho, "--rho", "Threshold of the normal tests, a cosine")
+             .needing("--stop-test normal start-gradient relative-normal")
              .within(at_least(0).below(1)),
          option("step_voxels", o.step_voxels, "--step", "Increment along a line, voxels")
              .in(Unit::voxels)
              .within(at_least(kSmallestStepVoxels)),
          option("distance_threshold_voxels", o.distance_threshold_voxels, "--distance-threshold",
                 "Threshold of the distance test and of bisection, voxels")
+             .needing("--stop-test distance bisection")
              .in(Unit::voxels)
              .within(above(0)),
          option("bisection_iterations", o.bisection_iterations, "--bisection-iterations",
                 "Iteration limit of bisection")
+             .needing("--stop-test bisection")
              .in(Unit::count)
              .within(at_least(1)),
          option("reference_voxels", o.reference_voxels, "--reference",
                 "Where relative-normal and own-sheet begin to compare, voxels from the start")
+             .needing("--stop-test relative-normal own-sheet")
              .in(Unit::voxels)
              .within(above(0)),
          option("sheet_angle_radians", o.sheet_angle_radians, "--sheet-angle",
                 "own-sheet: surfaces that meet at less than this are one, radians")
+             .needing("--stop-test own-sheet")
              .in(Unit::radians)
              .within(above(0).below(kMostRadians)),
          option("thickness", o.thickness, "--thickness",

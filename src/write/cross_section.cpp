@@ -115,16 +115,19 @@ const NameTable<Axis>& names(Axis)
 
 OptionList describe(CrossSectionOptions& o)
 {
-    return in_group("Output", {option("axis", o.axis, "--section-axis",
-                                      "Normal of the picture's cutting plane"),
-                               option("position", o.position, "--section-position",
-                                      "Place of the cutting plane, as a share of the bounding box")
-                                   .in(Unit::share)
-                                   .within(at_least(0).at_most(1)),
-                               option("width_pixels", o.width_pixels, "--picture-width",
-                                      "Pixels along the picture's longer side")
-                                   .in(Unit::pixels)
-                                   .within(at_least(kSmallestWidth).at_most(kLargestWidth))});
+    return in_group(
+        "Output", {option("axis", o.axis, "--section-axis", "Normal of the picture's cutting plane")
+                       .needing("--output .png"),
+                   option("position", o.position, "--section-position",
+                          "Place of the cutting plane, as a share of the bounding box")
+                       .needing("--output .png")
+                       .in(Unit::share)
+                       .within(at_least(0).at_most(1)),
+                   option("width_pixels", o.width_pixels, "--picture-width",
+                          "Pixels along the picture's longer side")
+                       .needing("--output .png")
+                       .in(Unit::pixels)
+                       .within(at_least(kSmallestWidth).at_most(kLargestWidth))});
 }
 
 void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,

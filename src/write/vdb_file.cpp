@@ -29,6 +29,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <new>
 #include <utility>
 
 namespace vdb_shell
@@ -169,9 +170,9 @@ void write_sealed(const fs::path& path, openvdb::GridPtrVec grids, openvdb::Meta
     seal_vdb(path);
 }
 
-/// Runs `read`, turning what OpenVDB and the allocator throw at damaged data into ReadError. Errors
-/// of our own pass as they are, since they already name the place. bad_alloc is caught too: a
-/// damaged length may ask for more memory than there is.
+/// Runs `read`, turning what OpenVDB throws at damaged data into ReadError. Errors of our own pass
+/// as they are, since they already name the place; so does std::bad_alloc, which says nothing
+/// against the file.
 template <typename Read> auto guarded(const fs::path& path, const Read& read)
 {
     openvdb::initialize();
@@ -179,6 +180,8 @@ template <typename Read> auto guarded(const fs::path& path, const Read& read)
         require_whole_vdb(path);
         return read();
     } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
         throw ReadError(path.string() + ": cannot be read: " + error.what());
@@ -218,9 +221,11 @@ OptionList describe(VdbWriteOptions& o)
     return in_group(
         "Output",
         {option("points", o.points, "--points",
-                "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb"),
+                "Where a .vdb's point grids go: in the same file, or beside it in NAME.points.vdb")
+             .needing("--output .vdb"),
          option("half", o.half, "--half",
-                "Save a .vdb's volumes with half floats; its points stay exact")});
+                "Save a .vdb's volumes with half floats; its points stay exact")
+             .needing("--output .vdb")});
 }
 
 void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWriteOptions& options,

@@ -97,14 +97,13 @@ def calls(args, folder, log, more):
         require(status == WRITE_ERROR and folder.state() == "old" and error.count("\n") == 1, at)
 
 
-def allocations(args, folder, log):
+def allocations(args, line, folder, log):
     """Sampled, the first ones and then ever more rarely."""
     tried, n, statuses = 0, 1, {}
     while tried < args.allocations:
         folder.fill()
         log.unlink(missing_ok=True)
-        status, error = run(command_line(args.command, args.mesh, folder),
-                            {"LD_PRELOAD": args.new, "FAULT_NEW": str(n), "FAULT_LOG": str(log)})
+        status, error = run(line, {"LD_PRELOAD": args.new, "FAULT_NEW": str(n), "FAULT_LOG": str(log)})
         if not log.exists():
             break
         tried += 1
@@ -112,7 +111,7 @@ def allocations(args, folder, log):
         state = folder.state()
         at = f"allocation {n}: status {status}, {state}, {error!r}"
         # Some are asked for by code that can do without: then all is as if nothing had been.
-        require((status == 0 and state == "new") or (status != 0 and state == "old"), at)
+        require(not folder.names or state == ("new" if status == 0 else "old"), at)
         require(status in (0, OUT_OF_MEMORY), at)
         n += max(1, n // args.sparse)
     return tried, statuses
@@ -165,10 +164,13 @@ def main():
             print("calls, over old files:", calls(args, over, log, {}), flush=True)
             print("calls, where nothing was:", calls(args, fresh, log, {}), flush=True)
             print("calls, without hard links:", calls(args, over, log, {"FAULT_NO_LINKS": "1"}), flush=True)
-            print("allocations:", *allocations(args, over, log), flush=True)
-            mesh = args.large or args.mesh
             shell = pathlib.Path(work) / "shell.vdb"
-            subprocess.run([args.command, "build", mesh, "--resolution", "16", "--samples", "0", "-q", "-o", shell], check=True)
+            make = [args.command, "build", args.mesh, "--resolution", "16", "--samples", "0", "-q", "-o", shell]
+            subprocess.run(make, check=True)
+            for name, (line, names) in lines(args.command, args.mesh, shell, over).items():
+                print(f"allocations, {name}:", *allocations(args, line, Folder(outputs, True, names), log), flush=True)
+            mesh = args.large or args.mesh
+            subprocess.run([mesh if word == args.mesh else word for word in make], check=True)
             for name, (line, names) in lines(args.command, mesh, shell, over).items():
                 worst, seen = signals(line, Folder(outputs, True, names), args.signals)
                 print(f"signals, {name}: {args.signals}, worst answer {1000 * worst:.0f} ms, {seen}", flush=True)

@@ -230,9 +230,11 @@ TEST_F(FilePlans, StoredTextThatIsNoJsonIsRefusedByName)
 
 TEST_F(FilePlans, UnsignedOptionsAreNotNegative)
 {
-    for (const char* option : {"--samples", "--sample-seed", "--decimate-to", "--layers"})
-        EXPECT_EQ(run(build + option + " -1" + out("a.vtu")).status, ExitCode::usage_error)
-            << option;
+    for (const char* option :
+         {"--samples", "--samples-seed", "--perturb-seed", "--ripple-seed", "--decimate-to",
+          "--remesh-to", "--max-tets", "--want-tets", "--coarse-from", "--layers"})
+        expect_refusal("build " + box + " " + option + " -1" + out("a.vtu"), ExitCode::usage_error,
+                       {std::string(option) + " is -1, must be"});
     EXPECT_FALSE(fs::exists(folder / "a.vtu"));
 }
 

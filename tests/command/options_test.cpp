@@ -66,12 +66,63 @@ TEST_F(Options, ImpossibleOnesAreRefusedByTheirFlagsBeforeAnyFileIsRead)
     refused("--remesh-to 300 --remesh-edge-length 1", "--remesh-to excludes --remesh-edge-length");
     refused("--remesh-tolerance 1", "--remesh-tolerance needs --remesh-edge-length or --remesh-to");
     refused("--remesh-map m.json", "--remesh-map needs --remesh-edge-length or --remesh-to");
+    refused("--remesh-feature-angle 1",
+            "--remesh-feature-angle needs --remesh-edge-length or --remesh-to");
     refused("--remesh-to 300 --remesh-map m.txt", "unknown extension \".txt\" for a remesh map");
     refused("--remesh-to 300 --decimate-to 300", "decimate and remesh: one or the other");
     expect_refusal("inspect " + file("none.obj") + " --voxel-size 0", ExitCode::usage_error,
                    {"--voxel-size is 0, must be above 0"});
     expect_refusal("repair " + file("none.obj") + " -o x.obj --sliver-height -2",
                    ExitCode::usage_error, {"--sliver-height is -2, must be 0 or more"});
+}
+
+TEST_F(Options, OnesWithoutTheirPartnerAreRefused)
+{
+    const std::string build = "build " + file("none.obj") + " -o " + file("x.vtu") + " ";
+    const std::pair<const char*, const char*> lonely[] = {
+        {"--half", "--output .vdb"},
+        {"--points beside", "--output .vdb"},
+        {"--up-axis z", "--output .usda"},
+        {"--metres-per-unit 2", "--output .usda"},
+        {"--section-axis x", "--output .png"},
+        {"--section-position 0.3", "--output .png"},
+        {"--picture-width 64", "--output .png"},
+        {"--wrap-voxel-size 1", "--wrap"},
+        {"--wrap-resolution 64", "--wrap"},
+        {"--wrap-adaptivity 1", "--wrap"},
+        {"--wrap-sheet 2", "--wrap"},
+        {"--wrap-keep-voids", "--wrap"},
+        {"--perturb-seed 2", "--perturb"},
+        {"--ripple-seed 2", "--split ripple"},
+        {"--layer-grading 2", "--layers"},
+        {"--stop-test none --thickness 1 --rho 0.5",
+         "--stop-test normal start-gradient relative-normal"},
+        {"--distance-threshold 2", "--stop-test distance bisection"},
+        {"--stop-test distance --bisection-iterations 9", "--stop-test bisection"},
+        {"--reference 2", "--stop-test relative-normal own-sheet"},
+        {"--sheet-angle 0.2", "--stop-test own-sheet"},
+        {"--core-fill-ratio 2", "--core-fill tetgen"},
+        {"--core-fill gmsh --core-fill-ratio 2", "--core-fill tetgen"},
+        {"--core-fill-edge-length 2", "--core-fill"},
+        {"--core-fill-seconds 2", "--core-fill"},
+        {"--core-reach 0.3", "--core"},
+        {"--method raw --min-quality 0.1", "--method certified thickest"},
+        {"--method raw --free-rounds 4", "--method certified thickest"},
+        {"--method raw --coarse-from 0", "--method certified thickest"}};
+    for (const auto& [given, needed] : lonely) {
+        const std::string flags(given), last = flags.substr(flags.rfind("--"));
+        expect_refusal(build + flags, ExitCode::usage_error,
+                       {last.substr(0, last.find(' ')) + " needs " + needed});
+    }
+    expect_refusal("convert " + file("none.vdb") + " --half -o " + file("x.vtu"),
+                   ExitCode::usage_error, {"--half needs --output .vdb"});
+    // With its partner, also from a file or in capitals, or turned off: on to the missing surface.
+    for (const std::string& fine :
+         {std::string("--wrap-sheet 2 --wrap"),
+          preset(R"({"wrap": {"wanted": true}})") + "--wrap-sheet 2", "--half -o " + file("y.VDB"),
+          std::string("--no-half --no-wrap-keep-voids"),
+          std::string("--layers-auto --layer-grading 2")})
+        expect_refusal(build + fine, ExitCode::read_error, {"none.obj"});
 }
 
 TEST_F(Options, RemeshingReportsWhatItDidAndWritesItsMap)

@@ -142,6 +142,20 @@ TEST(CutLayers, CountsFromTheSkinOnBothSides)
     EXPECT_EQ(above.stack.skin, 2U);
 }
 
+// Cuts at shares below 2^-24 fall on the skin: layers without a tet, which are counted.
+TEST(CutLayers, LayersThinnerThanFloatsAreCountedAsEmpty)
+{
+    const SplitShell ball = test::scaled_shell(icosphere(1, 0), 0.5f);
+    const LayerResult cut = cut_layers(stack_of(ball), layers(64, 2), PrismTest::twelve_tets);
+    expect_cut_of(stack_of(ball), cut, 64);
+    std::size_t empty = 0;
+    for (std::size_t k = 0; k < cut.stack.layers.size(); ++k)
+        empty += make_tets(cut.stack.layers[k], cut.stack.splits[k]).tets.empty();
+    EXPECT_EQ(cut.report.empty, empty);
+    EXPECT_GT(empty, 30U);
+    EXPECT_EQ(cut_layers(stack_of(ball), layers(8, 2), PrismTest::twelve_tets).report.empty, 0U);
+}
+
 TEST(CutLayers, OneLayerChangesNoBit)
 {
     const ShellStack whole = stack_of(test::folded_shell());

@@ -139,17 +139,19 @@ TEST(Report, SaysWhatGrowthScalingAndCuttingDid)
     report.grow->tets_below_quality = 51;
     report.grow->vertices_below_quality = 17;
     report.scale = ScaleReport{6, 2};
-    report.cut = LayerReport{8, 5};
+    report.cut = LayerReport{8, 5, 2};
     const std::string text = report_text(report);
     EXPECT_NE(text.find("3 pins released"), std::string::npos) << text;
     EXPECT_NE(text.find("4 rounds; still below: 51 tets, 17 inner vertices"), std::string::npos);
     EXPECT_NE(text.find("6 pillars shortened further, 2 of them pinned"), std::string::npos);
-    EXPECT_NE(text.find("8 points between them moved, 5 pillars left whole"), std::string::npos);
+    EXPECT_NE(text.find("8 points between them moved, 5 pillars left whole; 2 LAYERS ARE EMPTY"),
+              std::string::npos);
     const json figures = json::parse(report_json(report));
     EXPECT_EQ(figures.at("/growth/released_pins"_json_pointer), 3);
     EXPECT_EQ(figures.at("/growth/tets_below_quality"_json_pointer), 51);
     EXPECT_EQ(figures.at("/scale/shortened_pillars"_json_pointer), 6);
     EXPECT_EQ(figures.at("/cut/uncut_pillars"_json_pointer), 5);
+    EXPECT_EQ(figures.at("/cut/empty_layers"_json_pointer), 2);
 }
 
 TEST(Report, NamesTheLayerThatFails)

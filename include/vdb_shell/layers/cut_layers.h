@@ -35,6 +35,7 @@ void require_sensible(const LayerOptions& options);
 struct LayerReport {
     std::size_t moved = 0; ///< points between the layers that are not where the grading puts them
     std::size_t uncut = 0; ///< pillars that stayed whole: pinned in all layers but the farthest
+    std::size_t empty = 0; ///< layers in which every pillar is pinned, so that they have no tets
 };
 
 struct LayerResult {

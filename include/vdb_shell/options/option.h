@@ -55,7 +55,7 @@ struct Option {
     std::vector<std::string> names; ///< further names of the flag: "-o"
     Unit unit = Unit::none;
     Range range;
-    std::string needs;         ///< flag without which this one has no meaning
+    std::string needs;         ///< flag without which this one has no meaning (docs/options.md)
     std::string excludes;      ///< flag that sets the same thing in another way
     std::string shorthand;     ///< a flag of its own for one of the choices...
     std::string shorthand_for; ///< ...which is this one
