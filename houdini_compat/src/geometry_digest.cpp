@@ -90,7 +90,7 @@ std::string digests_of(const HoudiniGeometry& geometry)
 {
     std::string text;
     for (const auto& [part, hex] : lines_of(geometry))
-        text += part + " " + hex + "\n";
+        text.append(part).append(" ").append(hex).append("\n");
     return text;
 }
 

@@ -40,10 +40,10 @@ void add_digests(openvdb::MetaMap& metadata, const openvdb::GridPtrVec& grids)
             all.push_back(std::move(one));
     std::string text;
     for (const NamedDigest& one : all) {
-        text += one.name + " " + one.hex;
+        text.append(one.name).append(" ").append(one.hex);
         // Attributes are spread over the bytes of their grid, so they have none of their own.
         if (one.name.find('.') == one.name.npos)
-            text += " " + std::string(kUnsealed);
+            text.append(" ").append(kUnsealed);
         text += "\n";
     }
     metadata.insertMeta(kDigestsKey, openvdb::StringMetadata(text));

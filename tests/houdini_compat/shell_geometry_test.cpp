@@ -244,7 +244,7 @@ TEST(ShellGeometry, CheckCertifiesWhatWasReadBack)
         const ShellFile read = read_shell_geometry(folder / name);
         expect_same_shell(read, file);
         const auto findings = verify_shell(read);
-        EXPECT_EQ(findings.size(), 6u);
+        EXPECT_EQ(findings.size(), 7u);
         for (const Verification& finding : findings)
             EXPECT_TRUE(finding.holds) << finding.what << ": " << finding.detail;
     }
