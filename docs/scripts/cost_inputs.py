@@ -157,6 +157,11 @@ def nested_spheres(n):
     return joined(sphere(n // 100, 1 + .1 * i) for i in range(100))
 
 
+def deep_spheres(n):
+    """The same, a thousand deep at 80,000: the number of them grows, and not that of their triangles."""
+    return joined(sphere(80, 1 + i) for i in range(max(1, n // 80)))
+
+
 def many_components(n):
     """Octahedra, apart from one another."""
     side = math.ceil((n / 8) ** (1 / 3))
@@ -206,4 +211,4 @@ def long_rim(n):
 
 MAKERS = {maker.__name__: maker for maker in (
     tet_faces, tet_boundaries, height_field, one_repeated, all_doubled, fins, one_vertex, fans_at_a_point,
-    nested_spheres, many_components, holes_of_sphere, needles, soup, in_one_voxel, long_rim)}
+    nested_spheres, deep_spheres, many_components, holes_of_sphere, needles, soup, in_one_voxel, long_rim)}

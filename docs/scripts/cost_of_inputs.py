@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Times `inspect`, `repair` and `build --wrap` on surfaces that are hard for some stage, for growing numbers of
+"""Times `build`, `inspect`, `repair` and `build --wrap` on surfaces that are hard for some stage, for growing numbers of
 triangles, and writes the tables of docs/measurements/cost_of_inputs.md.
 
     cost_of_inputs.py COMMAND docs/measurements/cost_of_inputs.md [--sizes N ...] [--inputs NAME ...] [--results FILE]
@@ -20,9 +20,11 @@ import tempfile
 from cost_inputs import MAKERS
 from runs import Results, replace_tables, table
 
-COMMANDS = {"inspect": lambda mesh, folder: ["inspect", mesh],
+COMMANDS = {"build": lambda mesh, folder: ["build", "--resolution", "64", "--samples", "0", "-q", mesh, "-o", folder + "/shell.vtu"],
+            "inspect": lambda mesh, folder: ["inspect", mesh],
             "repair": lambda mesh, folder: ["repair", mesh, "-o", folder + "/mended.ply"],
-            "wrap": lambda mesh, folder: ["build", "--wrap", "--wrap-resolution", "64", "-q", mesh]}
+            "wrap": lambda mesh, folder: ["build", "--wrap", "--wrap-resolution", "64", "--resolution", "64", "--samples", "0", "-q", mesh, "-o",
+                                         folder + "/wrapped.vtu"]}
 
 
 def write_ply(path, points, triangles):

@@ -81,8 +81,8 @@ Stance stance_of(const TriangleCorners& piece)
 void sort_run(const TriangleCorners* pieces, std::size_t count, const WindingNumber& winding,
               Part* parts)
 {
-    std::array<Stance, kPiecesAtOnce> stances;
-    std::array<Vec3d, 2 * kPiecesAtOnce> points;
+    std::array<Stance, kPiecesAtOnce> stances{};
+    std::array<Vec3d, 2 * kPiecesAtOnce> points{};
     std::array<float, 2 * kPiecesAtOnce> turns{};
     for (std::size_t i = 0; i < count; ++i) {
         stances[i] = stance_of(pieces[i]);
@@ -156,7 +156,7 @@ public:
     /// At voxels of one block.
     void at(const Coord* voxels, std::size_t count, float* values)
     {
-        std::array<Vec3d, kBlockVoxels> points;
+        std::array<Vec3d, kBlockVoxels> points{};
         for (std::size_t i = 0; i < count; ++i)
             points[i] = voxels[i].asVec3d();
         winding_.around(points.data(), count, values);

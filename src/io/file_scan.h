@@ -39,6 +39,11 @@ FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& 
 FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& coordinates);
 FileScan scan_off(const std::string& name, std::string_view bytes, Coordinates& coordinates);
 FileScan scan_stl(const std::string& name, std::string_view bytes, Coordinates& coordinates);
+using Scan = FileScan (*)(const std::string& name, std::string_view bytes, Coordinates&);
+
+/// What read_mesh makes of the bytes of a file.
+ReadResult mesh_of_bytes(const std::string& name, Scan scan, std::string bytes,
+                         const ReadOptions& options);
 
 /// Removes corners that repeat the corner before them. False when what is left is no polygon: fewer
 /// than three corners, or none that comes only once.

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -21,8 +22,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-using Scan = FileScan (*)(const std::string& name, std::string_view bytes, Coordinates&);
 
 Scan scan_for(const fs::path& path)
 {
@@ -43,12 +42,9 @@ Scan scan_for(const fs::path& path)
 
 } // namespace
 
-ReadResult read_mesh(const fs::path& path, const ReadOptions& options)
+ReadResult mesh_of_bytes(const std::string& name, Scan scan, std::string bytes,
+                         const ReadOptions& options)
 {
-    const std::string name = path.string();
-    // Before the file is read, so a wrong name costs no time.
-    const Scan scan = scan_for(path);
-    std::string bytes = read_whole_file(path);
     Coordinates coordinates;
     if (options.recentre || options.rescale) {
         // The origin must be known before the first coordinate is rounded.
@@ -60,6 +56,13 @@ ReadResult read_mesh(const fs::path& path, const ReadOptions& options)
     // A large file and the mesh that comes of it need not be in memory at the same time.
     std::string().swap(bytes);
     return mesh_of_scan(name, std::move(found), coordinates, options);
+}
+
+ReadResult read_mesh(const fs::path& path, const ReadOptions& options)
+{
+    // Before the file is read, so a wrong name costs no time.
+    const Scan scan = scan_for(path);
+    return mesh_of_bytes(path.string(), scan, read_whole_file(path), options);
 }
 
 } // namespace vdb_shell

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Sends SIGINT, SIGTERM and SIGHUP at random moments to every command while it works on a large mesh, and writes the table of
+docs/reliability.md: how long the command takes to end, worst of many.
+
+    signal_latencies.py COMMAND MESH docs/reliability.md [--signals N] [--results FILE] [--commands NAME ...] [--stages]
+
+Looks at the folder after each signal: outputs all old or all new, nothing else in it, exit status 128 and the signal's number, or
+0 where the work was done. --stages prints which stage of `build` each signal met. --results keeps what was measured.
+"""
+import argparse
+import collections
+import pathlib
+import random
+import signal
+import statistics
+import subprocess
+import tempfile
+import time
+
+from runs import Results, replace_tables, table
+
+SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+WANTED_SECONDS = .5
+
+
+def lines(command, mesh, shell, out):
+    """What signals are sent to, and the files that each writes."""
+    def writing(words, *names):
+        return [*words, *(word for name in names for word in ("-o", str(out / name)))], names
+
+    def build(*more):
+        return writing([command, "build", mesh, "-q", "--progress", *more], "s.vdb", "s.vtu", "s.bgeo")
+
+    return {"build": build(), "build --repair": build("--repair"), "build --thickest --layers 3": build("--thickest", "--layers", "3"),
+            "build --taper": build("--taper"), "build --side both": build("--side", "both"),
+            "build --wrap": build("--wrap"), "build --remesh-to 50000": build("--remesh-to", "50000"),
+            "inspect": writing([command, "inspect", mesh], "i.ply"), "repair": writing([command, "repair", mesh], "r.ply"),
+            "info": ([command, "info", shell], ()), "check": ([command, "check", shell], ()),
+            "convert": writing([command, "convert", shell], "c.vdb", "c.vtu", "c.usda", "c.geo")}
+
+
+def fill(out, names):
+    for file in out.iterdir():
+        file.unlink()
+    for name in names:
+        (out / name).write_text("old")
+
+
+def state(out, names):
+    """Which of the outputs are new; None where something else lies there."""
+    if sorted(file.name for file in out.iterdir()) != sorted(names):
+        return None
+    return [(out / name).read_bytes() != b"old" for name in names]
+
+
+def send(line, names, out, delay, number):
+    """One run: seconds from the signal to the end, the last stage that was named, and what is wrong."""
+    fill(out, names)
+    with tempfile.TemporaryFile("w+") as errors:
+        process = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=errors)
+        time.sleep(delay)
+        began = time.monotonic()
+        process.send_signal(number)
+        status = process.wait(timeout=300)
+        latency = time.monotonic() - began
+        errors.seek(0)
+        said = errors.read().splitlines()
+    stages = [text.split(": ", 1)[1] for text in said if text.startswith("vdb_shell: ") and "stopped by" not in text]
+    new = state(out, names)
+    wrong = []
+    if status not in (0, 128 + number, -number):
+        wrong.append(f"status {status}: {said[-1:]}")
+    if new is None or len(set(new)) > 1 or (status == 0 and not all(new)):
+        wrong.append("outputs are torn, or something is left over")
+    if status == 128 + number and latency > WANTED_SECONDS:
+        wrong.append(f"{latency:.2f} s")
+    return {"seconds": latency if status == 128 + number else None, "stage": stages[-1] if stages else "start", "wrong": wrong}
+
+
+def series(line, names, out, count, seed):
+    generator = random.Random(seed)
+    fill(out, names)
+    began = time.monotonic()
+    subprocess.run(line, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+    whole = time.monotonic() - began
+    runs = [send(line, names, out, generator.uniform(0, 1.02 * whole), SIGNALS[k % 3]) for k in range(count)]
+    return {"whole": whole, "runs": runs}
+
+
+def row(name, found):
+    seconds = sorted(run["seconds"] for run in found["runs"] if run["seconds"] is not None)
+    wrong = [text for run in found["runs"] for text in run["wrong"]]
+    return [f"`{name}`", f"{found['whole']:.1f}", str(len(found["runs"])), str(len(seconds)),
+            f"{1000 * statistics.median(seconds):.0f}" if seconds else "", f"{1000 * seconds[-1]:.0f}" if seconds else "",
+            str(len(wrong))]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command")
+    parser.add_argument("mesh")
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("--signals", type=int, default=90)
+    parser.add_argument("--results")
+    parser.add_argument("--commands", nargs="+")
+    parser.add_argument("--stages", action="store_true")
+    options = parser.parse_args()
+    results = Results(options.results)
+    with tempfile.TemporaryDirectory() as work:
+        shell, out = pathlib.Path(work) / "shell.vdb", pathlib.Path(work) / "out"
+        out.mkdir()
+        subprocess.run([options.command, "build", options.mesh, "-q", "-o", shell], check=True)
+        for name, (line, names) in lines(options.command, options.mesh, str(shell), out).items():
+            if name in results.runs or (options.commands and name not in options.commands):
+                continue
+            results.keep(name, series(line, names, out, options.signals, name))
+            print(*row(name, results.runs[name]), *(run["wrong"] for run in results.runs[name]["runs"] if run["wrong"]), flush=True)
+    if options.stages:
+        stages = collections.defaultdict(list)
+        for name, found in results.runs.items():
+            for run in found["runs"]:
+                if name.startswith("build") and run["seconds"] is not None:
+                    stages[run["stage"]].append(run["seconds"])
+        for stage, seconds in stages.items():
+            print(f"{stage}: {len(seconds)} signals, worst {1000 * max(seconds):.0f} ms")
+    head = ["command", "seconds of a run", "signals", "answered", "median ms", "worst ms", "violations"]
+    replace_tables(options.page, table(head, [row(name, found) for name, found in results.runs.items()]), "signals")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the fuzzers of a build with the preset `fuzz`, one after the other.
+
+    run.py BUILD_FOLDER [--seconds N] [--targets NAME ...] [--work FOLDER]
+
+Each begins with the inputs in tests/fuzz/inputs/NAME and with what earlier runs found (WORK/NAME). An input that breaks
+something is kept as WORK/NAME-crash-*, -timeout-* or -oom-*; `BUILD_FOLDER/tests/fuzz_NAME FILE` runs it again. Inputs and
+seconds of all runs are added up in WORK/counts.json. Prints a table, and fails if anything broke.
+"""
+import argparse
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+# Bytes of an input at most: the smaller, the faster; a .vdb of one voxel has some thousand.
+LONGEST = {"tiny_meshes": 160, "vdb": 30000, "houdini": 16000}
+
+
+def run(build, name, seconds, work):
+    corpus = work / name
+    corpus.mkdir(parents=True, exist_ok=True)
+    dictionary = HERE / "dictionaries" / f"{name}.dict"
+    line = [build / "tests" / f"fuzz_{name}", corpus, HERE / "inputs" / name, f"-max_total_time={seconds}",
+            f"-max_len={LONGEST.get(name, 2000)}", "-timeout=30", "-rss_limit_mb=3000", "-print_final_stats=1",
+            "-verbosity=1", f"-artifact_prefix={work / name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])]
+    began = time.monotonic()
+    done = subprocess.run([str(word) for word in line], capture_output=True, text=True, errors="replace")
+    count = re.search(r"stat::number_of_executed_units:\s*(\d+)", done.stderr)
+    ways = re.findall(r"cov: (\d+)", done.stderr)
+    if done.returncode:
+        print(done.stderr[-4000:])
+    return {"inputs": int(count[1]) if count else 0, "seconds": time.monotonic() - began,
+            "broken": int(done.returncode != 0), "edges": int(ways[-1]) if ways else 0}
+
+
+def main():
+    names = sorted(path.name for path in (HERE / "inputs").iterdir())
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--seconds", type=int, default=30)
+    parser.add_argument("--targets", nargs="+", choices=names, default=names)
+    parser.add_argument("--work", type=pathlib.Path, help="default: fuzz in the build's folder")
+    options = parser.parse_args()
+    work = options.work or options.build / "fuzz"
+    work.mkdir(parents=True, exist_ok=True)
+    counts = work / "counts.json"
+    sums = json.loads(counts.read_text()) if counts.exists() else {}
+    broken = 0
+    print("| target | inputs | seconds | broken | all inputs | all hours |\n|---|---|---|---|---|---|")
+    for name in options.targets:
+        found = run(options.build, name, options.seconds, work)
+        broken += found["broken"]
+        both = sums.setdefault(name, {"inputs": 0, "seconds": 0, "broken": 0})
+        for key in both:
+            both[key] += found[key]
+        counts.write_text(json.dumps(sums, indent=1) + "\n")
+        print(f"| {name} | {found['inputs']:,} | {found['seconds']:.0f} | {found['broken']} | {both['inputs']:,} | "
+              f"{both['seconds'] / 3600:.2f} |", flush=True)
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
