@@ -177,6 +177,26 @@ void write_tet_primvars(UsdStage& stage)
     });
 }
 
+/// Where pillars ended at cores: at their innermost points, as in the other formats.
+void write_core_primvars(UsdStage& stage, const Samples& samples)
+{
+    if (std::all_of(samples.begin(), samples.end(),
+                    [](const UsdSample& s) { return s.shell->core_feet.empty(); }))
+        return;
+    const auto add = [&stage](const char* declaration, const auto& value) {
+        stage.primvar(declaration, [value](const UsdSample& s) {
+            std::vector<CoreFoot> feet =
+                feet_of_tet_points(s.shell->stack, s.shell->tets, s.shell->core_feet);
+            feet.resize(s.shell->tets.points.size());
+            return per_point(s, [&](std::size_t i) { return value(feet[i]); });
+        });
+    };
+    add("int[] primvars:core", [](const CoreFoot& foot) { return foot.core; });
+    add("float[] primvars:coreDistance", [](const CoreFoot& foot) { return foot.distance; });
+    add("int[] primvars:coreTriangle", [](const CoreFoot& foot) { return foot.triangle; });
+    add("float3[] primvars:coreUvw", [](const CoreFoot& foot) { return foot.uvw; });
+}
+
 /// Custom properties and not primvars: uniform primvars of a TetMesh have one value for each face
 /// that is drawn, not one for each tet.
 void write_tet_properties(UsdStage& stage, const Samples& samples)
@@ -205,6 +225,7 @@ void write_tets(UsdStage& stage, const Samples& samples)
     stage.line("uniform token orientation = \"rightHanded\"");
     stage.attribute("point3f[] points",
                     [](const UsdSample& s) { return usd_array(s.shell->tets.points); });
+    write_core_primvars(stage, samples);
     write_tet_primvars(stage);
     stage.attribute("int3[] surfaceFaceVertexIndices", [](const UsdSample& s) {
         return usd_array(boundary_triangles(s.shell->tets));

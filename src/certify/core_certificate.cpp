@@ -122,18 +122,17 @@ std::array<std::uint32_t, 3> bits_of(const Vec3s& point)
     return bits;
 }
 
-/// Own points are the lone vertices, each with its very bits, and then points of the inside.
+/// Own points are the lone vertices and those of holes, each with its very bits, and then points of
+/// the inside.
 void check_points(const VoidSurface& surface, std::size_t shell_points, const CoreTets& core,
                   CoreCertificate& certificate)
 {
-    const std::size_t lone = surface.lone_vertices.size();
-    for (std::uint32_t i = 0; i < std::max(lone, core.points.size()); ++i) {
+    const std::size_t lone = surface.lone_vertices.size(), given = lone + surface.hole_points;
+    for (std::uint32_t i = 0; i < std::max(given, core.points.size()); ++i) {
         const bool own = i < core.points.size();
-        const bool sound =
-            i < lone ? own && core.source_vertex[i] == surface.lone_vertices[i] &&
-                           bits_of(core.points[i]) == bits_of(surface.points[shell_points + i])
-                     : core.source_vertex[i] == CoreTets::kNoVertex;
-        if (!sound)
+        const std::uint32_t vertex = i < lone ? surface.lone_vertices[i] : CoreTets::kNoVertex;
+        if (!own || core.source_vertex[i] != vertex ||
+            (i < given && bits_of(core.points[i]) != bits_of(surface.points[shell_points + i])))
             add_to(certificate.foreign_points, i);
     }
     std::vector<char> unused(core.points.size(), 1);
@@ -142,6 +141,16 @@ void check_points(const VoidSurface& surface, std::size_t shell_points, const Co
             if (tet[corner] >= shell_points)
                 unused[tet[corner] - shell_points] = 0;
     certificate.unused_points = raised(unused);
+}
+
+/// The boundary of the solid without its holes.
+TriangleMesh less_holes(TriangleMesh solid, const TriangleMesh& holes)
+{
+    const auto first = std::uint32_t(solid.points.size());
+    solid.points.insert(solid.points.end(), holes.points.begin(), holes.points.end());
+    for (const Vec3I& t : holes.triangles)
+        solid.triangles.emplace_back(first + t[0], first + t[2], first + t[1]);
+    return solid;
 }
 
 template <typename Visit> void for_each_kind(const CoreCertificate& c, const Visit& visit)
@@ -158,7 +167,7 @@ template <typename Visit> void for_each_kind(const CoreCertificate& c, const Vis
 
 } // namespace
 
-VoidSurface void_surface(const ShellStack& stack, const TetMesh& tets)
+VoidSurface void_surface(const ShellStack& stack, const TetMesh& tets, const TriangleMesh& holes)
 {
     assert(stack.skin == 0);
     const FreeFaces free = find_free_faces(stack, tets);
@@ -176,6 +185,12 @@ VoidSurface void_surface(const ShellStack& stack, const TetMesh& tets)
             if (face[k] >= tets.points.size())
                 surface.lone_vertices[face[k] - tets.points.size()] = stack.triangles()[f][k];
     }
+    const auto first = std::uint32_t(surface.points.size());
+    surface.hole_points = holes.points.size();
+    surface.points.insert(surface.points.end(), holes.points.begin(), holes.points.end());
+    // Turned, for the void lies outside of them.
+    for (const Vec3I& t : holes.triangles)
+        surface.triangles.emplace_back(first + t[0], first + t[2], first + t[1]);
     return surface;
 }
 
@@ -196,7 +211,8 @@ std::vector<std::string> CoreCertificate::failures() const
     return lines;
 }
 
-CoreCertificate certify_core(const ShellStack& stack, const TetMesh& tets, const CoreTets& core)
+CoreCertificate certify_core(const ShellStack& stack, const TetMesh& tets, const CoreTets& core,
+                             const TriangleMesh& holes)
 {
     assert(core.source_vertex.size() == core.points.size());
     CoreCertificate certificate;
@@ -208,15 +224,45 @@ CoreCertificate certify_core(const ShellStack& stack, const TetMesh& tets, const
     }
     if (certificate.corners_out_of_range.count > 0)
         return certificate;
-    const VoidSurface surface = void_surface(stack, tets);
+    const VoidSurface surface = void_surface(stack, tets, holes);
     check_points(surface, tets.points.size(), core, certificate);
     const TetMesh all = joined_tets(tets, core);
     check_signs(all, tets.tets.size(), certificate);
     // Lone vertices that the core leaves out have numbers all the same.
     check_faces(core.tets, surface, std::max(points, surface.points.size()), certificate);
+    const TriangleMesh solid = less_holes({stack.surface(0), stack.triangles()}, holes);
     certificate.volume_agrees =
-        exact::same_volume(all.points, all.tets, stack.surface(0), stack.triangles());
+        exact::same_volume(all.points, all.tets, solid.points, solid.triangles);
     return certificate;
+}
+
+TriangleMesh holes_of_core(const ShellStack& stack, const TetMesh& tets, const CoreTets& core)
+{
+    const VoidSurface surface = void_surface(stack, tets);
+    const std::size_t first = tets.points.size() + surface.lone_vertices.size();
+    const std::size_t points = tets.points.size() + core.points.size();
+    const std::vector<Face> faces =
+        sorted_faces(core.tets, surface, std::max(points, surface.points.size()));
+    TriangleMesh holes;
+    std::size_t end = first;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const auto alike = [&](std::size_t k) {
+            return k < faces.size() && faces[k].corners == faces[i].corners;
+        };
+        if (faces[i].wall || alike(i + 1) || (i > 0 && alike(i - 1)))
+            continue;
+        const auto& c = faces[i].corners;
+        if (c[0] < first)
+            return {};
+        end = std::max(end, std::size_t(c[2]) + 1);
+        // The tet sees its face from inside, and the hole is on the other side.
+        const auto a = std::uint32_t(c[0] - first), b = std::uint32_t(c[1] - first),
+                   d = std::uint32_t(c[2] - first);
+        holes.triangles.push_back(faces[i].even ? Vec3I(a, d, b) : Vec3I(a, b, d));
+    }
+    const auto own = core.points.begin() + std::ptrdiff_t(surface.lone_vertices.size());
+    holes.points.assign(own, own + std::ptrdiff_t(end - first));
+    return holes;
 }
 
 } // namespace vdb_shell

@@ -144,9 +144,11 @@ CoreTets core_of(const MesherTets& made, const std::vector<openvdb::Vec3s>& poin
                  const Handed& handed, const VoidSurface& surface)
 {
     CoreTets core;
-    const std::size_t lone = surface.lone_vertices.size(), shell = surface.points.size() - lone;
+    const std::size_t given = surface.lone_vertices.size() + surface.hole_points;
+    const std::size_t shell = surface.points.size() - given;
     core.points.assign(surface.points.begin() + std::ptrdiff_t(shell), surface.points.end());
     core.source_vertex = surface.lone_vertices;
+    core.source_vertex.resize(given, CoreTets::kNoVertex);
     std::vector<std::uint32_t> number(points.size(), kNone);
     std::copy(handed.index.begin(), handed.index.end(), number.begin());
     for (const Vec4I& tet : made.tets)
@@ -164,14 +166,12 @@ CoreTets core_of(const MesherTets& made, const std::vector<openvdb::Vec3s>& poin
     return core;
 }
 
-void measure(const TetMesh& tets, CoreFill& made)
+void measure(const TetMesh& tets, std::size_t given_points, CoreFill& made)
 {
     TetMesh alone = joined_tets(tets, made.core);
     alone.tets = made.core.tets;
     CoreFillReport& report = made.report;
-    report.points = made.core.points.size();
-    for (const std::uint32_t vertex : made.core.source_vertex)
-        report.points -= vertex == CoreTets::kNoVertex ? 0 : 1;
+    report.points = made.core.empty() ? 0 : made.core.points.size() - given_points;
     report.tets = made.core.tets.size();
     report.volume = tet_volume(alone);
     report.min_dihedral_radians =
@@ -232,12 +232,12 @@ void require_program(const CoreFillOptions& options)
 }
 
 CoreFill fill_core(const ShellStack& stack, const TetMesh& tets, const CoreFillOptions& options,
-                   Interrupter* interrupter)
+                   Interrupter* interrupter, const TriangleMesh& holes)
 {
     require_in_range(options, "core_fill");
     require_program(options);
     const StageProgress progress(interrupter, "core fill");
-    const VoidSurface surface = void_surface(stack, tets);
+    const VoidSurface surface = void_surface(stack, tets, holes);
     CoreFill made;
     made.report.program = options.program;
     made.report.void_triangles = surface.triangles.size();
@@ -254,10 +254,10 @@ CoreFill fill_core(const ShellStack& stack, const TetMesh& tets, const CoreFillO
         made.core = core_of(mesher, points, handed, surface);
         progress.stop_if_interrupted(100);
     }
-    made.report.certificate = certify_core(stack, tets, made.core);
+    made.report.certificate = certify_core(stack, tets, made.core, holes);
     if (options.wanted())
         require_fit(made.report, "--core-fill " + name_in_table(options.program));
-    measure(tets, made);
+    measure(tets, surface.lone_vertices.size() + surface.hole_points, made);
     return made;
 }
 

@@ -123,6 +123,14 @@ std::vector<CoreFoot> find_core_feet(const ShellStack& stack, const Cores& cores
     return feet;
 }
 
+void mark_core_stops(ShellStack& stack, const std::vector<CoreFoot>& feet)
+{
+    for (PrismShell& layer : stack.layers)
+        for (std::size_t v = 0; v < layer.stop.size(); ++v)
+            if (feet[v].core >= 0)
+                layer.stop[v] = StopReason::core;
+}
+
 CoreReport report_cores(const ShellStack& stack, const Cores& cores, const CoreOptions& options,
                         const std::vector<CoreFoot>& feet)
 {
@@ -154,7 +162,8 @@ std::vector<CoreFoot> feet_of_tet_points(const ShellStack& stack, const TetMesh&
     const std::vector<Vec3s>& inner = stack.surface(stack.layers.size());
     std::vector<CoreFoot> of_points(tets.points.size());
     for (std::size_t i = 0; i < of_points.size(); ++i)
-        if (const std::uint32_t v = tets.source_vertex[i]; tets.points[i] == inner[v])
+        if (const std::uint32_t v = tets.source_vertex[i];
+            v < inner.size() && tets.points[i] == inner[v])
             of_points[i] = feet[v];
     return of_points;
 }

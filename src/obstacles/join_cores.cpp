@@ -66,6 +66,22 @@ TriangleMesh join_cores(TriangleMesh surface, const TriangleMesh& kept_out)
     return surface;
 }
 
+ShellStack join_cores(ShellStack stack, const TriangleMesh& kept_out)
+{
+    for (PrismShell& layer : stack.layers) {
+        layer.inner.insert(layer.inner.end(), kept_out.points.begin(), kept_out.points.end());
+        layer.stop.resize(layer.inner.size(), StopReason::pinned);
+        TriangleMesh both =
+            join_cores({std::move(layer.outer), std::move(layer.triangles)}, kept_out);
+        layer.outer = std::move(both.points);
+        layer.triangles = std::move(both.triangles);
+    }
+    // Prisms of three pins have no tets, so no diagonal matters.
+    for (PrismSplit& split : stack.splits)
+        split.order.resize(stack.triangles().size(), {0, 1, 2});
+    return stack;
+}
+
 TriangleMesh drop_cores(TriangleMesh mesh, const VertexRange& cores)
 {
     mesh.triangles = kept_of(mesh.triangles, stays(mesh.triangles, cores));

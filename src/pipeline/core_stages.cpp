@@ -6,6 +6,8 @@
 
 #include "pipeline/core_stages.h"
 
+#include "obstacles/offset_surface.h"
+
 #include <utility>
 
 namespace vdb_shell
@@ -48,9 +50,15 @@ void part_from_cores(ShellResult& result, const ShellOptions& options, StageCloc
             result.report.taper->prisms_by_tets[0] -=
                 result.stack.layers.size() * (triangles - result.surface.triangles.size());
         result.core_feet = find_core_feet(result.stack, *result.cores, options.cores);
+        mark_core_stops(result.stack, result.core_feet);
         result.report.cores =
             report_cores(result.stack, *result.cores, options.cores, result.core_feet);
     });
+}
+
+TriangleMesh holes_of(const ShellResult& result)
+{
+    return result.cores ? without_unused_points(joined_cores(result.cores->given)) : TriangleMesh{};
 }
 
 TriangleMesh solid_to_fill(const ShellResult& result)

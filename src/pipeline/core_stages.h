@@ -18,6 +18,9 @@ void join_with_cores(ShellResult& result, const std::vector<CoreMesh>& cores,
 /// feet on the cores.
 void part_from_cores(ShellResult& result, const ShellOptions& options, StageClock& clock);
 
+/// The surfaces of the cores as what fills the shell has to leave them; empty without cores.
+TriangleMesh holes_of(const ShellResult& result);
+
 /// What the surface encloses, less the cores.
 TriangleMesh solid_to_fill(const ShellResult& result);
 

@@ -103,7 +103,8 @@ void fill_when_asked(ShellResult& r, const ShellOptions& options, StageClock& cl
                             name_in_table(options.core_fill.program) +
                             " has nothing sound to fill");
     clock.run("core fill", [&] {
-        CoreFill made = fill_core(r.stack, r.tets, options.core_fill, interrupter);
+        // Cores are holes of what is filled.
+        CoreFill made = fill_core(r.stack, r.tets, options.core_fill, interrupter, holes_of(r));
         r.core = std::move(made.core);
         r.report.core_fill = std::move(made.report);
     });

@@ -144,8 +144,6 @@ void require_cores_possible(const ShellOptions& options)
 {
     const char* hindrance =
         why_not_certified_inside(options, "the raw method, which looks at no obstacle (--method)");
-    if (!hindrance && options.core_fill.wanted())
-        hindrance = "a filled core: the tets between would reach into the surfaces (--core-fill)";
     if (hindrance)
         throw InvalidOption(std::string("cores: --core FILE is not for ") + hindrance);
 }

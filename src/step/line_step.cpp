@@ -213,6 +213,8 @@ const char* name_of(StopReason reason)
         return "outer_contact";
     case StopReason::pinned:
         return "pinned";
+    case StopReason::core:
+        return "core";
     }
     assert(false && "a stop reason without a name");
     return "";

@@ -178,7 +178,22 @@ Verification verify_volume(const ShellFile& file, const json& report)
     return {"volume is as stated", found == claimed, compare(found, claimed)};
 }
 
-/// The core is proven anew, beside a shell that has just been.
+/// Surfaces that a certificate can take for holes; their volume is a sum in another order than that
+/// of the report, so it agrees to rounding only.
+bool sound_holes(const TriangleMesh& holes, double stated_volume)
+{
+    const MeshCheck check = check_mesh(holes);
+    const bool outward =
+        std::all_of(check.components.begin(), check.components.end(),
+                    [](const Component& c) { return !c.inside_out && c.nesting_depth == 0; });
+    constexpr double kRounding = 1e-9;
+    return check.closed() && check.manifold() && check.embedded() &&
+           check.inconsistent_edges.count + check.degenerate_triangles.count == 0 && outward &&
+           std::abs(check.volume - stated_volume) <= kRounding * stated_volume;
+}
+
+/// The core is proven anew, beside a shell that has just been. Where the file says that there were
+/// surfaces inside, the core ends at them: they are what its own tets leave open.
 Verification verify_core(const ShellFile& file, const StackCertificate& shell, const json& report)
 {
     const double tets = stated(report, "/core_fill/tets");
@@ -189,9 +204,17 @@ Verification verify_core(const ShellFile& file, const StackCertificate& shell, c
     bool fits = false;
     std::string detail = "shell not certified";
     if (shell.certified() && file.stack.skin == 0) {
-        const CoreCertificate core = certify_core(file.stack, file.tets, file.core);
-        fits = core.certified();
+        const double inside = stated(report, "/cores/volume");
+        const TriangleMesh holes =
+            inside > 0 ? holes_of_core(file.stack, file.tets, file.core) : TriangleMesh{};
+        const CoreCertificate core = certify_core(file.stack, file.tets, file.core, holes);
+        const bool sound = holes.triangles.empty() ? !(inside > 0) : sound_holes(holes, inside);
+        fits = core.certified() && sound;
         detail = fits ? "one complex with the shell, and the volume of the surface, exactly" : "";
+        if (!holes.triangles.empty() || !sound)
+            detail += (detail.empty() ? "" : "; ") + std::to_string(holes.triangles.size()) +
+                      " triangles of surfaces inside, " +
+                      (sound ? "which enclose what the file says" : "which are not what it says");
         for (const std::string& failure : core.failures())
             detail += (detail.empty() ? "" : "; ") + failure;
     }

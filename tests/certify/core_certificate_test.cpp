@@ -76,6 +76,63 @@ TEST(CoreCertificate, AnEmptyShellIsAllVoidAndItsVerticesAreTheCores)
     EXPECT_EQ(kinds(certify_core(stack, tets, moved)), Kinds{"foreign_points"});
 }
 
+/// A core that is itself a shell, around a ball that stays empty.
+struct WithHole {
+    ShellStack stack = test::hollow_ball();
+    TetMesh tets = make_tets(stack);
+    TriangleMesh hole;
+    CoreTets core;
+    WithHole()
+    {
+        const test::SplitShell inner =
+            test::scaled_shell({stack.surface(1), stack.triangles()}, 0.5f);
+        const ShellStack inner_stack = one_layer(inner.shell, inner.split);
+        hole = {inner_stack.surface(1), stack.triangles()};
+        core.points = hole.points;
+        core.source_vertex.assign(hole.points.size(), CoreTets::kNoVertex);
+        const TetMesh made = make_tets(inner_stack);
+        const auto number = [&](std::uint32_t p) {
+            const std::uint32_t v = made.source_vertex[p];
+            for (std::uint32_t i = 0; made.layer[p] == 0; ++i)
+                if (tets.layer[i] == 1 && tets.source_vertex[i] == v)
+                    return i;
+            return std::uint32_t(tets.points.size()) + v;
+        };
+        for (const Vec4I& t : made.tets)
+            core.tets.emplace_back(number(t[0]), number(t[1]), number(t[2]), number(t[3]));
+    }
+};
+
+TEST(CoreCertificate, EndsAtAHole)
+{
+    const WithHole made;
+    EXPECT_EQ(certify_core(made.stack, made.tets, made.core, made.hole).failures(),
+              std::vector<std::string>{});
+    EXPECT_EQ(kinds(certify_core(made.stack, made.tets, made.core)), Kinds{"stray_faces"});
+    const TriangleMesh found = holes_of_core(made.stack, made.tets, made.core);
+    EXPECT_EQ(found.points, made.hole.points);
+    EXPECT_EQ(found.triangles.size(), made.hole.triangles.size());
+    EXPECT_NEAR(signed_volume(found.points, found.triangles),
+                signed_volume(made.hole.points, made.hole.triangles), 1e-12);
+    EXPECT_TRUE(certify_core(made.stack, made.tets, made.core, found).certified());
+}
+
+TEST(CoreCertificate, AHoleThatIsNotTheOneGivenIsNone)
+{
+    const WithHole made;
+    TriangleMesh hole = made.hole;
+    hole.points[3] *= 0.9f;
+    EXPECT_EQ(kinds(certify_core(made.stack, made.tets, made.core, hole)), Kinds{"foreign_points"});
+    hole = made.hole;
+    for (openvdb::Vec3I& t : hole.triangles)
+        std::swap(t[1], t[2]);
+    EXPECT_EQ(kinds(certify_core(made.stack, made.tets, made.core, hole)),
+              Kinds{"misoriented_faces"});
+    hole.triangles = made.hole.triangles;
+    hole.triangles.pop_back();
+    EXPECT_EQ(kinds(certify_core(made.stack, made.tets, made.core, hole)), Kinds{"stray_faces"});
+}
+
 TEST(CoreCertificate, ATetThatIsMissingLeavesStrayFacesAndATriangle)
 {
     Filled filled;

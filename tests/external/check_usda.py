@@ -43,6 +43,9 @@ SCHEMA = {
 # All of these or none, where there is more than one layer below the surface.
 LAYERED = {"userProperties:layer": "custom int[]", "userProperties:layers": "custom int",
            "userProperties:skin": "custom int"}
+# All of these or none, where there are surfaces inside that the shell was kept off.
+CORES = {"primvars:core": "int[]", "primvars:coreDistance": "float[]",
+         "primvars:coreTriangle": "int[]", "primvars:coreUvw": "float3[]"}
 BOTH_SIDED = {"primvars:stopReasonOuter": "int[]"}
 
 
@@ -200,6 +203,8 @@ class Check:
         self.that(prim.kind in SCHEMA, f"{prim.name}: no schema {prim.kind}")
         if prim.kind == "TetMesh" and set(LAYERED) & set(prim.types):
             known.update(LAYERED)
+        if prim.kind == "TetMesh" and set(CORES) & set(prim.types):
+            known.update(CORES)
         if prim.kind == "Mesh" and set(BOTH_SIDED) & set(prim.types):
             known.update(BOTH_SIDED)
         self.that(prim.types == known, f"{prim.name}: attributes {prim.types}, expected {known}")
@@ -299,6 +304,7 @@ class Check:
             self.pillar(v, [layer[i] for i in pillar], [points[i] for i in pillar], thickness[v],
                         skin, skin_points[v])
         self.prisms(surface, tets, time, layers)
+        self.feet(tets, time)
         self.facts.append(f"{layers} layers, the surface is number {skin}")
 
     def pillar(self, v, layers, points, thickness, skin, skin_point):
@@ -309,6 +315,21 @@ class Check:
                   f"tets: vertex {v} has {length} of pillars, stated {thickness}")
         at_skin = [p for k, p in zip(layers, points) if k <= skin][-1:]
         self.that(at_skin == [skin_point], f"tets: vertex {v} of the surface is not at {at_skin}")
+
+    def feet(self, tets, time):
+        """What points say of cores: none of those on the surface ended at one."""
+        if "primvars:core" not in tets.types:
+            return
+        ended = 0
+        for i, (core, triangle, uvw, far, layer) in enumerate(zip(
+                tets.at("primvars:core", time), tets.at("primvars:coreTriangle", time),
+                tets.at("primvars:coreUvw", time), tets.at("primvars:coreDistance", time),
+                tets.at("primvars:layer", time))):
+            self.that((core >= 0) == (triangle >= 0) and far >= 0, f"tets: core {core}, triangle {triangle} of {i}")
+            self.that(abs(sum(uvw) - (core >= 0)) < 1e-5, f"tets: weights {uvw} of point {i}")
+            self.that(core < 0 or layer > 0, f"tets: outer point {i} ended at a core")
+            ended += core >= 0
+        self.facts.append(f"{ended} points ended at cores")
 
     def prisms(self, surface, tets, time, layers):
         corners = surface.at("faceVertexIndices", time)
@@ -421,6 +442,9 @@ def spoil(text):
         yield "a layer less", change(r"(userProperties:layers = )\d+", r"\g<1>1")
         yield "a tet of another layer", change(r"(userProperties:layer = \[)0", r"\g<1>1")
         yield "a point of another layer", change(r"(primvars:layer = \[)0", r"\g<1>1")
+    if "primvars:coreUvw" in text:
+        yield "a triangle of no core", change(r"(primvars:coreTriangle = \[)-1", r"\g<1>3")
+        yield "weights that are not one", change(r"(primvars:coreUvw = \[)\([^)]*\)", r"\g<1>(1, 1, 1)")
     yield "a wrong type", change(r"TetMesh", "TetMesch")
     yield "a wrong attribute", change(r"int4\[\] tet", "int3[] tet")
     yield "no end", text[:text.rindex("}")]

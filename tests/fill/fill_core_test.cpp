@@ -111,6 +111,29 @@ TEST_P(WithProgram, FillsSeveralVoidsAndNoCavity)
     expect_one_solid(stack, by(GetParam()));
 }
 
+/// What surfaces inside enclose stays empty, and all their triangles are faces of the core.
+TEST_P(WithProgram, LeavesHolesEmpty)
+{
+    const ShellStack stack = test::hollow_ball(2);
+    const TetMesh tets = make_tets(stack);
+    const TriangleMesh holes =
+        test::joined(test::translated(test::icosphere(0.1, 1), {0.15, 0, 0}),
+                     test::translated(test::icosphere(0.1, 1), {-0.15, 0, 0}));
+    const CoreFill made = fill_core(stack, tets, by(GetParam()), nullptr, holes);
+    EXPECT_EQ(made.report.certificate.failures(), std::vector<std::string>{});
+    const double solid = signed_volume(stack.surface(0), stack.triangles()) -
+                         signed_volume(holes.points, holes.triangles);
+    EXPECT_NEAR(tet_volume(joined_tets(tets, made.core)), solid, 1e-12 * solid);
+    // They are found again in what was made, and without them nothing is proven.
+    const TriangleMesh found = holes_of_core(stack, tets, made.core);
+    EXPECT_EQ(found.points, holes.points);
+    EXPECT_EQ(found.triangles.size(), holes.triangles.size());
+    EXPECT_NEAR(signed_volume(found.points, found.triangles),
+                signed_volume(holes.points, holes.triangles), 1e-9);
+    EXPECT_TRUE(certify_core(stack, tets, made.core, found).certified());
+    EXPECT_FALSE(certify_core(stack, tets, made.core).certified());
+}
+
 TEST_P(WithProgram, FillsATaperedShellWhoseInnerSurfaceSharesPoints)
 {
     expect_one_solid(test::pinched_rod(), by(GetParam()));

@@ -110,6 +110,25 @@ TEST(CoreFeet, EndAtTheCoreThatTheyReach)
         }
 }
 
+TEST(CoreFeet, AreTheReasonWhyThosePillarsEnd)
+{
+    ShellOptions options;
+    options.level_set.resolution = 64;
+    options.layers.layers = 2;
+    const ShellResult result =
+        build_shell(test::capsule(), options, "capsule", nullptr, nullptr,
+                    {ball(0.4, Vec3d(0, 0, 1.2)), ball(0.3, Vec3d(0.1, 0, -1))});
+    std::size_t ended = 0;
+    for (std::size_t v = 0; v < result.core_feet.size(); ++v)
+        for (const PrismShell& layer : result.stack.layers) {
+            EXPECT_EQ(layer.stop[v] == StopReason::core, result.core_feet[v].core >= 0) << v;
+            ended += layer.stop[v] == StopReason::core;
+        }
+    EXPECT_EQ(ended, 2 * result.report.cores->ended);
+    EXPECT_EQ(result.report.lines.stops[std::size_t(StopReason::core)], result.report.cores->ended);
+    EXPECT_GT(ended, 600U);
+}
+
 TEST(CoreFeet, AllOfAnEvenShellEndsThere)
 {
     ShellOptions options;

@@ -52,6 +52,29 @@ TEST(JoinCores, AStackIsPartedInAllLayers)
     EXPECT_EQ(stack.layers[0].stop.size(), 8U);
 }
 
+TEST(JoinCores, AStackAndCoresAreOneAndApartAgain)
+{
+    const TriangleMesh box = test::box(Vec3d(-1), Vec3d(1)), core = test::box(Vec3d(0), Vec3d(0.5));
+    PrismShell shell{box.points, box.points, box.triangles,
+                     std::vector<StopReason>(8, StopReason::prism)};
+    for (Vec3s& p : shell.inner)
+        p *= 0.75f;
+    PrismSplit split;
+    split.order.assign(12, {2, 0, 1});
+    const ShellStack both = join_cores(one_layer(shell, split), core);
+    EXPECT_EQ(both.surface(0), join_cores(box, core).points);
+    EXPECT_EQ(both.triangles(), join_cores(box, core).triangles);
+    for (std::size_t v = 8; v < 16; ++v) {
+        EXPECT_TRUE(both.layers[0].pinned(v));
+        EXPECT_EQ(both.layers[0].stop[v], StopReason::pinned);
+    }
+    const ShellStack again = drop_cores(both, {8, 8});
+    EXPECT_EQ(again.surface(1), shell.inner);
+    EXPECT_EQ(again.triangles(), box.triangles);
+    EXPECT_EQ(again.splits[0].order, split.order);
+    EXPECT_EQ(again.layers[0].stop, shell.stop);
+}
+
 TEST(JoinCores, SeesAPointInThePlaceOfACore)
 {
     const TriangleMesh box = test::box(Vec3d(-1), Vec3d(1)), core = test::box(Vec3d(0), Vec3d(0.5));

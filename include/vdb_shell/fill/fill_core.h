@@ -58,13 +58,15 @@ struct CoreFill {
 
 /// Hands the surface of the void to the program, and takes its tets if they are proven to fit: no
 /// face of the shell split or lost, all tets positive, face to face with each other and with the
-/// shell (certify_core). Points are found again by index; new ones are rounded to float32. The same
-/// tets for any number of threads. Precondition: the stack is certified and lies inside its
-/// surface, `tets` are its tets. Throws InvalidOption; ProgramError where the program is missing or
-/// fails, and where its tets do not fit; WriteError where there is no room for its files;
-/// Cancelled. Whatever happens, no temporary file and no process is left.
+/// shell (certify_core). What `holes` enclose, closed surfaces inside the void, is left empty, and
+/// their triangles are kept as well. Points are found again by index; new ones are rounded to
+/// float32. The same tets for any number of threads. Precondition: the stack is certified and lies
+/// inside its surface, `tets` are its tets; of holes, that of certify_core. Throws InvalidOption;
+/// ProgramError where the program is missing or fails, and where its tets do not fit; WriteError
+/// where there is no room for its files; Cancelled. Whatever happens, no temporary file and no
+/// process is left.
 CoreFill fill_core(const ShellStack& stack, const TetMesh& tets, const CoreFillOptions& options,
-                   Interrupter* interrupter = nullptr);
+                   Interrupter* interrupter = nullptr, const TriangleMesh& holes = {});
 
 /// Throws ProgramError unless the program is found on PATH: asked before the work begins.
 void require_program(const CoreFillOptions& options);

@@ -46,10 +46,15 @@ struct CoreReport {
 std::vector<CoreFoot> find_core_feet(const ShellStack& stack, const Cores& cores,
                                      const CoreOptions& options);
 
+/// Sets StopReason::core for pillars that ended at a core, whatever held them: the core is what
+/// ended them for whoever attaches them there. In all layers, as a pillar has one reason.
+void mark_core_stops(ShellStack& stack, const std::vector<CoreFoot>& feet);
+
 CoreReport report_cores(const ShellStack& stack, const Cores& cores, const CoreOptions& options,
                         const std::vector<CoreFoot>& feet);
 
-/// Of the points of the tets: those of innermost points have their feet, all others none.
+/// Of the points of the tets, which may be joined_tets: those of innermost points have their feet,
+/// all others none.
 std::vector<CoreFoot> feet_of_tet_points(const ShellStack& stack, const TetMesh& tets,
                                          const std::vector<CoreFoot>& feet);
 

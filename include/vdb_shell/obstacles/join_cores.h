@@ -21,6 +21,10 @@ struct VertexRange {
 /// `kept_out` turned round. Its vertices follow those of the surface.
 TriangleMesh join_cores(TriangleMesh surface, const TriangleMesh& kept_out);
 
+/// The same of a stack: the vertices of `kept_out` are pinned in all layers, and its triangles
+/// follow those of the surface.
+ShellStack join_cores(ShellStack stack, const TriangleMesh& kept_out);
+
 /// The mesh without the vertices of the range and their triangles. The order of all else stays.
 /// Precondition: no triangle has vertices in the range and others.
 TriangleMesh drop_cores(TriangleMesh mesh, const VertexRange& cores);

@@ -44,8 +44,9 @@ enum class StopReason : std::uint8_t {
     inner_contact, ///< growth: the inner surface would touch itself
     outer_contact, ///< growth: the inner surface would touch the outer one
     pinned,        ///< growth: no valid length at all
+    core,          ///< the finished pillar ended at a core (obstacles/core_feet.h)
 };
-inline constexpr int kStopReasonCount = 13;
+inline constexpr int kStopReasonCount = 14;
 
 /// Name for reports: "stop_test", "thickness", ...
 const char* name_of(StopReason reason);
