@@ -153,6 +153,7 @@ void walk_grid(VdbCursor& walk, const VdbGridPart& part, std::uint32_t version)
         walk.fail("its points are of .vdb format version " + std::to_string(version) +
                   ", those of version " + std::to_string(kPointsVersion) + " can be read");
     coding.half = is_half(walk, part, metadata) && !points;
+    coding.points = points;
     const std::vector<std::uint16_t> leaves = walk_topology(walk, coding);
     walk.require(walk.at() == part.blocks, "the topology does not end where the voxels begin");
     if (points)

@@ -100,7 +100,9 @@ public:
     {
         walk_.require(walk_.number<std::int32_t>("the number of buffers") == 1,
                       "a tree of several buffers");
-        walk_.take(kValue, "the background");
+        const std::string_view background = walk_.take(kValue, "the background");
+        walk_.require(!coding_.points || background.find_first_not_of('\0') == background.npos,
+                      "a background of points");
         const auto tiles = walk_.number<std::uint32_t>("the number of tiles");
         const auto children = walk_.number<std::uint32_t>("the number of nodes");
         // OpenVDB puts tiles and children into one table by their places, so a place that came

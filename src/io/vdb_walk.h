@@ -50,6 +50,7 @@ bool is_blosc_of(std::string_view chunk, std::uint64_t bytes);
 struct VdbCoding {
     std::uint32_t compression = 0; ///< OpenVDB's flags
     bool half = false;             ///< floats as two bytes
+    bool points = false;           ///< indices of points
 };
 
 /// The topology of a tree of OpenVDB's standard shape (5, 4, 3); for each leaf, in the order of the

@@ -24,6 +24,7 @@ class VdbSeal : public testing::Test
 protected:
     VdbSeal()
     {
+        openvdb::initialize();
         const auto one = test::sphere_level_set(4.0f, 1.0f), other = one->deepCopy();
         one->setName("one");
         other->setName("other");
