@@ -242,12 +242,12 @@ bool is_there(BoundOptions& bound, const std::string& needed)
 
 bool has_what_it_needs(BoundOptions& bound, const std::string& needs)
 {
-    static const std::string kOr = " or ";
+    const std::string separator = " or ";
     for (std::size_t begin = 0; begin < needs.size();) {
-        const std::size_t end = std::min(needs.find(kOr, begin), needs.size());
+        const std::size_t end = std::min(needs.find(separator, begin), needs.size());
         if (is_there(bound, needs.substr(begin, end - begin)))
             return true;
-        begin = end + kOr.size();
+        begin = end + separator.size();
     }
     return needs.empty();
 }

@@ -140,7 +140,7 @@ template <typename Grid> typename Grid::Ptr read_grid(OpenFile& from, const char
     if (type != Grid::gridType())
         throw ReadError(where + ": grid \"" + name + "\" has type " + type + ", expected " +
                         Grid::gridType());
-    const auto grid = openvdb::gridPtrCast<Grid>(file.readGrid(name));
+    auto grid = openvdb::gridPtrCast<Grid>(file.readGrid(name));
     from.digests.require(*grid);
     return grid;
 }
