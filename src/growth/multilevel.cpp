@@ -13,6 +13,7 @@
 #include "growth/initialise.h"
 #include "growth/mend_prolonged.h"
 #include "growth/move_groups.h"
+#include "growth/pins.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "growth/relax_options.h"
@@ -106,6 +107,8 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
     const Pillars pillars = prolonged_pillars(coarser, coarser_inner, mesh, nearest, lines,
                                               bends_towards(job.triangles, s.schedule), schedule);
     std::vector<double> lost = mend_prolonged(s, pillars.lines, pillars.length, job.progress);
+    // Before the groups, which win back what shorter pillars beside a pin cost.
+    release_pins(s, lines.visibility, PillarsBesidePin::shortened);
     move_groups(s, group_shares(coarser, nearest), job.progress);
     return lost;
 }
