@@ -17,7 +17,6 @@ import json
 import pathlib
 import re
 import shlex
-import tempfile
 import time
 
 import numpy as np
@@ -25,6 +24,7 @@ import numpy as np
 from runs import replace_tables, table
 from shape_figures import COLUMNS, HALVES, read_list
 from tet_files import read_obj, read_tets
+import tet_makers
 from tet_makers import TETGEN, Failed, Maker
 from tet_shapes import shape_figures
 
@@ -38,12 +38,7 @@ def arguments():
     parser.add_argument("command", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("page", type=pathlib.Path)
-    parser.add_argument("--ours", nargs="+", default=["simulation=--for simulation"], metavar="NAME=OPTIONS")
-    parser.add_argument("--meshes", type=pathlib.Path,
-                        default=pathlib.Path(__file__).parent.parent / "measurements/shape_meshes.txt")
-    parser.add_argument("--only", nargs="+", help="names of the list; the others are left out")
-    parser.add_argument("--cache", default=pathlib.Path(tempfile.gettempdir()) / "vdb_shell_tets")
-    parser.add_argument("--seconds", type=float, default=300, help="what one run of a program may take")
+    tet_makers.add_arguments(parser, ["simulation=--for simulation"], 300)
     parser.add_argument("--budget", type=float, default=3600, help="seconds after which no mesh is begun")
     return parser.parse_args()
 

@@ -14,10 +14,10 @@ import argparse
 import json
 import pathlib
 import shlex
-import tempfile
 
 from runs import replace_tables, table
 from tet_files import read_obj, read_tets
+import tet_makers
 from tet_makers import GMSH, TETGEN, Failed, Maker
 from tet_shapes import shape_figures
 
@@ -36,13 +36,8 @@ def arguments():
     parser.add_argument("command", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("page", type=pathlib.Path)
-    parser.add_argument("--ours", nargs="+", default=["default="], metavar="NAME=OPTIONS")
+    tet_makers.add_arguments(parser, ["default="], 300)
     parser.add_argument("--others", nargs="*", choices=OTHERS, default=OTHERS)
-    parser.add_argument("--meshes", type=pathlib.Path,
-                        default=pathlib.Path(__file__).parent.parent / "measurements/shape_meshes.txt")
-    parser.add_argument("--only", nargs="+", help="names of the list; the others are left out")
-    parser.add_argument("--cache", default=pathlib.Path(tempfile.gettempdir()) / "vdb_shell_tets")
-    parser.add_argument("--seconds", type=float, default=300, help="what one run of a program may take")
     parser.add_argument("--quick", action="store_true")
     return parser.parse_args()
 

@@ -16,11 +16,11 @@ import json
 import math
 import pathlib
 import subprocess
-import tempfile
 
 from runs import replace_tables, table
 from shape_figures import HALVES, read_list, ways_of
 from tet_files import read_tets
+import tet_makers
 from tet_makers import TETGEN, Failed, Maker, digest
 
 REFERENCE = "TetGen -pYq1.414/14"
@@ -35,15 +35,10 @@ def arguments():
     parser.add_argument("soft_body", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("page", type=pathlib.Path)
-    parser.add_argument("--ours", nargs="+", default=["default="], metavar="NAME=OPTIONS")
+    tet_makers.add_arguments(parser, ["default="], 600)
     parser.add_argument("--others", nargs="*", choices=list(TETGEN), default=[REFERENCE])
-    parser.add_argument("--meshes", type=pathlib.Path,
-                        default=pathlib.Path(__file__).parent.parent / "measurements/shape_meshes.txt")
-    parser.add_argument("--only", nargs="+", help="names of the list; the others are left out")
     parser.add_argument("--up", choices=("x", "y", "z"), default="y")
     parser.add_argument("--reference-tets", type=float, default=4e6, help="most tets of a refined reference")
-    parser.add_argument("--cache", default=pathlib.Path(tempfile.gettempdir()) / "vdb_shell_tets")
-    parser.add_argument("--seconds", type=float, default=600, help="what one run of a program may take")
     return parser.parse_args()
 
 

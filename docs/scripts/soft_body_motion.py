@@ -13,9 +13,9 @@ import argparse
 import json
 import pathlib
 import subprocess
-import tempfile
 
 from shape_figures import ways_of
+import tet_makers
 from tet_makers import Maker, digest
 
 SOLID = "TetGen -pYq1.414/14"
@@ -30,14 +30,12 @@ def arguments():
     parser.add_argument("soft_body", type=pathlib.Path)
     parser.add_argument("mesh", type=pathlib.Path)
     parser.add_argument("picture", type=pathlib.Path)
-    parser.add_argument("--ours", nargs="+", metavar="NAME=OPTIONS",
-                        default=["default=", "fewest tets=--for fewest-tets", "simulation=--for simulation"])
+    rows = ["default=", "fewest tets=--for fewest-tets", "simulation=--for simulation"]
+    tet_makers.add_arguments(parser, rows, 900, meshes=False)
     parser.add_argument("--blender", default="blender")
     parser.add_argument("--columns", type=int, default=6)
     parser.add_argument("--size", type=int, default=150, help="pixels of one picture's side")
     parser.add_argument("--samples", type=int, default=32)
-    parser.add_argument("--cache", default=pathlib.Path(tempfile.gettempdir()) / "vdb_shell_tets")
-    parser.add_argument("--seconds", type=float, default=900, help="what one run of a program may take")
     options = parser.parse_args()
     options.others = [SOLID]
     return options

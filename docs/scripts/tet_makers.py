@@ -6,6 +6,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import tempfile
 
 import numpy as np
 
@@ -14,6 +15,17 @@ from tet_shapes import enclosed_volume
 
 TETGEN = {"TetGen -pY": ["-pY"], "TetGen -pYq1.414/14": ["-pYq1.414/14"]}
 GMSH = {"gmsh -3 -optimize": ["-3", "-optimize"]}
+
+
+def add_arguments(parser, ours, seconds, meshes=True):
+    """The arguments of a script that compares tets: `ours` are its default columns, `seconds` its default limit."""
+    parser.add_argument("--ours", nargs="+", default=ours, metavar="NAME=OPTIONS")
+    if meshes:
+        parser.add_argument("--meshes", type=pathlib.Path,
+                            default=pathlib.Path(__file__).parent.parent / "measurements/shape_meshes.txt")
+        parser.add_argument("--only", nargs="+", help="names of the list; the others are left out")
+    parser.add_argument("--cache", default=pathlib.Path(tempfile.gettempdir()) / "vdb_shell_tets")
+    parser.add_argument("--seconds", type=float, default=seconds, help="what one run of a program may take")
 
 
 class Failed(Exception):

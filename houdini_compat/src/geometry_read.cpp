@@ -12,6 +12,7 @@
 #include "geometry_parts.h"
 #include "json_read.h"
 #include "scf.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
@@ -21,11 +22,6 @@ namespace vdb_shell::houdini
 {
 namespace
 {
-
-bool begins_with(const std::string& bytes, std::string_view mark)
-{
-    return std::string_view(bytes).substr(0, mark.size()) == mark;
-}
 
 /// Says what a file is that is none of the three forms. The ones that people mix up with them are
 /// named, as "no Houdini geometry" would puzzle somebody whose file has the right extension.

@@ -10,12 +10,12 @@
 
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 
 #include "attributes_write.h"
 #include "document_writer.h"
 
 #include <algorithm>
-#include <cctype>
 #include <ostream>
 
 namespace vdb_shell::houdini
@@ -189,14 +189,6 @@ void write_document(DocumentWriter& out, const HoudiniGeometry& geometry)
     out.finish();
 }
 
-std::string lower_name(const fs::path& path)
-{
-    std::string name = path.filename().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name;
-}
-
 bool ends_in(const std::string& name, std::string_view extension)
 {
     return name.size() >= extension.size() &&
@@ -206,7 +198,7 @@ bool ends_in(const std::string& name, std::string_view extension)
 /// The reader goes by the content; a writer has nothing but the name.
 Format format_by_extension(const fs::path& path)
 {
-    const std::string name = lower_name(path);
+    const std::string name = lower_case(path.filename().string());
     // By the whole name, since std::filesystem takes .sc alone for the extension.
     if (ends_in(name, ".bgeo.sc"))
         return Format::compressed;
@@ -235,7 +227,7 @@ const char* name_of(Format format)
 
 bool has_geometry_extension(const fs::path& path)
 {
-    const std::string name = lower_name(path);
+    const std::string name = lower_case(path.filename().string());
     return ends_in(name, ".geo") || ends_in(name, ".bgeo") || ends_in(name, ".bgeo.sc");
 }
 

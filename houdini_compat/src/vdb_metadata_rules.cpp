@@ -8,6 +8,8 @@
 
 #include "vdb_rules.h"
 
+#include "vdb_shell/core/words.h"
+
 #include <nlohmann/json.hpp>
 
 #include <set>
@@ -24,11 +26,6 @@ using openvdb::MetaMap;
 
 constexpr const char* kGlobalPrefix = "global:";
 constexpr const char* kDictionaryPrefix = "dict_";
-
-bool begins_with(const std::string& text, std::string_view prefix)
-{
-    return text.compare(0, prefix.size(), prefix) == 0;
-}
 
 /// The keys that OpenVDB and Houdini themselves keep about a grid, with their types. They are held
 /// against those types only, since none of them becomes an attribute of the user's. The names of

@@ -9,6 +9,7 @@
 #include "command/bound_options.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 
 #include "command/build_command.h"
 #include "options/option_json.h"
@@ -16,7 +17,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -233,10 +233,7 @@ bool is_there(BoundOptions& bound, const std::string& needed)
         return one_of_them(text_of(other->option.get()));
     const std::vector<std::string> files = other->given->results();
     return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
-        std::string extension = std::filesystem::path(file).extension().string();
-        std::transform(extension.begin(), extension.end(), extension.begin(),
-                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        return one_of_them(extension);
+        return one_of_them(lower_case_extension(file));
     });
 }
 

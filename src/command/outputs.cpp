@@ -9,6 +9,7 @@
 #include "command/outputs.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/io/read_mesh.h"
@@ -16,7 +17,6 @@
 #include "vdb_shell/write/tet_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 namespace vdb_shell::command
@@ -30,9 +30,7 @@ enum class Kind { vdb, houdini, tets, surface, picture, usd, unknown };
 
 Kind kind_of(const fs::path& path)
 {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_case_extension(path);
     if (extension == ".vdb")
         return Kind::vdb;
     // By the whole name, as `.bgeo.sc` is two extensions to std::filesystem.

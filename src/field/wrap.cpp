@@ -84,17 +84,16 @@ void set_shares(WrapReport& report, const WrapPieces& pieces)
     report.interior_share = pieces.interior_area / area;
 }
 
-openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
-                                 const WrapOptions& options, WrapReport& report,
-                                 const StageProgress& progress)
+openvdb::FloatGrid::Ptr field_of(std::vector<TriangleCorners> triangles, const WrapOptions& options,
+                                 WrapReport& report, const StageProgress& progress)
 {
-    const WindingNumber winding(triangles);
+    const WindingNumber winding(std::move(triangles));
     WrapPieces pieces = sort_pieces(winding, progress);
     auto field = wrap_field(pieces, winding, options.sheet_voxels, progress);
     // A solid that is smaller than a voxel can slip between the voxel centres. As plates its
     // triangles cannot, so there always is a surface.
     if (!(value_range(*field).least < 0)) {
-        pieces = all_sheets(triangles);
+        pieces = all_sheets(winding.triangles());
         field = wrap_field(pieces, winding, options.sheet_voxels, progress);
     }
     set_shares(report, pieces);

@@ -19,8 +19,6 @@
 #include "growth/pins.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
-#include "mesh/components.h"
-#include "mesh/topology.h"
 #include "vdb_shell/options/option.h"
 
 #include <cassert>
@@ -43,7 +41,7 @@ struct Started {
 
 Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& directions,
                      const LineLengths& stepped, const GrowStart& start, const GrowOptions& options,
-                     const StageProgress& progress)
+                     const StageProgress& progress, GrowReport& report)
 {
     const bool on_levels = start.from == GrowFrom::levels && !start.levels.empty();
     // Smoothing pays where the start is along the lines, not where they are only fallen back on.
@@ -52,7 +50,7 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& d
     if (on_levels) {
         started.from = StartedFrom::prolonged;
         started.predicted_gain = start_from_levels(s, mesh, started.lines, stepped.length,
-                                                   start.levels, options, progress);
+                                                   start.levels, options, progress, report);
     } else if (start.from == GrowFrom::shell) {
         const Pillars given = pillars_to(mesh, start.inner, std::move(started.lines));
         mend_prolonged(s, given.lines, given.length, progress);
@@ -64,19 +62,19 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& d
 }
 
 /// The signs of the volumes that the surface's components enclose; 0 where rounding may decide.
-std::vector<int> volume_signs(const std::vector<openvdb::Vec3s>& points, const TriangleMesh& mesh,
-                              const std::vector<std::uint32_t>& component_of)
+std::vector<int> volume_signs(const std::vector<openvdb::Vec3s>& points,
+                              const Connectivity& connectivity)
 {
     struct Sum {
-        openvdb::Vec3d origin; ///< a point nearby, so that terms are small
+        openvdb::Vec3d origin{0.0}; ///< a point nearby, so that terms are small
         double value = 0, size = 0;
     };
-    std::vector<Sum> sums;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const openvdb::Vec3I& c = mesh.triangles[t];
-        if (component_of[t] == sums.size()) // numbered by their first triangles
-            sums.push_back({openvdb::Vec3d(points[c[0]])});
-        Sum& sum = sums[component_of[t]];
+    std::vector<Sum> sums(static_cast<std::size_t>(connectivity.components));
+    for (std::size_t v = 0; v < points.size(); ++v)
+        sums[static_cast<std::size_t>(connectivity.component[v])].origin =
+            openvdb::Vec3d(points[v]);
+    for (const openvdb::Vec3I& c : connectivity.faces) {
+        Sum& sum = sums[static_cast<std::size_t>(connectivity.component[c[0]])];
         const auto at = [&](int k) { return openvdb::Vec3d(points[c[k]]) - sum.origin; };
         const double term = at(0).dot(at(1).cross(at(2)));
         sum.value += term;
@@ -95,12 +93,10 @@ std::vector<int> volume_signs(const std::vector<openvdb::Vec3s>& points, const T
 /// Whether a component's inner surface has turned inside out. The tests of moves do not see that:
 /// where a component has few triangles, one move may take a vertex past all others, from one
 /// embedded surface to another, and with the three chosen tets positive on both sides.
-bool has_turned(const TriangleMesh& mesh, const PrismShell& shell)
+bool has_turned(const Connectivity& connectivity, const PrismShell& shell)
 {
-    const std::vector<std::uint32_t> component_of =
-        component_of_triangles(sorted_edge_uses(mesh.triangles), mesh.triangles.size());
-    const std::vector<int> outer = volume_signs(shell.outer, mesh, component_of),
-                           inner = volume_signs(shell.inner, mesh, component_of);
+    const std::vector<int> outer = volume_signs(shell.outer, connectivity),
+                           inner = volume_signs(shell.inner, connectivity);
     for (std::size_t c = 0; c < outer.size(); ++c)
         if (inner[c] * outer[c] < 0)
             return true;
@@ -123,7 +119,7 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     GrowState s = make_state(connectivity, mesh.points, cap, options.schedule);
     GrowResult result;
     GrowReport& report = result.report;
-    Started started = start_growth(s, mesh, directions, stepped, start, options, progress);
+    Started started = start_growth(s, mesh, directions, stepped, start, options, progress, report);
     report.released += static_cast<std::size_t>(
         release_pins(s, started.lines.visibility, PillarsBesidePin::shortened));
     // A prolonged shell has left the lines.
@@ -137,7 +133,7 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
-    if (options.method == Method::thickest && has_turned(mesh, result.shell)) {
+    if (options.method == Method::thickest && has_turned(connectivity, result.shell)) {
         GrowOptions twelve_tets = options;
         twelve_tets.method = Method::certified;
         return grow_shell_from(start, mesh, directions, stepped, cap, twelve_tets, split,

@@ -100,7 +100,8 @@ struct LevelJob {
 /// voids that mending has left by moves of as many vertices as the coarser surface has one for.
 std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
                                        const Directions& lines, const TriangleMesh& coarser,
-                                       const std::vector<Vec3d>& coarser_inner, const LevelJob& job)
+                                       const std::vector<Vec3d>& coarser_inner, const LevelJob& job,
+                                       GrowReport& report)
 {
     const MultilevelSchedule& schedule = s.schedule.multilevel;
     const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarser, schedule);
@@ -108,7 +109,8 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
                                               bends_towards(job.triangles, s.schedule), schedule);
     std::vector<double> lost = mend_prolonged(s, pillars.lines, pillars.length, job.progress);
     // Before the groups, which win back what shorter pillars beside a pin cost.
-    release_pins(s, lines.visibility, PillarsBesidePin::shortened);
+    report.released +=
+        static_cast<std::size_t>(release_pins(s, lines.visibility, PillarsBesidePin::shortened));
     move_groups(s, group_shares(coarser, nearest), job.progress);
     return lost;
 }
@@ -123,8 +125,8 @@ std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<dou
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     GrowState s = make_state(connectivity, mesh.points, cap, job.options.schedule);
     // A level's shell is valid by itself, but nothing reads it except the next prolongation.
-    start(s, lines);
     GrowReport ignored;
+    start(s, lines, ignored);
     relax(s, lines.visibility, job.options, relax_coarse(s, from, job.triangles), job.progress,
           ignored);
     lift_pins(s);
@@ -142,24 +144,26 @@ bool wants_levels(const TriangleMesh& mesh, const GrowOptions& options)
 std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
                                       const Directions& lines, const std::vector<double>& stepped,
                                       const std::vector<Coarsened>& levels,
-                                      const GrowOptions& options, const StageProgress& progress)
+                                      const GrowOptions& options, const StageProgress& progress,
+                                      GrowReport& report)
 {
     // From the coarsest surface to the mesh: each takes over what the one before has won.
     const LevelJob job{mesh.triangles.size(), options, progress};
     const auto from = vertices_of(levels);
     std::vector<Vec3d> inner =
         grow_on_level(levels.back().mesh, at_vertices(s.cap, from.back()), StartedFrom::lines, job,
-                      [&](GrowState& level, const Directions& own_lines) {
+                      [&](GrowState& level, const Directions& own_lines, GrowReport&) {
                           start_from_lines(level, own_lines, at_vertices(stepped, from.back()),
                                            options, progress);
                       });
     for (std::size_t i = levels.size() - 1; i-- > 0;)
-        inner = grow_on_level(levels[i].mesh, at_vertices(s.cap, from[i]), StartedFrom::prolonged,
-                              job, [&](GrowState& level, const Directions& own_lines) {
-                                  start_from_coarser(level, levels[i].mesh, own_lines,
-                                                     levels[i + 1].mesh, inner, job);
-                              });
-    return start_from_coarser(s, mesh, lines, levels.front().mesh, inner, job);
+        inner =
+            grow_on_level(levels[i].mesh, at_vertices(s.cap, from[i]), StartedFrom::prolonged, job,
+                          [&](GrowState& level, const Directions& own_lines, GrowReport& of_level) {
+                              start_from_coarser(level, levels[i].mesh, own_lines,
+                                                 levels[i + 1].mesh, inner, job, of_level);
+                          });
+    return start_from_coarser(s, mesh, lines, levels.front().mesh, inner, job, report);
 }
 
 } // namespace growth

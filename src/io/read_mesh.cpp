@@ -10,10 +10,9 @@
 
 #include "io/coordinates.h"
 #include "io/file_scan.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/io/read_file.h"
 
-#include <algorithm>
-#include <cctype>
 #include <utility>
 
 namespace vdb_shell
@@ -25,9 +24,7 @@ namespace fs = std::filesystem;
 
 Scan scan_for(const fs::path& path)
 {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_case_extension(path);
     if (extension == ".obj")
         return scan_obj;
     if (extension == ".ply")

@@ -30,7 +30,6 @@ namespace fs = std::filesystem;
 // another.
 constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kOldestVersion = 222, kNewestVersion = 224, kPointsVersion = 224;
-constexpr std::uint64_t kUuidLength = 36;
 constexpr const char* kFloats = "Tree_float_5_4_3";
 constexpr const char* kPoints = "Tree_ptdataidx32_5_4_3";
 constexpr std::string_view kHalfMark = "_HalfFloat";

@@ -29,8 +29,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kUuid = 21, kUuidLength = 36; ///< bytes
-constexpr std::string_view kMark = "7664625f";      ///< "vdb_"
+constexpr std::string_view kMark = "7664625f"; ///< "vdb_"
 constexpr std::size_t kPartDigits = 16;
 
 std::string uuid_of(std::string_view bytes)

@@ -3,6 +3,7 @@
 
 #include "io/vdb_cursor.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@
 
 namespace vdb_shell
 {
+
+/// Where the header has the file's UUID, and its length in characters.
+constexpr std::size_t kUuid = 21, kUuidLength = 36;
 
 struct VdbEntry {
     std::string_view name, type, value;

@@ -8,11 +8,10 @@
 
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/io/read_mesh.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cstring>
 #include <ostream>
@@ -137,9 +136,7 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                 const Placement& placement, OutputSet* with)
 {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_case_extension(path);
     const auto write = extension == ".obj"   ? write_obj
                        : extension == ".off" ? write_off
                        : extension == ".ply" ? write_ply

@@ -8,6 +8,7 @@
 
 #include "io/vdb_seal.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
 #include <sstream>
@@ -26,8 +27,9 @@ std::string in_words(const std::string& name)
         return "its metadata";
     const std::size_t dot = name.find('.');
     if (dot == name.npos)
-        return "grid \"" + name + "\"";
-    return "attribute \"" + name.substr(dot + 1) + "\" of grid \"" + name.substr(0, dot) + "\"";
+        return "grid " + vdb_shell::quoted(name);
+    return "attribute " + vdb_shell::quoted(name.substr(dot + 1)) + " of grid " +
+           vdb_shell::quoted(name.substr(0, dot));
 }
 
 } // namespace
@@ -87,11 +89,11 @@ void StatedDigests::require_same(const NamedDigest& found) const
     const auto stated = std::find_if(stated_.begin(), stated_.end(), [&](const NamedDigest& one) {
         return one.name == found.name;
     });
-    const std::string says = stated == stated_.end() ? "nothing" : stated->hex;
-    if (says != found.hex)
+    const bool said = stated != stated_.end();
+    if (!said || stated->hex != found.hex)
         throw ReadError(path_.string() + ": " + in_words(found.name) +
                         " is not what was written: its digest is " + found.hex +
-                        ", the file says " + says);
+                        ", the file says " + (said ? vdb_shell::quoted(stated->hex) : "nothing"));
 }
 
 } // namespace vdb_shell

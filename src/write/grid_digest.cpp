@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "vdb_shell/core/digest.h"
+#include "vdb_shell/core/words.h"
 #include "write/point_grid_instances.h"
 
 #include <openvdb/io/Compression.h>
@@ -27,11 +28,6 @@ using openvdb::GridBase;
 using openvdb::points::AttributeArray;
 using openvdb::points::PointDataGrid;
 using Words = std::array<std::uint64_t, 2>;
-
-bool begins_with(const std::string& text, const std::string& start)
-{
-    return text.compare(0, start.size(), start) == 0;
-}
 
 template <typename Wanted>
 void add_metadata(Digest& digest, const openvdb::MetaMap& metadata, const Wanted& wanted)

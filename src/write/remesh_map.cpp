@@ -8,10 +8,9 @@
 
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/write/text_out.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,14 +19,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-std::string extension_of(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 using Ways = std::vector<std::pair<const char*, const std::vector<SurfacePoint>*>>;
 
@@ -83,7 +74,7 @@ void write_json(TextOut& out, const Ways& ways)
 
 void require_map_extension(const std::filesystem::path& path)
 {
-    const std::string extension = extension_of(path);
+    const std::string extension = lower_case_extension(path);
     if (extension != ".json" && extension != ".csv")
         throw InvalidOption(path.string() + ": unknown extension \"" + extension +
                             "\" for a remesh map; known are .json .csv");
@@ -98,7 +89,7 @@ void write_remesh_map(const std::filesystem::path& path, const RemeshMap& map, O
         path,
         [&](std::ostream& stream) {
             TextOut out(stream);
-            if (extension_of(path) == ".csv")
+            if (lower_case_extension(path) == ".csv")
                 write_csv(out, ways);
             else
                 write_json(out, ways);

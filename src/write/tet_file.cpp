@@ -11,10 +11,8 @@
 
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/output_set.h"
+#include "vdb_shell/core/words.h"
 #include "write/tet_formats.h"
-
-#include <algorithm>
-#include <cctype>
 
 namespace vdb_shell
 {
@@ -22,16 +20,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-/// The cast to unsigned char is needed: tolower is undefined for negative values, and names may
-/// have bytes beyond ASCII.
-std::string lower_extension(const fs::path& path)
-{
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        c = char(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& placement,
                   OutputSet* with)
@@ -75,7 +63,7 @@ void write_tets(const fs::path& path, const TetMesh& tets,
     if (!feet.empty() && feet.size() != tets.points.size())
         throw InvalidOption(path.string() + ": " + std::to_string(feet.size()) +
                             " feet on cores for " + std::to_string(tets.points.size()) + " points");
-    const std::string extension = lower_extension(path);
+    const std::string extension = lower_case_extension(path);
     if (extension == ".node" || extension == ".ele")
         return write_tetgen(path, tets, placement, with);
     if (extension == ".vtu")

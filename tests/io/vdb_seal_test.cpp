@@ -4,6 +4,7 @@
 #include "vdb_shell/core/error.h"
 
 #include "io/vdb_archive.h"
+#include "io/vdb_walk.h"
 #include "support/files.h"
 #include "support/grids.h"
 
@@ -16,8 +17,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kUuid = 21, kUuidLength = 36;
 
 class VdbSeal : public testing::Test
 {

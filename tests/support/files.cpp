@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/files.h"
 
+#include "vdb_shell/core/error.h"
+
 #include <unistd.h>
 
 #include <cstdlib>
@@ -25,6 +27,16 @@ TemporaryFolder::~TemporaryFolder()
 {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
+}
+
+std::string complaint_of(const std::function<void()>& read)
+{
+    try {
+        read();
+    } catch (const ReadError& error) {
+        return error.what();
+    }
+    return {};
 }
 
 std::string read_bytes(const fs::path& path)

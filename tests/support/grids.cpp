@@ -4,6 +4,7 @@
 #include "support/shapes.h"
 #include "vdb_shell/field/level_set.h"
 
+#include <openvdb/io/File.h>
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointGroup.h>
@@ -34,6 +35,21 @@ openvdb::GridBase::Ptr empty_grid(const std::string& value_type, const std::stri
     const auto grid = openvdb::GridBase::createGrid("Tree_" + value_type + "_5_4_3");
     grid->setName(name);
     return grid;
+}
+
+void rewrite_vdb(const std::filesystem::path& path,
+                 const std::function<void(openvdb::GridPtrVec&, openvdb::MetaMap&)>& change,
+                 std::uint32_t compression)
+{
+    openvdb::io::File file(path.string());
+    file.open(false);
+    openvdb::GridPtrVec grids = *file.getGrids();
+    openvdb::MetaMap metadata(*file.getMetadata());
+    file.close();
+    change(grids, metadata);
+    openvdb::io::File out(path.string());
+    out.setCompression(compression);
+    out.write(grids, metadata);
 }
 
 openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,

@@ -4,7 +4,11 @@
 #include "core/grid_instances.h"
 #include "write/point_grid_instances.h"
 
+#include <openvdb/io/Compression.h>
+
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +26,11 @@ openvdb::FloatGrid::Ptr sphere_field(double depth);
 
 /// An empty grid of those values, named as OpenVDB's trees name them: "vec3s", "int32", "mask".
 openvdb::GridBase::Ptr empty_grid(const std::string& value_type, const std::string& name);
+
+/// Writes a .vdb anew through OpenVDB with something changed. `compression` are OpenVDB's flags.
+void rewrite_vdb(const std::filesystem::path& path,
+                 const std::function<void(openvdb::GridPtrVec&, openvdb::MetaMap&)>& change,
+                 std::uint32_t compression = openvdb::io::COMPRESS_ZIP);
 
 /// A grid of points with exact positions, in voxels of that size.
 openvdb::points::PointDataGrid::Ptr point_grid(const std::vector<openvdb::Vec3s>& positions,

@@ -40,25 +40,12 @@ protected:
 
     void rewrite(const Change& change, std::uint32_t compression = openvdb::io::COMPRESS_ZIP) const
     {
-        openvdb::io::File file(path_.string());
-        file.open(false);
-        openvdb::GridPtrVec grids = *file.getGrids();
-        openvdb::MetaMap metadata(*file.getMetadata());
-        file.close();
-        change(grids, metadata);
-        openvdb::io::File out(path_.string());
-        out.setCompression(compression);
-        out.write(grids, metadata);
+        test::rewrite_vdb(path_, change, compression);
     }
 
     std::string complaint() const
     {
-        try {
-            read_shell_vdb(path_);
-        } catch (const ReadError& error) {
-            return error.what();
-        }
-        return {};
+        return test::complaint_of([&] { read_shell_vdb(path_); });
     }
 
     template <typename Grid>

@@ -37,12 +37,7 @@ protected:
     /// What reading says; empty when it succeeds.
     std::string complaint() const
     {
-        try {
-            read_shell_vdb(path_);
-        } catch (const ReadError& error) {
-            return error.what();
-        }
-        return {};
+        return test::complaint_of([&] { read_shell_vdb(path_); });
     }
 
     /// Expects a complaint with the file's name and all of `parts`.
@@ -58,14 +53,10 @@ protected:
     /// would tell of the change before anybody looks at it.
     void rewrite(const std::function<void(openvdb::GridPtrVec&, openvdb::MetaMap&)>& change) const
     {
-        openvdb::io::File file(path_.string());
-        file.open(false);
-        openvdb::GridPtrVec grids = *file.getGrids();
-        openvdb::MetaMap metadata(*file.getMetadata());
-        file.close();
-        metadata.removeMeta("vdb_shell_digests");
-        change(grids, metadata);
-        openvdb::io::File(path_.string()).write(grids, metadata);
+        test::rewrite_vdb(path_, [&](openvdb::GridPtrVec& grids, openvdb::MetaMap& metadata) {
+            metadata.removeMeta("vdb_shell_digests");
+            change(grids, metadata);
+        });
     }
 
     /// Sets the first row of an attribute of one grid.
