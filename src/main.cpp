@@ -13,6 +13,7 @@
 #include "command/file_commands.h"
 #include "command/inspect_command.h"
 #include "command/options_command.h"
+#include "command/pose_command.h"
 #include "command/repair_command.h"
 #include "command/signals.h"
 
@@ -40,6 +41,7 @@ struct Arguments {
     BuildArguments build;
     InspectArguments inspect;
     RepairArguments repair;
+    PoseArguments pose;
     FileArguments info, convert, check;
     OptionsArguments options;
 };
@@ -86,6 +88,8 @@ void add_commands(CLI::App& app, Arguments& a, const BoundOptions& global,
         a.inspect, [&a] { return run_inspect(a.inspect); });
     add("repair", "Close and mend a surface, keeping what is sound", add_repair_command, a.repair,
         [&a] { return run_repair(a.repair); });
+    add("pose", "Put a shell onto its surface in another pose", add_pose_command, a.pose,
+        [&a] { return run_pose(a.pose); });
     add("info", "Print what a shell's file holds", add_info_command, a.info,
         [&a] { return run_info(a.info); });
     add("convert", "Write other formats from a shell's file", add_convert_command, a.convert,

@@ -72,7 +72,7 @@ private:
 /// What a shell's geometry says of its size.
 struct Counts {
     std::size_t vertices = 0, prisms = 0, tets = 0, layers = 1, skin = 0;
-    bool tapered = false;
+    bool tapered = false, posed = false;
     std::size_t triangles() const { return prisms / layers; }
     std::vector<std::size_t> surfaces() const { return shown_surfaces(layers, skin); }
     bool layered() const { return houdini::layered(layers, skin); }

@@ -114,7 +114,7 @@ Attribute stop_reasons(const char* name, const PrismShell& shell,
 }
 
 void add_point_attributes(const ShellStack& stack, const ShellPoints& points,
-                          HoudiniGeometry& geometry)
+                          const RestPoints& rest, HoudiniGeometry& geometry)
 {
     const std::size_t count = points.position.size(), last = stack.layers.size();
     std::vector<std::vector<Vec3s>> normals;
@@ -123,13 +123,15 @@ void add_point_attributes(const ShellStack& stack, const ShellPoints& points,
     const auto vertex = [&](std::size_t i) { return points.vertex[i]; };
     const auto surface = [&](std::size_t i) { return points.layer[i]; };
     const auto position = [&](std::size_t i) { return points.position[i]; };
+    const std::vector<Vec3s> at_rest = rest.posed() ? rest_by_id(points, rest) : points.position;
     geometry.points = count;
     geometry.point_attributes = {
         vectors("P", "point", count, position),
         vectors("N", "normal", count,
                 [&](std::size_t i) { return normals[surface(i)][vertex(i)]; }),
-        // The same numbers as P, but without a meaning, so that transforms leave them alone.
-        vectors("rest", "", count, position),
+        // Without a meaning, so that transforms leave them alone. Unless the shell is posed, they
+        // are the numbers of P.
+        vectors(kRest, "", count, [&](std::size_t i) { return at_rest[i]; }),
         vectors(kOpposite, "point", count,
                 [&](std::size_t i) { return opposite_of(stack, surface(i), vertex(i)); }),
         floats("thickness", count, [&](std::size_t i) { return thickness_of(stack, vertex(i)); }),
@@ -328,8 +330,13 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
     std::size_t ripples = 0;
     for (const PrismSplit& split : file.stack.splits)
         ripples += split.ripples;
-    const bool tapered = file.stack.tapered, layers = tapered || has_layers(file.stack);
-    add_count(geometry, kSchema, tapered ? kTaperedSchema : layers ? kLayeredSchema : 1);
+    const bool posed = file.rest.posed(), tapered = file.stack.tapered;
+    const bool layers = posed || tapered || has_layers(file.stack);
+    add_count(geometry, kSchema,
+              posed     ? kPosedSchema
+              : tapered ? kTaperedSchema
+              : layers  ? kLayeredSchema
+                        : 1);
     add_count(geometry, kVertices, static_cast<std::size_t>(counts.vertices));
     add_count(geometry, kPrisms, static_cast<std::size_t>(counts.prisms));
     add_count(geometry, kTets, file.tets.tets.size());
@@ -337,8 +344,10 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
         add_count(geometry, kLayers, file.stack.layers.size());
         add_count(geometry, kSkin, file.stack.skin);
     }
-    if (tapered)
-        add_count(geometry, kTapered, 1);
+    if (tapered || posed)
+        add_count(geometry, kTapered, tapered ? 1 : 0);
+    if (posed)
+        add_count(geometry, kPosed, 1);
     add_count(geometry, kRipples, ripples);
     if (file.placement.moves()) {
         const Vec3d& o = file.placement.origin;
@@ -379,7 +388,7 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     const ShellPoints points = number_points(file.stack, file.tets);
     const std::vector<Part> parts = parts_of(file);
     HoudiniGeometry geometry;
-    add_point_attributes(file.stack, points, geometry);
+    add_point_attributes(file.stack, points, file.rest, geometry);
     add_core_attributes(points, file.core_feet, geometry);
     add_point_groups(file.stack, points, geometry);
     add_primitives(file, points, parts, geometry);

@@ -73,9 +73,10 @@ void require_primitives(const HoudiniGeometry& geometry, const Counts& counts,
 Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const std::string& name)
 {
     const std::int32_t schema = detail.integers(kSchema)[0];
-    if (schema < 1 || schema > kTaperedSchema)
+    if (schema < 1 || schema > kPosedSchema || schema == kFilledSchema)
         detail.fail(kSchema, "is " + std::to_string(schema) + ", schemas 1 to " +
-                                 std::to_string(kTaperedSchema) + " can be read");
+                                 std::to_string(kTaperedSchema) + " and " +
+                                 std::to_string(kPosedSchema) + " can be read");
     // Each count is bounded by the elements that the geometry has, before memory is taken by it.
     Counts counts;
     counts.vertices = detail.count(kVertices, geometry.points);
@@ -85,6 +86,7 @@ Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const
         read_layers(detail, name, counts);
     if (schema >= kTaperedSchema)
         counts.tapered = detail.count(kTapered, 1) == 1;
+    counts.posed = schema >= kPosedSchema && detail.count(kPosed, 1) == 1;
     require_primitives(geometry, counts, name);
     return counts;
 }
@@ -282,6 +284,8 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     if (found != detail.text(kChecksum))
         refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
                          detail.text(kChecksum));
+    if (counts.posed)
+        file.rest.surface = rest_by_surface(number_points(file.stack, {}), points.vectors(kRest));
     file.core_feet = read_core_attributes(geometry, points, file.stack, name);
     // After the others, whose messages say more.
     file.digests = require_digests(geometry, name);

@@ -18,6 +18,7 @@
 #include "vdb_shell/obstacles/cores.h"
 #include "vdb_shell/obstacles/join_cores.h"
 #include "vdb_shell/options/describe.h"
+#include "vdb_shell/pose/pose_shell.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/report/report.h"
 #include "vdb_shell/resample/decimate.h"
@@ -30,6 +31,7 @@
 #include "vdb_shell/step/line_step.h"
 #include "vdb_shell/taper/taper.h"
 #include "vdb_shell/taper/wanted_bounds.h"
+#include "vdb_shell/write/vdb_file.h"
 
 #include <optional>
 #include <string>
@@ -141,6 +143,28 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
                                        const openvdb::FloatGrid* thickness_grid = nullptr,
                                        Interrupter* interrupter = nullptr,
                                        const std::vector<CoreMesh>& cores = {});
+
+/// A posed shell with what was proven and measured of it.
+struct PosedShell {
+    ShellStack stack;
+    CoreTets core;
+    TetMesh tets;
+    /// Only surface, tets, proofs, pose and costs are filled in.
+    ShellReport report;
+};
+
+/// The shell at rest on its surface in another pose (pose_shell), certified and measured. `name` is
+/// what messages call the pose. Throws what pose_shell throws. Same result for any number of
+/// threads.
+PosedShell build_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>& skin,
+                       const PoseOptions& options, const std::string& name = "pose",
+                       Interrupter* interrupter = nullptr);
+
+/// All that the .vdb of a posed shell holds; `rest` is that of the shell at rest. Without
+/// `with_volumes` the grids are null; else they have rest.surface's voxel size, which it must have
+/// then. Throws what level sets and report_json throw, Cancelled.
+ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
+                     Interrupter* interrupter = nullptr);
 
 /// The options as JSON, as they are stored in a shell's .vdb.
 std::string options_json(const ShellOptions& options);

@@ -37,13 +37,6 @@ void add_file(CLI::App& app, FileArguments& arguments)
         ->required();
 }
 
-/// The grids are null when the file has none.
-ShellFile read_shell(const std::filesystem::path& path)
-{
-    return houdini::has_geometry_extension(path) ? houdini::read_shell_geometry(path)
-                                                 : read_shell_vdb(path);
-}
-
 /// Other programs write such files too, and may have put any text there.
 nlohmann::ordered_json stored_json(const std::filesystem::path& path, const char* what,
                                    const std::string& text)
@@ -73,6 +66,12 @@ void print_grid(const openvdb::FloatGrid& grid)
 }
 
 } // namespace
+
+ShellFile read_shell(const std::filesystem::path& path)
+{
+    return houdini::has_geometry_extension(path) ? houdini::read_shell_geometry(path)
+                                                 : read_shell_vdb(path);
+}
 
 BoundOptions add_info_command(CLI::App& app, FileArguments& arguments)
 {

@@ -26,6 +26,9 @@ BoundOptions add_info_command(CLI::App& app, FileArguments& arguments);
 BoundOptions add_convert_command(CLI::App& app, FileArguments& arguments);
 BoundOptions add_check_command(CLI::App& app, FileArguments& arguments);
 
+/// A .vdb or Houdini geometry; the grids are null when the file has none.
+ShellFile read_shell(const std::filesystem::path& path);
+
 int run_info(const FileArguments& arguments);
 int run_convert(const FileArguments& arguments);
 

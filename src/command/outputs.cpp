@@ -172,7 +172,10 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             break;
         case Kind::tets:
             write_tets(path, solid.tets, solid.certified, file.placement,
-                       feet_of_tet_points(file.stack, solid.tets, file.core_feet), &files);
+                       {feet_of_tet_points(file.stack, solid.tets, file.core_feet),
+                        file.rest.posed() ? rest_of_tet_points(file.tets, file.rest)
+                                          : std::vector<openvdb::Vec3s>{}},
+                       &files);
             break;
         case Kind::surface:
             write_mesh(path, grown_surface(file.stack), file.placement, &files);

@@ -43,6 +43,10 @@ struct GrowState {
     std::vector<double> trust_radius;
     BoxTree inner_tree, outer_tree;
 
+    /// By face: contacts between two such are let be, as where the outer surface crosses itself.
+    /// Empty: none is; else components may be anywhere.
+    std::vector<std::uint8_t> excused;
+
     /// One vertex per component, to see a move that would enclose a whole other component.
     std::vector<int> witness;
 };

@@ -69,12 +69,18 @@ std::vector<double> volume6_lost(const GrowState& s, const std::vector<Vec3d>& b
 std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
                                    const std::vector<double>& length, const StageProgress& progress)
 {
-    const MendSchedule& schedule = s.schedule.mend;
     pin_unservable(s, directions, length);
     place_pillars(s, directions, length);
     const std::vector<Vec3d> prolonged = s.b;
-    std::vector<std::uint8_t> look(length.size(), 1), moved(length.size(), 1);
-    std::vector<double> cut(length.size(), schedule.first_cut);
+    mend_placed(s, progress);
+    return volume6_lost(s, prolonged);
+}
+
+void mend_placed(GrowState& s, const StageProgress& progress)
+{
+    const MendSchedule& schedule = s.schedule.mend;
+    std::vector<std::uint8_t> look(s.b.size(), 1), moved(s.b.size(), 1);
+    std::vector<double> cut(s.b.size(), schedule.first_cut);
     for (int round = 0;; ++round) {
         progress.stop_if_interrupted(0);
         const bool first = round == 0;
@@ -88,7 +94,6 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
             break;
         look_around(*s.mesh, moved, look);
     }
-    return volume6_lost(s, prolonged);
 }
 
 } // namespace vdb_shell::growth

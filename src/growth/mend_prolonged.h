@@ -19,4 +19,7 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
                                    const std::vector<double>& length,
                                    const StageProgress& progress);
 
+/// The same where the inner points, rounded to float32, and the pins have been put by the caller.
+void mend_placed(GrowState& s, const StageProgress& progress);
+
 } // namespace vdb_shell::growth

@@ -205,7 +205,7 @@ Vec3d capped(const GrowState& s, int v, const Vec3d& x)
 bool swallows_component(const GrowState& s, int v, const Vec3d& x)
 {
     const Connectivity& m = *s.mesh;
-    if (m.components < 2)
+    if (m.components < 2 || !s.excused.empty())
         return false;
     for (const FaceCorner& at : star(m, v)) {
         const Vec3d& p = s.b[m.corner(at.face, (at.local + 1) % 3)];
@@ -229,7 +229,7 @@ bool swallows_component(const GrowState& s, int v, const Vec3d& x)
 bool holds_component(const GrowState& s, int f)
 {
     const Connectivity& m = *s.mesh;
-    if (m.components < 2)
+    if (m.components < 2 || !s.excused.empty())
         return false;
     Box box = box_of(outer_corners(s, f));
     box.add(box_of(inner_corners(s, f)));
@@ -310,12 +310,14 @@ bool InnerTriangle::meets_inner(int g, const Corners& c) const
         one_side = one_side && side != 0 && (first == 0 || side == first);
         first = side;
     }
-    return !one_side && improper_contact(corners_, inner_ids(s_, face_), c, inner_ids(s_, g));
+    return !one_side && !excused(g) &&
+           improper_contact(corners_, inner_ids(s_, face_), c, inner_ids(s_, g));
 }
 
 bool InnerTriangle::meets_outer(int g) const
 {
-    return improper_contact(corners_, inner_ids(s_, face_), outer_corners(s_, g), outer_ids(s_, g));
+    return !excused(g) &&
+           improper_contact(corners_, inner_ids(s_, face_), outer_corners(s_, g), outer_ids(s_, g));
 }
 
 void tet_bounds(const GrowState& s, int v, LinearBounds& out)

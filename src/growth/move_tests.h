@@ -72,6 +72,8 @@ public:
     bool meets_outer(int g) const;
 
 private:
+    bool excused(int g) const { return !s_.excused.empty() && s_.excused[face_] && s_.excused[g]; }
+
     const GrowState& s_;
     int face_;
     Corners corners_;

@@ -11,12 +11,15 @@
 
 #include "vdb_shell/report/report.h"
 
+#include "vdb_shell/core/error.h"
+
 #include "certify/certificate_findings.h"
 #include "core/degrees.h"
 #include "mesh/components_json.h"
 #include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"
 #include "report/cores_report.h"
+#include "report/pose_report.h"
 #include "report/resample_report.h"
 #include "report/shape_report.h"
 
@@ -335,6 +338,7 @@ void add_shell(ordered_json& json, const ShellReport& report)
     json["cut"] = report.cut ? cut_json(*report.cut) : ordered_json();
     json["taper"] = report.taper ? taper_json(*report.taper) : ordered_json();
     json["cores"] = report.cores ? cores_json(*report.cores) : ordered_json();
+    json["pose"] = report.pose ? pose_json(*report.pose) : ordered_json();
     json["core_fill"] = report.core_fill ? core_fill_json(*report.core_fill) : ordered_json();
     json["layers"] = layers_json(report);
     json["prisms"] = {{"prisms", report.prisms},
@@ -377,6 +381,23 @@ std::string report_json(const ShellReport& report, bool with_costs)
         json["stages"] = costs_json(report.stages);
     // A file name may hold bytes that are no UTF-8. They are replaced, since JSON cannot hold them
     // and a report must not fail for the name of its input.
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)
+{
+    ordered_json json = ordered_json::parse(at_rest, nullptr, false);
+    if (!json.is_object())
+        throw ReadError(posed.source + ": the report of the shell at rest is no JSON object");
+    const ordered_json now = ordered_json::parse(report_json(posed, with_costs));
+    for (const char* key : {"mesh", "prisms", "tets", "conformity", "quality", "volume",
+                            "certificate", "overlaps", "pose"})
+        json[key] = now[key];
+    // Of the shell at rest they would be taken for this one's.
+    for (const char* key : {"coverage", "wanted", "surface_bounds", "layers"})
+        json[key] = nullptr;
+    if (with_costs)
+        json["stages"] = now["stages"];
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 

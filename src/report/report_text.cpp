@@ -9,6 +9,7 @@
 #include "vdb_shell/report/report.h"
 
 #include "report/cores_report.h"
+#include "report/pose_report.h"
 #include "report/resample_report.h"
 #include "report/shape_report.h"
 #include "report/surface_text.h"
@@ -313,6 +314,28 @@ std::string faults_of(const ShellReport& report)
     add(report.coverage.in_several, "sample points covered more than once");
     add(report.coverage.outside_covered, "sample points covered outside the solid");
     return wrong;
+}
+
+std::string posed_report_text(const ShellReport& report)
+{
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    if (report.pose)
+        pose_lines(out, *report.pose);
+    line(out, "tets",
+         number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
+             " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
+             (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+    line(out, "volume",
+         "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6));
+    if (report.certificate)
+        line(out, "certified", certificate_text(*report.certificate));
+    if (report.overlaps)
+        line(out, "overlaps", report.overlaps->summary());
+    if (!report.stages.empty())
+        cost_lines(out, report.stages);
+    line(out, "verdict", verdict(report));
+    return out.str();
 }
 
 std::string report_text(const ShellReport& report)

@@ -37,12 +37,15 @@ Vec3s centre_of(const TetMesh& all, const openvdb::Vec4I& tet)
 
 } // namespace
 
-CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core)
+CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core,
+                          const std::vector<Vec3s>& rest)
 {
     CoreGrids grids;
     PointGridBuilder own(kCorePointsGrid, core.points);
     own.add("id", ids(core.points.size()));
-    own.add("rest", core.points);
+    own.add(position_attribute(!rest.empty()), core.points);
+    if (!rest.empty())
+        own.add("rest", rest);
     std::vector<std::int32_t> vertex;
     for (const std::uint32_t v : core.source_vertex)
         vertex.push_back(v == CoreTets::kNoVertex ? -1 : std::int32_t(v));
@@ -73,7 +76,7 @@ CoreTets read_core_grids(const CoreGrids& grids, const ShellCounts& counts,
     const PointGridReader points(*grids.points, counts.core_points, name);
     const PointGridReader tets(*grids.tets, counts.core_tets, name);
     CoreTets core;
-    points.positions("rest", core.points);
+    points.positions(position_attribute(counts.posed), core.points);
     core.source_vertex.resize(core.points.size());
     // Shifted by one, so that -1 for "of the inside" becomes 0 and one test of range covers both.
     points.for_each_row<std::int32_t>(

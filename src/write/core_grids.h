@@ -13,12 +13,21 @@ namespace vdb_shell
 inline constexpr const char* kCorePointsGrid = "core_points";
 inline constexpr const char* kCoreTetsGrid = "core_tets";
 
+/// Of a posed shell the exact positions, which `rest` has where a shell is not posed.
+inline constexpr const char* kPosition = "position";
+inline const char* position_attribute(bool posed)
+{
+    return posed ? kPosition : "rest";
+}
+
 /// What fills the shell, as two grids of points. Corners of tets are ids of the shell's points, and
-/// behind those ids the core's own points. Precondition: require_consistent, of both.
+/// behind those ids the core's own points. `rest`: of a posed shell, where the core's points were.
+/// Precondition: require_consistent, of both.
 struct CoreGrids {
     openvdb::points::PointDataGrid::Ptr points, tets;
 };
-CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core);
+CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core,
+                          const std::vector<openvdb::Vec3s>& rest = {});
 
 /// Throws ReadError, its message opened by `name`, unless every id is there once and in range.
 /// `shell` are the shell's points by id.

@@ -62,13 +62,16 @@ void add_stop_reasons(PointGridBuilder& builder, const ShellStack& stack, const 
 }
 
 /// Positions, and what is drawn or shaded with: the other end of the pillar, normal, thickness.
-void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points)
+void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points,
+                  const RestPoints& rest)
 {
     const std::size_t count = points.position.size();
     std::vector<std::vector<Vec3s>> normals;
     for (std::size_t k = 0; k < stack.surfaces(); ++k)
         normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
-    builder.add("rest", points.position);
+    builder.add(position_attribute(rest.posed()), points.position);
+    if (rest.posed())
+        builder.add("rest", rest_by_id(points, rest));
     builder.add("opposite", column<Vec3s>(count, [&](std::size_t i) {
                     return opposite_of(stack, points.layer[i], points.vertex[i]);
                 }));
@@ -81,7 +84,7 @@ void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const Shel
 }
 
 PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& points,
-                               const std::vector<CoreFoot>& feet)
+                               const std::vector<CoreFoot>& feet, const RestPoints& rest)
 {
     PointGridBuilder builder(kPointsGrid, points.position);
     const std::size_t count = points.position.size(), last = stack.layers.size();
@@ -94,7 +97,7 @@ PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& point
     builder.add("source_vertex", integers(count, [&](std::size_t i) { return points.vertex[i]; }));
     add_stop_reasons(builder, stack, points);
     builder.add("pinned", integers(count, is_pinned));
-    add_geometry(builder, stack, points);
+    add_geometry(builder, stack, points, rest);
     add_core_feet(builder, points, feet);
     const auto on_surface = [&](std::size_t surface) {
         return column<short>(count, [&](std::size_t i) { return points.layer[i] == surface; });
@@ -242,6 +245,31 @@ ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
     return points;
 }
 
+std::vector<Vec3s> rest_by_id(const ShellPoints& points, const RestPoints& rest)
+{
+    return column<Vec3s>(points.position.size(), [&](std::size_t i) {
+        return rest.surface[points.layer[i]][points.vertex[i]];
+    });
+}
+
+std::vector<std::vector<Vec3s>> rest_by_surface(const ShellPoints& points,
+                                                const std::vector<Vec3s>& by_id)
+{
+    std::vector<std::vector<Vec3s>> surfaces;
+    for (const std::vector<std::uint32_t>& ids : points.id)
+        surfaces.push_back(column<Vec3s>(ids.size(), [&](std::size_t v) { return by_id[ids[v]]; }));
+    return surfaces;
+}
+
+std::vector<Vec3s> rest_of_tet_points(const TetMesh& tets, const RestPoints& rest)
+{
+    std::vector<Vec3s> points;
+    for (std::size_t p = 0; p < tets.points.size(); ++p)
+        points.push_back(rest.surface[tets.layer[p]][tets.source_vertex[p]]);
+    points.insert(points.end(), rest.core.begin(), rest.core.end());
+    return points;
+}
+
 ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets, const CoreTets& core)
 {
     const auto vertices = std::int64_t(stack.surface(0).size());
@@ -263,12 +291,12 @@ ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets, const CoreTe
 }
 
 PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets,
-                            const std::vector<CoreFoot>& feet)
+                            const std::vector<CoreFoot>& feet, const RestPoints& rest)
 {
     const ShellPoints points = number_points(stack, tets);
     PointGrids grids;
     run_together([&] { grids.tets = make_tet_points(stack, tets, points); },
-                 [&] { grids.points = make_points(stack, points, feet); },
+                 [&] { grids.points = make_points(stack, points, feet, rest); },
                  [&] { grids.prisms = make_prisms(stack, points); });
     return grids;
 }

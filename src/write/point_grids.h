@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vdb_shell/write/shell_points.h"
+#include "write/core_grids.h"
 #include "write/point_grid_instances.h"
 
 #include <string>
@@ -23,12 +24,17 @@ struct PointGrids {
 };
 /// `feet`: by vertex, or empty.
 PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets,
-                            const std::vector<CoreFoot>& feet = {});
+                            const std::vector<CoreFoot>& feet = {}, const RestPoints& rest = {});
 
 /// Fills everything but the splits' ripples. Throws ReadError, its message opened by `name`, unless
 /// every id is there once, in range, and the redundant parts agree.
 void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const std::string& name,
                       ShellStack& stack, TetMesh& tets);
+
+/// Precondition: the grids are of a posed shell, and have been read into `stack`. Throws ReadError.
+RestPoints read_rest_points(const PointGrids& grids, const CoreGrids& core,
+                            const ShellCounts& counts, const ShellStack& stack,
+                            const std::string& name);
 
 /// Not equality of values: zeros of either sign differ, as they do for the checksum.
 bool same_bits(const openvdb::Vec3s& a, const openvdb::Vec3s& b);

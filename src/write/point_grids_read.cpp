@@ -37,7 +37,7 @@ struct Rows {
 Rows read_rows(const Reader& reader, const ShellCounts& counts)
 {
     Rows rows;
-    reader.positions("rest", rows.rest);
+    reader.positions(position_attribute(counts.posed), rows.rest);
     reader.positions("opposite", rows.opposite);
     const auto read = [&](const char* name, std::size_t limit, std::vector<std::uint32_t>& into) {
         into.resize(std::size_t(counts.points));
@@ -239,6 +239,19 @@ void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts
 }
 
 } // namespace
+
+RestPoints read_rest_points(const PointGrids& grids, const CoreGrids& core,
+                            const ShellCounts& counts, const ShellStack& stack,
+                            const std::string& name)
+{
+    RestPoints rest;
+    std::vector<Vec3s> by_id;
+    Reader(*grids.points, counts.points, name).positions("rest", by_id);
+    rest.surface = rest_by_surface(number_points(stack, {}), by_id);
+    if (core.points)
+        Reader(*core.points, counts.core_points, name).positions("rest", rest.core);
+    return rest;
+}
 
 void read_point_grids(const PointGrids& grids, const ShellCounts& counts, const std::string& name,
                       ShellStack& stack, TetMesh& tets)

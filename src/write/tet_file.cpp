@@ -52,7 +52,7 @@ const std::vector<std::string>& tet_file_extensions()
 
 void write_tets(const fs::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified, const Placement& placement,
-                const std::vector<CoreFoot>& feet, OutputSet* with)
+                const PointExtras& extras, OutputSet* with)
 {
     // Only .vtu has a place for the flags; the other formats drop them, but a wrong number is
     // refused for all.
@@ -60,15 +60,19 @@ void write_tets(const fs::path& path, const TetMesh& tets,
         throw InvalidOption(path.string() + ": " + std::to_string(certified.size()) +
                             " flags of certified tets for " + std::to_string(tets.tets.size()) +
                             " tets");
-    if (!feet.empty() && feet.size() != tets.points.size())
-        throw InvalidOption(path.string() + ": " + std::to_string(feet.size()) +
-                            " feet on cores for " + std::to_string(tets.points.size()) + " points");
+    const auto require_one_a_point = [&](std::size_t count, const char* what) {
+        if (count > 0 && count != tets.points.size())
+            throw InvalidOption(path.string() + ": " + std::to_string(count) + what +
+                                std::to_string(tets.points.size()) + " points");
+    };
+    require_one_a_point(extras.feet.size(), " feet on cores for ");
+    require_one_a_point(extras.rest.size(), " places at rest for ");
     const std::string extension = lower_case_extension(path);
     if (extension == ".node" || extension == ".ele")
         return write_tetgen(path, tets, placement, with);
     if (extension == ".vtu")
         return write_stream_atomically(
-            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, feet); },
+            path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, extras); },
             with);
     void (*write)(std::ostream&, const TetMesh&, const Placement&) = nullptr;
     if (extension == ".mesh")

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "vdb_shell/mesh/placement.h"
-#include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/write/tet_file.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -20,9 +20,9 @@ inline bool has_layers(const TetMesh& tets)
                        [](std::uint8_t layer) { return layer > 0; });
 }
 
-/// `certified` by tet, or empty; `feet` by point, or empty.
+/// `certified` by tet, or empty.
 void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
-               const Placement& placement, const std::vector<CoreFoot>& feet);
+               const Placement& placement, const PointExtras& extras);
 void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& placement);
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets);
 void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placement);

@@ -162,6 +162,19 @@ AllPoints read_points_of(OpenFile& file, bool with_core)
                       : CoreGrids{}};
 }
 
+void require_consistent_rest(const ShellFile& file)
+{
+    if (!file.rest.posed())
+        return;
+    bool fits = file.rest.surface.size() == file.stack.surfaces() &&
+                file.rest.core.size() == file.core.points.size();
+    for (const std::vector<openvdb::Vec3s>& surface : file.rest.surface)
+        fits = fits && surface.size() == file.stack.surface(0).size();
+    if (!fits)
+        throw InvalidOption("the shell cannot be written: its points at rest are not as many as "
+                            "its points");
+}
+
 /// With digests of all that it holds.
 void write_sealed(const fs::path& path, openvdb::GridPtrVec grids, openvdb::MetaMap metadata)
 {
@@ -234,12 +247,14 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     openvdb::initialize();
     require_consistent(file.stack, file.tets);
     require_consistent_core(file.stack, file.tets, file.core);
+    require_consistent_rest(file);
     const bool beside = options.points == PointPlacement::beside;
     openvdb::MetaMap metadata;
     PointGrids made;
     // Checksum and grids each go over all arrays of the shell, and neither needs the other.
-    run_together([&] { metadata = shell_metadata(path, file, options.points); },
-                 [&] { made = make_point_grids(file.stack, file.tets, file.core_feet); });
+    run_together(
+        [&] { metadata = shell_metadata(path, file, options.points); },
+        [&] { made = make_point_grids(file.stack, file.tets, file.core_feet, file.rest); });
     openvdb::GridPtrVec volumes{
         named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
         named_copy(file.depth, kDepthGrid, options.half, file.placement)};
@@ -247,8 +262,8 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
                                std::move(made.tets)};
     if (!file.core.empty()) {
-        const CoreGrids core =
-            make_core_grids(number_points(file.stack, file.tets), file.tets, file.core);
+        const CoreGrids core = make_core_grids(number_points(file.stack, file.tets), file.tets,
+                                               file.core, file.rest.core);
         points.push_back(core.points);
         points.push_back(core.tets);
     }
@@ -271,6 +286,24 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
                 write_sealed(temporary, std::move(points), metadata);
             });
     });
+}
+
+ShellStack rest_stack(const ShellFile& file)
+{
+    ShellStack stack = file.stack;
+    for (std::size_t k = 0; file.rest.posed() && k < stack.layers.size(); ++k) {
+        stack.layers[k].outer = file.rest.surface[k];
+        stack.layers[k].inner = file.rest.surface[k + 1];
+    }
+    return stack;
+}
+
+CoreTets rest_core(const ShellFile& file)
+{
+    CoreTets core = file.core;
+    if (file.rest.posed())
+        core.points = file.rest.core;
+    return core;
 }
 
 ShellInfo read_shell_info(const fs::path& path)
@@ -296,15 +329,17 @@ ShellFile read_shell_vdb(const fs::path& path)
         // writer's step on the transform alone.
         put_in_place(*result.surface, -info.placement.shift());
         put_in_place(*result.depth, -info.placement.shift());
-        const ShellCounts counts{info.vertices,    info.points,   info.tet_points, info.prisms,
-                                 info.tets,        info.layers,   info.skin,       info.tapered,
-                                 info.core_points, info.core_tets};
+        const ShellCounts counts{info.vertices,    info.points,    info.tet_points, info.prisms,
+                                 info.tets,        info.layers,    info.skin,       info.tapered,
+                                 info.core_points, info.core_tets, info.posed};
         const AllPoints points = find_points(file, info, result.digests);
         const std::string name = info.points_at.string();
         read_point_grids(points.shell, counts, name, result.stack, result.tets);
         if (points.core.tets)
             result.core = read_core_grids(points.core, counts,
                                           number_points(result.stack, result.tets), name);
+        if (info.posed)
+            result.rest = read_rest_points(points.shell, points.core, counts, result.stack, name);
         result.core_feet =
             read_core_feet(*points.shell.points, number_points(result.stack, {}), name);
         // The file has the sum over all layers; it is put into the first layer.

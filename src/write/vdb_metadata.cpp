@@ -36,6 +36,7 @@ constexpr const char* kTetsKey = "vdb_shell_tets";
 constexpr const char* kLayersKey = "vdb_shell_layers";
 constexpr const char* kSkinKey = "vdb_shell_skin";
 constexpr const char* kTaperedKey = "vdb_shell_tapered";
+constexpr const char* kPosedKey = "vdb_shell_posed";
 constexpr const char* kCorePointsKey = "vdb_shell_core_points";
 constexpr const char* kCoreTetsKey = "vdb_shell_core_tets";
 constexpr const char* kRipplesKey = "vdb_shell_ripples";
@@ -88,6 +89,15 @@ std::int64_t count_entry(const openvdb::MetaMap& metadata, const fs::path& path,
     return count;
 }
 
+bool flag_entry(const openvdb::MetaMap& metadata, const fs::path& path, const char* key)
+{
+    const std::int64_t flag = count_entry(metadata, path, key);
+    if (flag > 1)
+        fail(path, std::string("metadata \"") + key + "\" is " + std::to_string(flag) +
+                       ", expected 0 or 1");
+    return flag == 1;
+}
+
 /// The schema is read before all else: a newer one may give other entries another meaning, and the
 /// message should say that rather than name some missing entry.
 int schema_of(const openvdb::MetaMap& metadata, const fs::path& path)
@@ -128,6 +138,8 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
 /// of layers.
 int schema_for(const ShellCounts& counts)
 {
+    if (counts.posed)
+        return kPosedSchema;
     if (counts.core_tets > 0)
         return kFilledSchema;
     if (counts.tapered)
@@ -150,15 +162,12 @@ void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellIn
                        ", expected at most " + std::to_string(info.layers));
     if (info.schema < kTaperedSchema)
         return;
-    const std::int64_t tapered = count_entry(metadata, path, kTaperedKey);
-    if (tapered > 1)
-        fail(path, std::string("metadata \"") + kTaperedKey + "\" is " + std::to_string(tapered) +
-                       ", expected 0 or 1");
-    info.tapered = tapered == 1;
+    info.tapered = flag_entry(metadata, path, kTaperedKey);
     if (info.schema < kFilledSchema)
         return;
     info.core_points = count_entry(metadata, path, kCorePointsKey);
     info.core_tets = count_entry(metadata, path, kCoreTetsKey);
+    info.posed = info.schema >= kPosedSchema && flag_entry(metadata, path, kPosedKey);
 }
 
 void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Placement& placement)
@@ -207,7 +216,8 @@ fs::path points_file_of(const fs::path& path)
 openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, PointPlacement points)
 {
     openvdb::MetaMap map;
-    const ShellCounts counts = counts_of(file.stack, file.tets, file.core);
+    ShellCounts counts = counts_of(file.stack, file.tets, file.core);
+    counts.posed = file.rest.posed();
     map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
     map.insertMeta(kSchemaKey, Int32Metadata(schema_for(counts)));
     // The casts are safe: require_consistent has bounded these counts by int32, and it runs before
@@ -230,14 +240,16 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
         map.insertMeta(kCorePointsKey, Int32Metadata(std::int32_t(counts.core_points)));
         map.insertMeta(kCoreTetsKey, Int32Metadata(std::int32_t(counts.core_tets)));
     }
+    if (counts.posed)
+        map.insertMeta(kPosedKey, Int32Metadata(1));
     if (file.placement.moves()) {
         map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
         map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
     }
     map.insertMeta(kOrientationKey, StringMetadata(layered ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets, file.core)));
-    map.insertMeta(kGridsKey,
-                   StringMetadata(std::string(kGridNames) + (filled ? kCoreGridNames : "")));
+    map.insertMeta(kGridsKey, StringMetadata(std::string(kGridNames) +
+                                             (counts.core_tets > 0 ? kCoreGridNames : "")));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
                                                       : std::string()));

@@ -128,7 +128,7 @@ void write_feet(TextOut& text, const std::vector<CoreFoot>& feet)
 } // namespace
 
 void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
-               const Placement& placement, const std::vector<CoreFoot>& feet)
+               const Placement& placement, const PointExtras& extras)
 {
     TextOut text(out);
     text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
@@ -138,7 +138,9 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
          << "\">\n<PointData>\n";
     write_numbers(text, tets, "UInt32", "source_vertex", tets.source_vertex);
     write_numbers(text, tets, "UInt8", "layer", tets.layer);
-    write_feet(text, feet);
+    write_feet(text, extras.feet);
+    if (!extras.rest.empty())
+        write_array(text, "Float32", "rest", 3, extras.rest);
     text << "</PointData>\n<CellData>\n";
     write_numbers(text, tets, "UInt32", "prism", tets.prism);
     if (has_layers(tets))

@@ -60,6 +60,9 @@ def reports(command, samples, folder):
         if done.returncode not in (0, BOUND_NOT_MET):
             done.check_returncode()
         yield json.loads(out.read_text())
+    posed = folder / "posed.json"
+    subprocess.run([command, "pose", folder / "0.vdb", box, "-q", "--report", posed], check=True)
+    yield json.loads(posed.read_text())
 
 
 def collect(value, path, found):

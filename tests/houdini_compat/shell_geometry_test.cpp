@@ -51,6 +51,21 @@ TEST(ShellGeometry, EveryFormGivesTheSameShellBackBitForBit)
     expect_round_trips(bare);
 }
 
+TEST(ShellGeometry, APosedShellKeepsItsRestBitForBit)
+{
+    ShellFile file = scaled_shell_file(test::icosphere(1.0, 2), 0.5f);
+    for (std::size_t k = 0; k < file.stack.surfaces(); ++k) {
+        file.rest.surface.push_back(file.stack.surface(k));
+        for (Vec3s& p : file.rest.surface.back())
+            p = Vec3s(p[1] / 3, -p[2], p[0] + 5);
+    }
+    expect_round_trips(file);
+    const ShellFile read = shell_of_geometry(shell_geometry(file), "s");
+    EXPECT_EQ(read.rest.surface, file.rest.surface);
+    file.rest = {};
+    EXPECT_FALSE(shell_of_geometry(shell_geometry(file), "s").rest.posed());
+}
+
 Vec3d position(const HoudiniGeometry& geometry, std::size_t vertex)
 {
     const auto& p = std::get<std::vector<float>>(find(geometry.point_attributes, "P")->values);

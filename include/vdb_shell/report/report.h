@@ -17,6 +17,7 @@
 #include "vdb_shell/layers/scale_thickness.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/obstacles/core_feet.h"
+#include "vdb_shell/pose/pose_shell.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/resample/decimate.h"
 #include "vdb_shell/resample/remesh.h"
@@ -105,6 +106,7 @@ struct ShellReport {
     std::optional<TaperReport> taper;        ///< absent unless it was asked for
     std::optional<CoreFillReport> core_fill; ///< likewise
     std::optional<CoreReport> cores;         ///< absent unless there were some
+    std::optional<PoseReport> pose;          ///< of a posed shell
     std::vector<LayerFigures> layers;        ///< empty for a single layer
     std::size_t prisms = 0, pinned_vertices = 0, ripples = 0;
     /// Vertices from which no direction sees all their triangles: geometry demands their pins.
@@ -135,10 +137,18 @@ struct ShellReport {
 /// from run to run.
 std::string report_json(const ShellReport& report, bool with_costs = true);
 
+/// The report of a posed shell: what `posed` says of its surface, tets and proofs, and for the rest
+/// `at_rest`, the JSON report of the shell that was posed. Throws ReadError where that is no JSON
+/// object.
+std::string posed_report_json(const ShellReport& posed, const std::string& at_rest,
+                              bool with_costs = true);
+
 /// What was found wrong with the shell; empty where nothing was.
 std::string faults_of(const ShellReport& report);
 
 /// The report for a person: some twenty lines.
 std::string report_text(const ShellReport& report);
+/// Of a posed shell: what posing found and did, tets and proofs.
+std::string posed_report_text(const ShellReport& report);
 
 } // namespace vdb_shell

@@ -25,6 +25,7 @@ struct ShellCounts {
     std::int64_t layers = 1, skin = 0;
     bool tapered = false;
     std::int64_t core_points = 0, core_tets = 0;
+    bool posed = false; ///< not set by counts_of
 };
 ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets, const CoreTets& core = {});
 
@@ -46,6 +47,19 @@ struct ShellPoints {
 };
 /// Precondition: require_consistent.
 ShellPoints number_points(const ShellStack& stack, const TetMesh& tets);
+
+/// Where the points of a posed shell were at rest.
+struct RestPoints {
+    std::vector<std::vector<openvdb::Vec3s>> surface; ///< by surface and vertex; empty: not posed
+    std::vector<openvdb::Vec3s> core;                 ///< of CoreTets::points
+
+    bool posed() const { return !surface.empty(); }
+};
+std::vector<openvdb::Vec3s> rest_by_id(const ShellPoints& points, const RestPoints& rest);
+std::vector<std::vector<openvdb::Vec3s>> rest_by_surface(const ShellPoints& points,
+                                                         const std::vector<openvdb::Vec3s>& by_id);
+/// By point of joined_tets(tets, core).
+std::vector<openvdb::Vec3s> rest_of_tet_points(const TetMesh& tets, const RestPoints& rest);
 
 /// By id: the foot of the pillar whose innermost point it is; other points have none.
 std::vector<CoreFoot> feet_by_id(const ShellPoints& points, const std::vector<CoreFoot>& feet);

@@ -17,17 +17,23 @@ class OutputSet;
 /// Extensions that write_tets knows: ".vtu", ".node", ".ele", ".mesh", ".msh".
 const std::vector<std::string>& tet_file_extensions();
 
+/// What .vtu has of each point besides; each list may be empty.
+struct PointExtras {
+    std::vector<CoreFoot> feet;       ///< feet_of_tet_points
+    std::vector<openvdb::Vec3s> rest; ///< rest_of_tet_points
+};
+
 /// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name
 /// writes both), Medit (.mesh), Gmsh 4.1 (.msh). Coordinates are the float32 values exactly,
 /// whether a program reads them into floats or doubles; with a placement that moves, doubles where
 /// the file of the surface has them. Data beside them, where the format has a
 /// place (docs/file_format.md): per point source vertex and layer, per tet its prism and, where
 /// `certified` is given, its flag (Overlaps::certified; .vtu only); per point its foot on a core
-/// where `feet` are given (feet_of_tet_points; .vtu only). Files appear whole or not at all; same
-/// bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension for flags
-/// that are not one a tet and feet that are not one a point, WriteError.
+/// and where it was at rest, where `extras` have them (.vtu only). Files appear whole or not at
+/// all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension
+/// for flags that are not one a tet and extras that are not one a point, WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {},
-                const std::vector<CoreFoot>& feet = {}, OutputSet* with = nullptr);
+                const PointExtras& extras = {}, OutputSet* with = nullptr);
 
 } // namespace vdb_shell

@@ -8,6 +8,7 @@
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/shell/shell_stack.h"
+#include "vdb_shell/write/shell_points.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -20,11 +21,13 @@ class OutputSet;
 
 /// Version of the layout in docs/file_format.md. A reader refuses a larger one. A shell of one
 /// layer below its surface is written as schema 1, which has no words for layers; one that is not
-/// tapered as schema 2 at most, one without a core as schema 3 at most.
-inline constexpr int kShellSchema = 4;
+/// tapered as schema 2 at most, one without a core as schema 3 at most, one at rest as schema 4 at
+/// most.
+inline constexpr int kShellSchema = 5;
 inline constexpr int kLayeredSchema = 2; ///< the first that knows layers
 inline constexpr int kTaperedSchema = 3; ///< the first that knows pillars with a common end
 inline constexpr int kFilledSchema = 4;  ///< the first that knows tets of a core
+inline constexpr int kPosedSchema = 5;   ///< the first that knows where points were at rest
 
 /// All that a shell's .vdb holds.
 struct ShellFile {
@@ -39,6 +42,7 @@ struct ShellFile {
     Placement placement{};
     std::vector<CoreFoot> core_feet{}; ///< by vertex; empty where there were no cores
     CoreTets core{};                   ///< empty where nothing fills the shell
+    RestPoints rest{};                 ///< of a posed shell
     /// Digests of parts of the file that held when it was read; 0 where it has none.
     std::size_t digests = 0;
 };
@@ -69,6 +73,7 @@ struct ShellInfo {
     std::int64_t skin = 0;   ///< ShellStack::skin
     bool tapered = false;    ///< ShellStack::tapered
     std::int64_t core_points = 0, core_tets = 0;
+    bool posed = false;              ///< ShellFile::rest.posed()
     Placement placement;             ///< moves nothing where the file has none
     std::int64_t ripples = 0;        ///< PrismSplit::ripples, of all layers
     std::string creator;             ///< program and version that wrote it
@@ -79,6 +84,10 @@ struct ShellInfo {
     std::string parameters_json;
     std::string report_json;
 };
+
+/// The shell of the file, or where it is posed that at rest.
+ShellStack rest_stack(const ShellFile& file);
+CoreTets rest_core(const ShellFile& file);
 
 /// Float grid "depth" over the voxels whose centres lie in a tet: 0 on the outer surface, 1 on the
 /// inner one, linear in each tet (with n layers, k / n on surface k); where tets overlap, the one

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/pose/bind_surface.h"
+
+#include "support/bends.h"
+
+#include <gtest/gtest.h>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+
+TEST(BindSurface, AtRestPointsStayWhereTheyAre)
+{
+    const TriangleMesh rest = test::icosphere(1.0, 2), fine = test::icosphere(1.05, 3);
+    const test::Points back = move_bound(bind_surface(fine.points, rest), rest);
+    for (std::size_t i = 0; i < back.size(); ++i)
+        EXPECT_LT((back[i] - fine.points[i]).length(), 1e-6f);
+}
+
+TEST(BindSurface, RigidMotionsCarryPointsOnAndOffTheSurface)
+{
+    const TriangleMesh rest = test::icosphere(1.0, 2), fine = test::icosphere(1.2, 2);
+    const auto pose = [](const TriangleMesh& mesh) {
+        return test::translated(test::turned(mesh, {1, 1, 0}, 0.7), {3, -2, 1});
+    };
+    const test::Points there = move_bound(bind_surface(fine.points, rest), pose(rest));
+    const TriangleMesh expected = pose(fine);
+    for (std::size_t i = 0; i < there.size(); ++i)
+        EXPECT_LT((there[i] - expected.points[i]).length(), 3e-6f);
+}
+
+TEST(BindSurface, CornersGoWithTheirTriangles)
+{
+    const TriangleMesh rod = test::round_rod();
+    const TriangleMesh posed{
+        test::moved(rod.points, [](const Vec3d& p) { return test::elbow(p, 1.2, 0.5); }),
+        rod.triangles};
+    const test::Points there = move_bound(bind_surface(rod.points, rod), posed);
+    for (std::size_t i = 0; i < there.size(); ++i)
+        EXPECT_LT((there[i] - posed.points[i]).length(), 1e-5f);
+}
+
+} // namespace
+} // namespace vdb_shell
