@@ -15,13 +15,13 @@
 #include "command/exit_code.h"
 #include "command/file_plan.h"
 #include "command/signals.h"
-#include "command/surface_input.h"
+
 #include "report/stage_clock.h"
 #include "vdb_shell/write/remesh_map.h"
 
 #include <CLI/CLI.hpp>
 
-#include <iostream>
+#include <ostream>
 #include <utility>
 #include <vector>
 
@@ -38,9 +38,17 @@ FloatGridPtr read_thickness_grid(const std::string& name)
     return read_float_grid(parts.file, parts.grid);
 }
 
+/// Voxels that --resolution makes differ with the box of each frame, and a volume whose voxels
+/// change flickers.
+void keep_voxel_size(ShellOptions& options, const Context& context)
+{
+    if (context.sequence && context.sequence->voxel_size && !options.level_set.voxel_size)
+        options.level_set.voxel_size = context.sequence->voxel_size;
+}
+
 /// Reads the triangles or the level set, and builds. `options` are left in the unit in which the
 /// stages worked, because the file has to state what its shell was made with.
-ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& options,
+ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& options, Context& context,
                            Interrupter* interrupter)
 {
     std::vector<StageCost> read_cost;
@@ -60,14 +68,18 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
                                             read_cores(arguments.cores, arguments.read, {}));
     } else {
         ReadResult read;
-        StageClock(read_cost).run("read",
-                                  [&] { read = read_surface(arguments.mesh, arguments.read); });
-        warn_of_lost_digits(arguments.mesh, read);
+        interrupter->start("read");
+        StageClock(read_cost).run(
+            "read", [&] { read = read_surface(arguments.mesh, arguments.read, arguments.format); });
+        warn_of_lost_digits(arguments.mesh, read, context);
         const Placement& placement = read.report.placement;
+        keep_voxel_size(options, context);
         options = in_unit(options, placement.unit);
         result = build_shell(read.mesh, options, name, in_place(thickness, placement).get(),
                              interrupter, read_cores(arguments.cores, arguments.read, placement));
         result.report.read = read.report;
+        if (context.sequence && !context.sequence->voxel_size)
+            context.sequence->voxel_size = result.report.field.voxel_size * placement.unit;
     }
     // Reading came before the pipeline and its clock; it is put in front so that the report has all
     // stages in their order.
@@ -109,7 +121,7 @@ std::vector<std::uint8_t> certified_flags(const ShellResult& result)
 }
 
 /// Every file of the call, whichever option names it.
-void require_possible_files(const BuildArguments& arguments)
+FilePlan plan_files(const BuildArguments& arguments)
 {
     FilePlan plan(existing_files(arguments.outputs.no_clobber));
     plan.add_input(split_grid_name(arguments.mesh.string()).file);
@@ -122,12 +134,14 @@ void require_possible_files(const BuildArguments& arguments)
         plan.add_output(arguments.report);
     if (!arguments.remesh_map.empty())
         plan.add_output(arguments.remesh_map);
+    return plan;
 }
 
 void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
+    require_format(arguments.mesh, arguments.format);
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
     require_fit(arguments.purpose, arguments.shell);
     if (arguments.shell.core_fill.wanted())
@@ -135,7 +149,6 @@ void require_sensible(const BuildArguments& arguments)
     require_program(arguments.shell.core_fill);
     if (!arguments.remesh_map.empty())
         require_map_extension(arguments.remesh_map);
-    require_possible_files(arguments);
     if (!arguments.cores.empty())
         require_cores_possible(arguments.shell);
     else if (arguments.shell.cores.distance > 0)
@@ -150,21 +163,20 @@ void write_report(const BuildArguments& arguments, const ShellReport& report, Ou
                            [&](std::ostream& out) { out << report_json(report) << '\n'; });
 }
 
-void print_figures(const BuildArguments& arguments, const ShellReport& report)
+void print_figures(const BuildArguments& arguments, const ShellReport& report, std::ostream& out)
 {
     if (is_standard_output(arguments.report))
-        std::cout << report_json(report) << '\n';
+        out << report_json(report) << '\n';
     else if (!arguments.quiet)
-        std::cout << report_text(report);
+        out << report_text(report);
 }
 
 /// The files are there all the same: the raw method is asked for what it makes.
-int status_of(const ShellReport& report)
+int status_of(const ShellReport& report, const Context& context)
 {
     const std::string faults = faults_of(report);
     if (!faults.empty()) {
-        std::cerr << "vdb_shell: " << report.source << ": the shell is NOT VALID: " << faults
-                  << '\n';
+        context.say(LogLevel::error, report.source + ": the shell is NOT VALID: " + faults);
         return check_failed;
     }
     return report.wanted && !report.wanted->met() ? bound_not_met : success;
@@ -184,7 +196,9 @@ void require_tets(const BuildArguments& arguments, const ShellResult& result)
 OptionSections describe(BuildArguments& a)
 {
     // The order of the sections is that of the help and of the file of options.
-    OptionSections sections{{"", {purpose_option(a.purpose), preset_option(a.preset)}}};
+    OptionSections sections{
+        {"", in_group("Options", {purpose_option(a.purpose), preset_option(a.preset),
+                                  input_format_option(a.format)})}};
     for (OptionSection& section : describe(a.outputs))
         sections.push_back(std::move(section));
     const OptionList figures{
@@ -194,8 +208,7 @@ OptionSections describe(BuildArguments& a)
                "Write where each vertex before remeshing lies on the surface after it, and the "
                "other way round: .json or .csv")
             .needing("--remesh-edge-length or --remesh-to"),
-        option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
-        option("", a.progress, "--progress", "Name each stage on standard error as it begins")};
+        option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"})};
     const Option painted = option("", a.thickness_grid, "--thickness-grid",
                                   "Float grid of largest lengths: FILE.vdb or FILE.vdb:GRID");
     sections.push_back({"", in_group("Output", figures)});
@@ -219,20 +232,26 @@ BoundOptions add_build_command(CLI::App& app, BuildArguments& arguments)
     return bind(app, describe(arguments));
 }
 
-int run_build(const BuildArguments& arguments)
+FilePlan plan_build(const BuildArguments& arguments)
 {
     require_sensible(arguments);
-    SignalInterrupter interrupter(arguments.progress);
+    return plan_files(arguments);
+}
+
+int run_build(const BuildArguments& arguments, Context& context)
+{
+    SignalInterrupter interrupter(context);
     std::vector<StageCost> write_cost;
     ShellOptions options = arguments.shell;
     ShellResult result = [&] {
         const PoliteStop polite(options.core_fill.wanted());
-        return read_and_build(arguments, options, &interrupter);
+        return read_and_build(arguments, options, context, &interrupter);
     }();
     if (caught_signal())
         throw Cancelled();
     require_tets(arguments, result);
     OutputSet files(existing_files(arguments.outputs.no_clobber));
+    interrupter.start("write");
     StageClock(write_cost).run("write", [&] {
         if (!arguments.remesh_map.empty())
             write_remesh_map(arguments.remesh_map, *result.remesh_map, &files);
@@ -246,8 +265,8 @@ int run_build(const BuildArguments& arguments)
     stages.insert(stages.end(), write_cost.begin(), write_cost.end());
     write_report(arguments, result.report, files);
     files.commit();
-    print_figures(arguments, result.report);
-    return status_of(result.report);
+    print_figures(arguments, result.report, context.out);
+    return status_of(result.report, context);
 }
 
 } // namespace vdb_shell::command

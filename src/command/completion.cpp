@@ -38,7 +38,8 @@ void write_values(std::ostream& out, const CommandEntry& command)
         // another command. A shorthand takes no value.
         for (const std::string& flag : flags_of(option))
             if (flag != option.shorthand)
-                pattern += (pattern.empty() ? "" : "|") + command.name + ":" + flag;
+                pattern += (pattern.empty() ? "" : "|") +
+                           (command.name.empty() ? "*" : command.name) + ":" + flag;
         out << "    " << pattern << ")\n        ";
         if (option.kind == OptionKind::choice) {
             out << "COMPREPLY=($(compgen -W '";
@@ -58,12 +59,22 @@ void write_values(std::ostream& out, const CommandEntry& command)
 
 void write_flags(std::ostream& out, const CommandEntry& command)
 {
-    out << "    " << (command.name.empty() ? "''" : command.name) << ") flags='--help";
     for (const BoundOption& bound : command.bound->options)
         if (!bound.option.flag.empty())
             for (const std::string& flag : flags_of(bound.option))
                 out << ' ' << flag;
-    out << (command.name.empty() ? " --version" : "") << "' ;;\n";
+}
+
+/// What stands beside every command may be given behind it too.
+void write_all_flags(std::ostream& out, const CommandEntry& command, const CommandEntry& global)
+{
+    out << "    " << (command.name.empty() ? "''" : command.name) << ") flags='--help";
+    write_flags(out, command);
+    if (command.name.empty())
+        out << " --version";
+    else
+        write_flags(out, global);
+    out << "' ;;\n";
 }
 
 std::string names_of(const std::vector<CommandEntry>& commands, const char* between)
@@ -105,7 +116,7 @@ std::string bash_completion(const std::vector<CommandEntry>& commands)
         write_values(out, command);
     out << "    esac\n    case $command in\n";
     for (const CommandEntry& command : commands)
-        write_flags(out, command);
+        write_all_flags(out, command, commands.front());
     out << "    esac\n"
            "    if [[ $word == -* ]]; then\n"
            "        COMPREPLY=($(compgen -W \"$flags\" -- \"$word\"))\n"

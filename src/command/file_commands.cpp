@@ -23,7 +23,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <iostream>
+#include <ostream>
 #include <utility>
 
 namespace vdb_shell::command
@@ -49,20 +49,20 @@ nlohmann::ordered_json stored_json(const std::filesystem::path& path, const char
 }
 
 /// What reading has held against the file's own digests, and what it has not looked at.
-void print_checks(const ShellFile& file)
+void print_checks(const ShellFile& file, std::ostream& out)
 {
     if (file.digests > 0)
-        std::cout << "  checked: " << file.digests << " digests of its parts hold\n";
+        out << "  checked: " << file.digests << " digests of its parts hold\n";
     else
-        std::cout << "  it has no digests of its parts\n";
-    std::cout << "  not checked: certificate and figures (vdb_shell check)\n";
+        out << "  it has no digests of its parts\n";
+    out << "  not checked: certificate and figures (vdb_shell check)\n";
 }
 
-void print_grid(const openvdb::FloatGrid& grid)
+void print_grid(const openvdb::FloatGrid& grid, std::ostream& out)
 {
-    std::cout << "  " << grid.getName() << ": "
-              << openvdb::GridBase::gridClassToString(grid.getGridClass()) << ", voxel "
-              << grid.voxelSize()[0] << ", " << grid.activeVoxelCount() << " active voxels\n";
+    out << "  " << grid.getName() << ": "
+        << openvdb::GridBase::gridClassToString(grid.getGridClass()) << ", voxel "
+        << grid.voxelSize()[0] << ", " << grid.activeVoxelCount() << " active voxels\n";
 }
 
 } // namespace
@@ -96,38 +96,51 @@ BoundOptions add_check_command(CLI::App& app, FileArguments& arguments)
     return {};
 }
 
-int run_info(const FileArguments& arguments)
+FilePlan plan_file(const FileArguments& arguments)
+{
+    FilePlan plan(Existing::replaced);
+    plan.add_input(arguments.file);
+    return plan;
+}
+
+int run_info(const FileArguments& arguments, Context& context)
 {
     const ShellFile file = read_shell(arguments.file);
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["parameters"] = stored_json(arguments.file, "parameters", file.parameters_json);
         json["report"] = stored_json(arguments.file, "report", file.report_json);
-        std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                  << '\n';
+        context.out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                    << '\n';
         return success;
     }
     const std::size_t layers = file.stack.layers.size();
-    std::cout << arguments.file.string() << ": shell\n  " << file.stack.surface(0).size()
-              << " surface vertices, " << layers << (layers == 1 ? " layer, " : " layers, ")
-              << layers * file.stack.triangles().size() << " prisms, " << file.tets.points.size()
-              << " points, " << file.tets.tets.size() << " tets\n";
+    context.out << arguments.file.string() << ": shell\n  " << file.stack.surface(0).size()
+                << " surface vertices, " << layers << (layers == 1 ? " layer, " : " layers, ")
+                << layers * file.stack.triangles().size() << " prisms, " << file.tets.points.size()
+                << " points, " << file.tets.tets.size() << " tets\n";
     if (!file.core.empty())
-        std::cout << "  core: " << file.core.points.size() << " points, " << file.core.tets.size()
-                  << " tets\n";
+        context.out << "  core: " << file.core.points.size() << " points, " << file.core.tets.size()
+                    << " tets\n";
     for (const openvdb::FloatGrid::Ptr& grid : {file.surface, file.depth})
         if (grid)
-            print_grid(*grid);
-    print_checks(file);
-    std::cout << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
+            print_grid(*grid, context.out);
+    print_checks(file, context.out);
+    context.out << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
     return success;
 }
 
-int run_convert(const FileArguments& arguments)
+FilePlan plan_convert(const FileArguments& arguments)
 {
     FilePlan plan(existing_files(arguments.outputs.no_clobber));
     plan.add_input(arguments.file);
     add_outputs(plan, arguments.outputs);
+    return plan;
+}
+
+int run_convert(const FileArguments& arguments)
+{
+    FilePlan plan = plan_convert(arguments);
     // The file says itself where its points are, if they are not in it.
     if (!houdini::has_geometry_extension(arguments.file))
         plan.add_input(read_shell_info(arguments.file).points_at);
@@ -143,19 +156,19 @@ int run_convert(const FileArguments& arguments)
     return success;
 }
 
-int run_check(const FileArguments& arguments)
+int run_check(const FileArguments& arguments, Context& context)
 {
-    SignalInterrupter interrupter(false);
+    SignalInterrupter interrupter(context);
     bool all_hold = true;
     for (const Verification& entry : verify_shell(read_shell(arguments.file), &interrupter)) {
-        std::cout << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": " << entry.detail
-                  << '\n';
+        context.out << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": " << entry.detail
+                    << '\n';
         // Every entry is printed even after one has failed: which of them fail together is what
         // tells the cause.
         all_hold = all_hold && entry.holds;
     }
-    std::cout << arguments.file.string()
-              << (all_hold ? ": is what it claims\n" : ": is NOT what it claims\n");
+    context.out << arguments.file.string()
+                << (all_hold ? ": is what it claims\n" : ": is NOT what it claims\n");
     return all_hold ? success : check_failed;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "command/bound_options.h"
+#include "command/context.h"
 #include "command/outputs.h"
 
 #include <filesystem>
@@ -29,10 +30,14 @@ BoundOptions add_check_command(CLI::App& app, FileArguments& arguments);
 /// A .vdb or Houdini geometry; the grids are null when the file has none.
 ShellFile read_shell(const std::filesystem::path& path);
 
-int run_info(const FileArguments& arguments);
+/// Of info and check, which only read.
+FilePlan plan_file(const FileArguments& arguments);
+FilePlan plan_convert(const FileArguments& arguments);
+
+int run_info(const FileArguments& arguments, Context& context);
 int run_convert(const FileArguments& arguments);
 
 /// Prints one line for each thing verified; check_failed when one of them does not hold.
-int run_check(const FileArguments& arguments);
+int run_check(const FileArguments& arguments, Context& context);
 
 } // namespace vdb_shell::command

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <tuple>
 
 namespace vdb_shell::command
 {
@@ -40,6 +41,11 @@ bool FilePlan::Identity::operator==(const Identity& other) const
     return device == other.device && inode == other.inode && name == other.name;
 }
 
+bool FilePlan::Identity::operator<(const Identity& other) const
+{
+    return std::tie(device, inode, name) < std::tie(other.device, other.inode, other.name);
+}
+
 std::optional<FilePlan::Identity> FilePlan::identity_of(const fs::path& path)
 {
     struct stat status {
@@ -59,13 +65,22 @@ const FilePlan::Entry* FilePlan::find(const std::vector<Entry>& entries, const I
 
 void FilePlan::add_input(const fs::path& path)
 {
-    const std::optional<Identity> identity = identity_of(path);
-    if (!identity)
+    if (is_standard_input(path)) {
+        if (standard_input_)
+            throw InvalidOption("-: standard input is given twice");
+        standard_input_ = true;
         return;
+    }
+    const std::optional<Identity> identity = identity_of(path);
+    if (!identity) {
+        if (!path.empty())
+            missing_.push_back(path);
+        return;
+    }
     if (const Entry* output = find(outputs_, *identity))
         throw InvalidOption(output->path.string() + ": is the input " + path.string() +
                             "; it is not overwritten");
-    inputs_.push_back({path, *identity});
+    inputs_.push_back({path, *identity, false});
 }
 
 void FilePlan::add_output(const fs::path& path)
@@ -89,7 +104,12 @@ void FilePlan::add_output(const fs::path& path)
                             ": standard output or standard error goes to this file already");
     if (target.existing && !target.special && existing_ == Existing::kept)
         refuse_output(path, "it exists, and is to be kept (--no-clobber)");
-    outputs_.push_back({path, *identity});
+    outputs_.push_back({path, *identity, target.special});
+}
+
+bool is_standard_input(const fs::path& path)
+{
+    return path == "-";
 }
 
 bool is_standard_output(const fs::path& path)

@@ -22,29 +22,43 @@ public:
     explicit FilePlan(Existing existing) : existing_(existing) {}
 
     /// Throws InvalidOption where an output would overwrite it. One that is not there is left to
-    /// its reader.
+    /// its reader; no path at all is passed over, and standard input can be one of them.
     void add_input(const std::filesystem::path& path);
 
     /// Throws InvalidOption for a file that is an input, another output, or what standard output or
     /// standard error go to; WriteError where no file can be written or an existing one is kept.
     void add_output(const std::filesystem::path& path);
 
-private:
     struct Identity {
         std::uint64_t device = 0, inode = 0;
         std::string name; ///< in the folder of that inode; empty: the inode is the file's
         bool operator==(const Identity& other) const;
+        bool operator<(const Identity& other) const;
     };
     struct Entry {
         std::filesystem::path path;
         Identity identity;
+        bool special = false; ///< of an output: a device or a fifo
     };
+    Existing existing() const { return existing_; }
+    const std::vector<Entry>& inputs() const { return inputs_; }
+    const std::vector<Entry>& outputs() const { return outputs_; }
+    bool reads_standard_input() const { return standard_input_; }
+    /// Inputs that are not there.
+    const std::vector<std::filesystem::path>& missing() const { return missing_; }
+
+private:
     static std::optional<Identity> identity_of(const std::filesystem::path& path);
     static const Entry* find(const std::vector<Entry>& entries, const Identity& identity);
 
     Existing existing_;
     std::vector<Entry> inputs_, outputs_;
+    std::vector<std::filesystem::path> missing_;
+    bool standard_input_ = false;
 };
+
+/// "-", standard input in the place of a file.
+bool is_standard_input(const std::filesystem::path& path);
 
 /// True for "-" and for the names that the system has for standard output.
 bool is_standard_output(const std::filesystem::path& path);

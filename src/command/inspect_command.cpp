@@ -9,12 +9,8 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
-#include "command/file_plan.h"
-#include "command/surface_input.h"
 
 #include <CLI/CLI.hpp>
-
-#include <iostream>
 
 namespace vdb_shell::command
 {
@@ -29,7 +25,7 @@ OptionSections describe(InspectArguments& a)
          {preset_option(a.preset), option("", a.json, "--json", "Print one JSON object"),
           option("", a.picture, "--output", "Write the mesh coloured by its defects: .ply")
               .with_names({"-o"}),
-          no_clobber_option(a.no_clobber)}},
+          no_clobber_option(a.no_clobber), input_format_option(a.format)}},
         {"read", describe(a.read)},
         {"level_set", describe(a.inspect)}};
     // The help of so few options reads better as one group than as the groups of `build`.
@@ -48,14 +44,20 @@ BoundOptions add_inspect_command(CLI::App& app, InspectArguments& arguments)
     return bind(app, describe(arguments));
 }
 
-int run_inspect(const InspectArguments& arguments)
+FilePlan plan_inspect(const InspectArguments& arguments)
 {
+    require_format(arguments.mesh, arguments.format);
     FilePlan plan(existing_files(arguments.no_clobber));
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.preset);
     if (!arguments.picture.empty())
         plan.add_output(arguments.picture);
-    const ReadResult read = read_surface(arguments.mesh, arguments.read);
+    return plan;
+}
+
+int run_inspect(const InspectArguments& arguments, Context& context)
+{
+    const ReadResult read = read_surface(arguments.mesh, arguments.read, arguments.format);
     InspectOptions options = in_unit(arguments.inspect, read.report.placement.unit);
     // What rounding to float32 moved is known to the reader alone, and decides whether --recentre
     // is advised.
@@ -68,9 +70,9 @@ int run_inspect(const InspectArguments& arguments)
     }
     const std::string name = arguments.mesh.filename().string();
     if (arguments.json)
-        std::cout << inspection_json(name, read.report, inspection) << '\n';
+        context.out << inspection_json(name, read.report, inspection) << '\n';
     else
-        std::cout << inspection_text(name, read.report, inspection);
+        context.out << inspection_text(name, read.report, inspection);
     return usable(inspection) ? success : check_failed;
 }
 

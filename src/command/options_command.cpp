@@ -9,11 +9,12 @@
 
 #include "command/completion.h"
 #include "command/exit_code.h"
+#include "command/man_page.h"
 #include "options/option_json.h"
 
 #include <CLI/CLI.hpp>
 
-#include <iostream>
+#include <ostream>
 
 namespace vdb_shell::command
 {
@@ -58,28 +59,28 @@ std::string default_of(const Option& option)
     return text_of(value);
 }
 
-void print_row(const OptionSection& section, const Option& option)
+void print_row(const OptionSection& section, const Option& option, std::ostream& out)
 {
     const auto code = [](const std::string& text) {
         return text.empty() ? text : "`" + text + "`";
     };
-    std::cout << "| " << code(option.flag) << " | " << code(path_of(section, option)) << " | "
-              << values_of(option) << " | "
-              << (option.unit == Unit::none ? "" : name_in_table(option.unit)) << " | "
-              << default_of(option) << " |\n";
+    out << "| " << code(option.flag) << " | " << code(path_of(section, option)) << " | "
+        << values_of(option) << " | "
+        << (option.unit == Unit::none ? "" : name_in_table(option.unit)) << " | "
+        << default_of(option) << " |\n";
 }
 
-void print_table(const OptionSections& sections)
+void print_table(const OptionSections& sections, std::ostream& out)
 {
-    std::cout << "| flag | key in a file | values | unit | default |\n|---|---|---|---|---|\n";
+    out << "| flag | key in a file | values | unit | default |\n|---|---|---|---|---|\n";
     for (const OptionSection& section : sections) {
         if (section.enable)
-            print_row(section, *section.enable);
+            print_row(section, *section.enable, out);
         for (const Option& option : section.options)
             // The table is of what can stand in a file; options without a key are files and
             // switches of the command line alone.
             if (!option.key.empty())
-                print_row(section, option);
+                print_row(section, option, out);
     }
 }
 
@@ -95,23 +96,29 @@ BoundOptions add_options_command(CLI::App& app, OptionsArguments& arguments)
 {
     Option complete = option("", arguments.complete, "--complete",
                              "Print a script that makes a shell complete commands and flags");
-    return bind(app, {{"", in_group("Options", {option("", arguments.json, "--json",
-                                                       "Print all that is known of the options of "
-                                                       "every command, for programs"),
-                                                complete})}});
+    return bind(
+        app,
+        {{"", in_group("Options",
+                       {option("", arguments.json, "--json",
+                               "Print all that is known of the options of "
+                               "every command, for programs"),
+                        complete, option("", arguments.man, "--man", "Print the page for man")})}});
 }
 
-int run_options(const OptionsArguments& arguments, const std::vector<CommandEntry>& commands)
+int run_options(const OptionsArguments& arguments, const std::vector<CommandEntry>& commands,
+                std::ostream& out)
 {
     if (arguments.json)
-        std::cout << schema_of(commands).dump(2) << '\n';
+        out << schema_of(commands).dump(2) << '\n';
     else if (arguments.complete)
-        std::cout << bash_completion(commands);
+        out << bash_completion(commands);
+    else if (arguments.man)
+        out << man_page(commands);
     else
         for (const CommandEntry& command : commands)
             // `build` has all options that the other commands share with it.
             if (command.name == "build")
-                print_table(command.bound->sections);
+                print_table(command.bound->sections, out);
     return success;
 }
 

@@ -3,6 +3,7 @@
 
 #include "command/bound_options.h"
 
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ const NameTable<Shell>& names(Shell);
 struct OptionsArguments {
     bool json = false;
     std::optional<Shell> complete; ///< print a script for it
+    bool man = false;
 };
 
 /// One command as `options` shows it.
@@ -27,7 +29,9 @@ struct CommandEntry {
 
 BoundOptions add_options_command(CLI::App& app, OptionsArguments& arguments);
 
-/// Prints a table of build's options, all of them for programs, or a script for a shell.
-int run_options(const OptionsArguments& arguments, const std::vector<CommandEntry>& commands);
+/// Prints a table of build's options, all of them for programs, or a script for a shell, or a page
+/// for man.
+int run_options(const OptionsArguments& arguments, const std::vector<CommandEntry>& commands,
+                std::ostream& out);
 
 } // namespace vdb_shell::command

@@ -14,19 +14,28 @@
 
 #include "command/exit_code.h"
 #include "command/file_commands.h"
-#include "command/file_plan.h"
 #include "command/signals.h"
-#include "command/surface_input.h"
 #include "report/stage_clock.h"
 
 #include <CLI/CLI.hpp>
 
-#include <iostream>
+#include <memory>
+#include <mutex>
+#include <ostream>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace vdb_shell::command
 {
+
+/// A shell's file, with all that is the same for each of its poses.
+struct PreparedShell {
+    std::filesystem::path path;
+    ShellFile file;
+    RestShell rest;
+};
+
 namespace
 {
 
@@ -35,17 +44,15 @@ using openvdb::Vec3s;
 
 OptionSections describe(PoseArguments& a)
 {
-    OptionSections sections{{"", {preset_option(a.preset)}}};
+    OptionSections sections{
+        {"", in_group("Options", {preset_option(a.preset), input_format_option(a.format)})}};
     for (OptionSection& section : vdb_shell::command::describe(a.outputs))
         sections.push_back(std::move(section));
-    sections.push_back(
-        {"", in_group("Output",
-                      {option("", a.report, "--report",
-                              "Write all figures as JSON; - is standard output, in place of the "
-                              "text"),
-                       option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
-                       option("", a.progress, "--progress",
-                              "Name each stage on standard error as it begins")})});
+    const OptionList figures{
+        option("", a.report, "--report",
+               "Write all figures as JSON; - is standard output, in place of the text"),
+        option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"})};
+    sections.push_back({"", in_group("Output", figures)});
     sections.push_back(
         {"", in_group("Pose", {option("", a.rest_mesh, "--rest-mesh",
                                       "The surface at rest, where the posed one has other "
@@ -56,13 +63,14 @@ OptionSections describe(PoseArguments& a)
 }
 
 /// The mesh in the frame of the shell's.
-TriangleMesh read_placed(const std::filesystem::path& path, const Placement& placement, bool weld)
+TriangleMesh read_placed(const std::filesystem::path& path, InputFormat format,
+                         const Placement& placement, bool weld)
 {
     ReadOptions options;
     options.weld = weld;
     // Where the shell keeps digits of its own, so must the pose.
     options.recentre = placement.moves();
-    ReadResult read = read_surface(path, options);
+    ReadResult read = read_surface(path, options, format);
     const Placement& own = read.report.placement;
     if (own.moves() || placement.moves())
         for (Vec3s& p : read.mesh.points)
@@ -70,28 +78,35 @@ TriangleMesh read_placed(const std::filesystem::path& path, const Placement& pla
     return std::move(read.mesh);
 }
 
-bool same_triangles(const TriangleMesh& mesh, std::size_t vertices,
-                    const std::vector<openvdb::Vec3I>& triangles)
-{
-    return mesh.points.size() == vertices && mesh.triangles == triangles;
-}
+/// The triangles and the number of vertices that a mesh has to have, and whose they are.
+struct Wanted {
+    std::size_t vertices;
+    const std::vector<openvdb::Vec3I>& triangles;
+    std::string whose;
+};
 
 /// Equal vertices of the file are merged or not, whichever gives the triangles that are wanted: in
-/// a pose other vertices can be equal than at rest.
-TriangleMesh read_matching(const std::filesystem::path& path, const Placement& placement,
-                           std::size_t vertices, const std::vector<openvdb::Vec3I>& triangles,
-                           const std::string& wanted)
+/// a pose other vertices can be equal than at rest. Standard input can be read only once.
+TriangleMesh read_matching(const PoseArguments& arguments, const Placement& placement,
+                           const Wanted& wanted)
 {
-    TriangleMesh mesh = read_placed(path, placement, true);
-    if (same_triangles(mesh, vertices, triangles))
+    const auto fits = [&](const TriangleMesh& mesh) {
+        return mesh.points.size() == wanted.vertices && mesh.triangles == wanted.triangles;
+    };
+    const std::filesystem::path& path = arguments.mesh;
+    TriangleMesh mesh = read_placed(path, arguments.format, placement, true);
+    if (fits(mesh))
         return mesh;
-    TriangleMesh apart = read_placed(path, placement, false);
-    if (same_triangles(apart, vertices, triangles))
-        return apart;
+    if (arguments.format == InputFormat::by_extension) {
+        TriangleMesh apart = read_placed(path, arguments.format, placement, false);
+        if (fits(apart))
+            return apart;
+    }
     throw InvalidOption(path.string() + ": it has " + std::to_string(mesh.points.size()) +
                         " vertices and " + std::to_string(mesh.triangles.size()) +
-                        " triangles that are not those of " + wanted + ", which has " +
-                        std::to_string(vertices) + " and " + std::to_string(triangles.size()) +
+                        " triangles that are not those of " + wanted.whose + ", which has " +
+                        std::to_string(wanted.vertices) + " and " +
+                        std::to_string(wanted.triangles.size()) +
                         "; --rest-mesh gives the same surface at rest where the shell's was "
                         "repaired, wrapped or remeshed");
 }
@@ -101,29 +116,33 @@ std::vector<Vec3s> posed_skin(const PoseArguments& arguments, const ShellStack& 
 {
     const std::vector<Vec3s>& skin = at_rest.surface(at_rest.skin);
     if (arguments.rest_mesh.empty())
-        return read_matching(arguments.mesh, placement, skin.size(), at_rest.triangles(),
-                             "the surface of " + arguments.shell.string())
+        return read_matching(
+                   arguments, placement,
+                   {skin.size(), at_rest.triangles(), "the surface of " + arguments.shell.string()})
             .points;
-    const TriangleMesh rest = read_placed(arguments.rest_mesh, placement, true);
-    const TriangleMesh posed = read_matching(arguments.mesh, placement, rest.points.size(),
-                                             rest.triangles, arguments.rest_mesh.string());
+    const TriangleMesh rest =
+        read_placed(arguments.rest_mesh, InputFormat::by_extension, placement, true);
+    const TriangleMesh posed = read_matching(
+        arguments, placement, {rest.points.size(), rest.triangles, arguments.rest_mesh.string()});
     return move_bound(bind_surface(skin, rest), posed);
 }
 
-void require_possible_files(const PoseArguments& arguments)
+/// Frames of a call that pose the same shell read it once.
+std::shared_ptr<const PreparedShell> prepare(const std::filesystem::path& path, Context& context)
 {
-    FilePlan plan(existing_files(arguments.outputs.no_clobber));
-    plan.add_input(arguments.shell);
-    plan.add_input(arguments.mesh);
-    plan.add_input(arguments.rest_mesh);
-    plan.add_input(arguments.preset);
-    add_outputs(plan, arguments.outputs);
-    if (!arguments.report.empty() && !is_standard_output(arguments.report))
-        plan.add_output(arguments.report);
-    if (!houdini::has_geometry_extension(arguments.shell))
-        plan.add_input(read_shell_info(arguments.shell).points_at);
-    if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
-        throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
+    const auto make = [&] {
+        ShellFile file = read_shell(path);
+        RestShell rest(rest_stack(file), rest_core(file));
+        return std::make_shared<const PreparedShell>(
+            PreparedShell{path, std::move(file), std::move(rest)});
+    };
+    if (!context.sequence)
+        return make();
+    const std::lock_guard<std::mutex> lock(context.sequence->mutex);
+    std::shared_ptr<const PreparedShell>& known = context.sequence->prepared;
+    if (!known || known->path != path)
+        known = make();
+    return known;
 }
 
 std::vector<std::uint8_t> certified_flags(const PosedShell& posed)
@@ -145,43 +164,58 @@ BoundOptions add_pose_command(CLI::App& app, PoseArguments& arguments)
     return bind(app, describe(arguments));
 }
 
-int run_pose(const PoseArguments& arguments)
+FilePlan plan_pose(const PoseArguments& arguments)
 {
-    require_possible_files(arguments);
-    SignalInterrupter interrupter(arguments.progress);
-    const ShellFile rest = read_shell(arguments.shell);
+    if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
+        throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
+    require_format(arguments.mesh, arguments.format);
+    FilePlan plan(existing_files(arguments.outputs.no_clobber));
+    plan.add_input(arguments.shell);
+    plan.add_input(arguments.mesh);
+    plan.add_input(arguments.rest_mesh);
+    plan.add_input(arguments.preset);
+    add_outputs(plan, arguments.outputs);
+    if (!arguments.report.empty() && !is_standard_output(arguments.report))
+        plan.add_output(arguments.report);
+    return plan;
+}
+
+int run_pose(const PoseArguments& arguments, Context& context)
+{
+    FilePlan plan = plan_pose(arguments);
+    // The file says itself where its points are, if they are not in it.
+    if (!houdini::has_geometry_extension(arguments.shell))
+        plan.add_input(read_shell_info(arguments.shell).points_at);
+    SignalInterrupter interrupter(context);
+    const std::shared_ptr<const PreparedShell> prepared = prepare(arguments.shell, context);
+    const ShellFile& rest = prepared->file;
     if (wants_vdb(arguments.outputs) && !rest.surface)
         throw InvalidOption(arguments.shell.string() +
                             ": it has no level set, whose voxels a .vdb would have; pose the .vdb");
-    const ShellStack at_rest = rest_stack(rest);
-    const std::vector<Vec3s> skin = posed_skin(arguments, at_rest, rest.placement);
-    const RestShell prepared(at_rest, rest_core(rest));
-    PosedShell posed = build_posed(prepared, skin, in_unit(arguments.pose, rest.placement.unit),
-                                   arguments.mesh.filename().string(), &interrupter);
+    PosedShell posed =
+        build_posed(prepared->rest, posed_skin(arguments, prepared->rest.stack(), rest.placement),
+                    arguments.pose, arguments.mesh.filename().string(), &interrupter);
     const std::vector<std::uint8_t> certified = certified_flags(posed);
     ShellReport report = posed.report;
     OutputSet files(existing_files(arguments.outputs.no_clobber));
     StageClock(report.stages).run("write", [&] {
-        write_outputs(
-            arguments.outputs,
-            posed_file(rest, std::move(posed), wants_vdb(arguments.outputs), &interrupter),
-            certified, files);
+        const bool volumes = wants_vdb(arguments.outputs);
+        write_outputs(arguments.outputs, posed_file(rest, std::move(posed), volumes, &interrupter),
+                      certified, files);
     });
-    const bool to_output = is_standard_output(arguments.report);
     const std::string json =
         arguments.report.empty() ? "" : posed_report_json(report, rest.report_json) + '\n';
+    const bool to_output = is_standard_output(arguments.report);
     if (!json.empty() && !to_output)
         files.write_stream(arguments.report, [&](std::ostream& out) { out << json; });
     files.commit();
-    if (to_output)
-        std::cout << json;
-    else if (!arguments.quiet)
-        std::cout << posed_report_text(report);
+    if (to_output || !arguments.quiet)
+        context.out << (to_output ? json : posed_report_text(report));
     const std::string faults = faults_of(report);
-    if (!faults.empty())
-        std::cerr << "vdb_shell: " << report.source << ": the shell is NOT VALID: " << faults
-                  << '\n';
-    return faults.empty() ? success : check_failed;
+    if (faults.empty())
+        return success;
+    context.say(LogLevel::error, report.source + ": the shell is NOT VALID: " + faults);
+    return check_failed;
 }
 
 } // namespace vdb_shell::command

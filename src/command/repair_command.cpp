@@ -10,13 +10,9 @@
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
-#include "command/file_plan.h"
 #include "command/signals.h"
-#include "command/surface_input.h"
 
 #include <CLI/CLI.hpp>
-
-#include <iostream>
 
 namespace vdb_shell::command
 {
@@ -29,11 +25,12 @@ OptionSections describe(RepairArguments& a)
     Option output = option("", a.output, "--output", "Repaired surface: .obj .ply .off .stl")
                         .with_names({"-o"});
     output.required = true;
-    OptionSections sections{{"",
-                             {preset_option(a.preset), output, no_clobber_option(a.no_clobber),
-                              option("", a.json, "--json", "Print one JSON object")}},
-                            {"read", describe(a.read)},
-                            {"repair", describe(a.repair)}};
+    OptionSections sections{
+        {"",
+         {preset_option(a.preset), output, no_clobber_option(a.no_clobber),
+          input_format_option(a.format), option("", a.json, "--json", "Print one JSON object")}},
+        {"read", describe(a.read)},
+        {"repair", describe(a.repair)}};
     for (OptionSection& section : sections)
         for (Option& o : section.options) {
             o.group = "Options";
@@ -52,16 +49,21 @@ BoundOptions add_repair_command(CLI::App& app, RepairArguments& arguments)
     return bind(app, describe(arguments));
 }
 
-int run_repair(const RepairArguments& arguments)
+FilePlan plan_repair(const RepairArguments& arguments)
 {
-    // Before reading: a repair may take long, and its result must have a place to go.
+    require_format(arguments.mesh, arguments.format);
     FilePlan plan(existing_files(arguments.no_clobber));
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.preset);
     plan.add_output(arguments.output);
-    SignalInterrupter interrupter(false);
-    const ReadResult read = read_surface(arguments.mesh, arguments.read);
-    warn_of_lost_digits(arguments.mesh, read);
+    return plan;
+}
+
+int run_repair(const RepairArguments& arguments, Context& context)
+{
+    SignalInterrupter interrupter(context);
+    const ReadResult read = read_surface(arguments.mesh, arguments.read, arguments.format);
+    warn_of_lost_digits(arguments.mesh, read, context);
     const Placement& placement = read.report.placement;
     const RepairResult result =
         repair_mesh(read.mesh, in_unit(arguments.repair, placement.unit), &interrupter);
@@ -71,14 +73,14 @@ int run_repair(const RepairArguments& arguments)
     write_mesh(arguments.output, result.mesh, placement, &files);
     files.commit();
     const std::string name = arguments.mesh.filename().string();
-    std::cout << (arguments.json ? repair_json(result.report) + '\n'
-                                 : name + ":\n" + repair_text(result.report));
+    context.out << (arguments.json ? repair_json(result.report) + '\n'
+                                   : name + ":\n" + repair_text(result.report));
     try {
         // The test that `build` makes of its input, so success here means that a shell can be
         // tried.
         require_usable(result.report.after, {}, name);
     } catch (const GeometryError& left) {
-        std::cerr << "vdb_shell: after the repair, " << left.what() << '\n';
+        context.say(LogLevel::error, std::string("after the repair, ") + left.what());
         return check_failed;
     }
     return success;

@@ -10,6 +10,7 @@
 #include "command/signals.h"
 
 #include "command/exit_code.h"
+#include "command/progress.h"
 #include "vdb_shell/core/atomic_file.h"
 
 #include <fcntl.h>
@@ -142,12 +143,15 @@ PoliteStop::~PoliteStop()
 
 void SignalInterrupter::start(const char* name)
 {
-    if (show_progress_ && name)
-        std::cerr << "vdb_shell: " << name << '\n';
+    if (context_.progress && name)
+        context_.progress->stage(name);
 }
 
-bool SignalInterrupter::wasInterrupted(int)
+bool SignalInterrupter::wasInterrupted(int percent)
 {
+    // Tools of OpenVDB ask from any of their threads.
+    if (context_.progress && std::this_thread::get_id() == owner_)
+        context_.progress->percent_of_stage(percent);
     return signal_number != 0;
 }
 

@@ -3,6 +3,10 @@
 
 #include "vdb_shell/core/interrupter.h"
 
+#include "command/context.h"
+
+#include <thread>
+
 namespace vdb_shell::command
 {
 
@@ -35,18 +39,18 @@ private:
     bool wanted_;
 };
 
-/// Tells stages to stop once a signal has come, and shows which stage runs on standard error when
-/// wanted.
+/// Tells stages to stop once a signal has come, and shows which stage runs where that is wanted.
 class SignalInterrupter final : public Interrupter
 {
 public:
-    explicit SignalInterrupter(bool show_progress) : show_progress_(show_progress) {}
+    explicit SignalInterrupter(const Context& context) : context_(context) {}
     void start(const char* name) override;
     void end() override {}
     bool wasInterrupted(int percent = -1) override;
 
 private:
-    bool show_progress_;
+    const Context& context_;
+    const std::thread::id owner_ = std::this_thread::get_id();
 };
 
 } // namespace vdb_shell::command

@@ -6,17 +6,54 @@
 
 #include "command/surface_input.h"
 
+#include "core/temporary_file.h"
+#include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/polygon_mesh.h"
+
+#include "command/file_plan.h"
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
+#include <fstream>
 #include <iostream>
+#include <sstream>
 
 namespace vdb_shell::command
 {
+namespace
+{
+
+namespace fs = std::filesystem;
+
+/// Readers want a file: they look at its end before its middle, and some do so twice.
+ReadResult read_standard_input(const ReadOptions& options, InputFormat format)
+{
+    const TemporaryFile spool(fs::temp_directory_path(), "standard-input." + name_in_table(format),
+                              0600);
+    std::ofstream out(spool.path(), std::ios::binary);
+    if (std::cin.peek() == std::char_traits<char>::eof())
+        throw ReadError("-: standard input is empty");
+    out << std::cin.rdbuf();
+    out.close();
+    if (!out)
+        throw ReadError("-: standard input does not fit into " +
+                        spool.path().parent_path().string());
+    try {
+        return read_surface(spool.path(), options);
+    } catch (const ReadError& error) {
+        std::string text = error.what();
+        const std::string name = spool.path().string();
+        for (std::size_t at = 0; (at = text.find(name)) != std::string::npos;)
+            text.replace(at, name.size(), "-");
+        throw ReadError(text);
+    }
+}
+
+} // namespace
+
 GridName split_grid_name(const std::string& name)
 {
     // The last one counts, as a folder may have such a name too. A colon alone would not do: names
@@ -28,8 +65,40 @@ GridName split_grid_name(const std::string& name)
     return {name.substr(0, colon + kExtension), name.substr(colon + kExtension + 1)};
 }
 
-ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& options)
+const NameTable<InputFormat>& names(InputFormat)
 {
+    static const NameTable<InputFormat> table{{"by-extension", InputFormat::by_extension},
+                                              {"obj", InputFormat::obj},
+                                              {"ply", InputFormat::ply},
+                                              {"off", InputFormat::off},
+                                              {"stl", InputFormat::stl},
+                                              {"geo", InputFormat::geo},
+                                              {"bgeo", InputFormat::bgeo}};
+    return table;
+}
+
+Option input_format_option(InputFormat& format)
+{
+    return option("", format, "--input-format", "What standard input (-) holds");
+}
+
+void require_format(const std::filesystem::path& path, InputFormat format)
+{
+    const bool given = format != InputFormat::by_extension;
+    if (is_standard_input(path) && !given)
+        throw InvalidOption("-: standard input has no extension; --input-format says what it is");
+    if (!is_standard_input(path) && given)
+        throw InvalidOption("--input-format is for standard input (-); the format of " +
+                            path.string() + " goes by its extension");
+}
+
+ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& options,
+                        InputFormat format)
+{
+    if (is_standard_input(path)) {
+        require_format(path, format);
+        return read_standard_input(options, format);
+    }
     return houdini::has_geometry_extension(path) ? houdini::read_polygon_mesh(path, options)
                                                  : read_mesh(path, options);
 }
@@ -54,7 +123,8 @@ FloatGridPtr in_place(const FloatGridPtr& grid, const Placement& placement)
     return moved;
 }
 
-void warn_of_lost_digits(const std::filesystem::path& path, const ReadResult& read)
+void warn_of_lost_digits(const std::filesystem::path& path, const ReadResult& read,
+                         const Context& context)
 {
     const Bounds bounds = bounds_of(read.mesh.points);
     const openvdb::Vec3d size = bounds.high - bounds.low;
@@ -63,11 +133,13 @@ void warn_of_lost_digits(const std::filesystem::path& path, const ReadResult& re
     // has fewer than 2^17 steps along its longest side, of the 2^23 or more that it would have at
     // the origin.
     constexpr double kShare = 1.0 / (1 << 18);
-    if (read.report.largest_rounding > kShare * longest)
-        std::cerr << "vdb_shell: warning: " << path.string() << ": rounding to float32 moved "
-                  << "coordinates by up to " << read.report.largest_rounding
-                  << " of an object of size " << longest
-                  << ", which lies far from the origin; --recentre keeps the digits of the file\n";
+    if (read.report.largest_rounding <= kShare * longest)
+        return;
+    std::ostringstream text;
+    text << "warning: " << path.string() << ": rounding to float32 moved coordinates by up to "
+         << read.report.largest_rounding << " of an object of size " << longest
+         << ", which lies far from the origin; --recentre keeps the digits of the file";
+    context.say(LogLevel::warning, text.str());
 }
 
 } // namespace vdb_shell::command

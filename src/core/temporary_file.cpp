@@ -140,13 +140,20 @@ void Descriptor::reset(int number)
 TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& target, mode_t mode)
     : name_(folder, "tmp", target)
 {
-    file_.reset(::open(path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
-    if (file_.number() < 0)
-        refuse_output(target, std::strerror(errno));
-    // Where a file system has no locks, leftovers stay for the user to remove.
-    ::flock(file_.number(), LOCK_EX | LOCK_NB);
-    if (!still_there())
-        refuse_output(target, "its temporary file was removed by another program");
+    // Whoever tidies up the folder in the moment before the lock takes it for a leftover: frames
+    // that run at once, or other processes. The lock waits until he is done.
+    constexpr int kMostTries = 100;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+        file_.reset(
+            ::open(path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
+        if (file_.number() < 0)
+            refuse_output(target, std::strerror(errno));
+        // Where a file system has no locks, leftovers stay for the user to remove.
+        ::flock(file_.number(), LOCK_EX);
+        if (still_there())
+            return;
+    }
+    refuse_output(target, "its temporary file was removed by another program");
 }
 
 bool TemporaryFile::still_there() const

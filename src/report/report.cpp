@@ -307,9 +307,14 @@ ordered_json costs_json(const std::vector<StageCost>& stages)
     return costs;
 }
 
+/// Of the whole report: raised when a key comes, goes or changes its meaning
+/// (docs/schema/report.schema.json).
+constexpr int kSchema = 1;
+
 /// What was read and what became of it before lines were stepped.
 void add_surface(ordered_json& json, const ShellReport& report)
 {
+    json["schema"] = kSchema;
     json["source"] = report.source;
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
     // The repair report has a JSON form of its own, for a repair without a shell. Its text is

@@ -305,6 +305,8 @@ TEST_F(Options, BashCompletesCommandsFlagsAndChoices)
     EXPECT_EQ(completed("vdb_shell build --method t", 3), "thickest\n");
     EXPECT_EQ(completed("vdb_shell build " + file("complete"), 2), file("complete.sh") + "\n");
     EXPECT_EQ(completed("vdb_shell check --thick", 2), "\n");
+    EXPECT_EQ(completed("vdb_shell check --keep", 2), "--keep-going\n");
+    EXPECT_EQ(completed("vdb_shell check --progress j", 3), "json\n");
     expect_refusal("options --complete fish", ExitCode::usage_error, {"fish", "bash"});
 }
 

@@ -16,6 +16,8 @@
 #include <future>
 #include <iterator>
 #include <new>
+#include <string>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -189,6 +191,24 @@ TEST_F(OutputSets, LeftoversGoAndFilesInUseStay)
     EXPECT_TRUE(fs::exists(folder / used));
     EXPECT_TRUE(fs::exists(folder / ".vdb_shell-mine.tmp"));
     EXPECT_EQ(files(), 3u);
+}
+
+// Each tidies up the folder, while others make their temporaries in it.
+TEST_F(OutputSets, ManyAtOnceInOneFolderLeaveEachOtherAlone)
+{
+    const auto work = [&](int worker) {
+        for (int i = 0; i < 300; ++i) {
+            OutputSet set;
+            add(set, std::to_string(worker) + "." + std::to_string(i % 3), "text");
+            set.commit();
+        }
+    };
+    std::vector<std::future<void>> workers;
+    for (int worker = 0; worker < 4; ++worker)
+        workers.push_back(std::async(std::launch::async, work, worker));
+    for (std::future<void>& worker : workers)
+        EXPECT_NO_THROW(worker.get());
+    EXPECT_EQ(files(), 12u);
 }
 
 TEST_F(OutputSets, NoticesThatItsTemporaryWasExchanged)

@@ -10,6 +10,7 @@ the entries of that list. Each row "| `path` | keys | ... |" of the section "Rep
 all keys that were found under that path, and no others, in the order of the reports. An object
 without a row of its path is as the row of the end of its path tells, or one of the shapes of the
 second table.
+Each report is also held against docs/schema/report.schema.json.
 Prints what differs and ends with status 1, or says how many keys were compared.
 """
 import json
@@ -19,6 +20,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+import json_schema
 
 BOTH_SIDES = ["--side", "both", "--layers", "2", "--thickness-scale", "0.5"]
 # Without either program no report has figures of a filled core.
@@ -123,11 +126,15 @@ def main():
     rows, shapes = rows_of(project / "docs" / "file_format.md")
     if not FILLER:
         del rows["core_fill"]
-    found = {}
+    schema = json.loads((project / "docs" / "schema" / "report.schema.json").read_text())
+    found, against_schema = {}, []
     with tempfile.TemporaryDirectory() as folder:
         for report in reports(command, project.resolve() / "samples" / "meshes", pathlib.Path(folder)):
             collect(report, "", found)
-    wrong = list(dict.fromkeys(faults(found, rows, shapes)))
+            against_schema += json_schema.all_faults(report, schema)
+    if not json_schema.all_faults({**report, "side": 1}, schema):
+        against_schema.append("the schema allows a side that is a number")
+    wrong = list(dict.fromkeys([*faults(found, rows, shapes), *against_schema]))
     print("\n".join(wrong) or f"{sum(map(len, rows.values()))} keys of {len(rows)} objects are as the page has them")
     return 1 if wrong else 0
 

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// From words to one command that can say which files it needs and can run. A new command is added
+// in add_commands(), and thereby has frames, dry runs and all else that is global: they know only
+// words, plans of files and statuses.
+
+#include "command/call.h"
+
+#include "command/build_command.h"
+#include "command/doctor_command.h"
+#include "command/exit_code.h"
+#include "command/file_commands.h"
+#include "command/help.h"
+#include "command/inspect_command.h"
+#include "command/options_command.h"
+#include "command/pose_command.h"
+#include "command/repair_command.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+struct Arguments {
+    GlobalArguments global;
+    BuildArguments build;
+    InspectArguments inspect;
+    RepairArguments repair;
+    PoseArguments pose;
+    FileArguments info, convert, check;
+    DoctorArguments doctor;
+    OptionsArguments options;
+};
+
+/// A subcommand with its options, which files it takes and leaves, and what it does.
+struct Subcommand {
+    CLI::App* app = nullptr;
+    BoundOptions bound;
+    std::function<FilePlan()> plan;
+    std::function<int(Context&)> run;
+};
+
+OptionSections describe(GlobalArguments& a)
+{
+    const Option threads =
+        option("", a.threads, "--threads", "Threads to use; 0 is all. Results do not depend on it")
+            .in(Unit::count)
+            .within(at_least(0));
+    const Option progress =
+        option("", a.progress, "--progress",
+               "Show the stages, per cent and time left on standard error; text where nothing else "
+               "is said, json is one object a line");
+    const Option level =
+        option("", a.log_level, "--log-level", "How much is said on standard error");
+    const Option errors = option("", a.errors, "--errors",
+                                 "How errors and all else that is said are written to standard "
+                                 "error; json is one object a line");
+    const Option frames =
+        option("", a.frames, "--frames",
+               "Run the command once for each frame: 1-100, 1-100x2, 10-1, 5,8,-3--1. Names of "
+               "files have tokens: #### @@@@ %04d $F4");
+    const Option dry_run = option("", a.dry_run, "--dry-run",
+                                  "Print frames and files, and what stands in their way; read and "
+                                  "write none");
+    const Option keep_going = option("", a.keep_going, "--keep-going",
+                                     "Go on after a frame that failed; the status is still that "
+                                     "of the first one that did")
+                                  .needing("--frames");
+    const Option manifest =
+        option("", a.manifest, "--manifest",
+               "Note in this JSON file, after each frame, what went in and what came out");
+    const Option resume = option("", a.resume, "--resume",
+                                 "Leave out frames that the manifest has with the same inputs, "
+                                 "options and version, and whose outputs are unchanged")
+                              .needing("--manifest");
+    const Option at_once = option("", a.frames_at_once, "--frames-at-once",
+                                  "Frames to work on at the same time; 0 is as many as threads for "
+                                  "small inputs, and else one. Results do not depend on it")
+                               .in(Unit::count)
+                               .within(at_least(0))
+                               .needing("--frames");
+    return {{"", in_group("Options", {threads, progress, level, errors})},
+            {"", in_group("Frames", {frames, dry_run, keep_going, manifest, resume, at_once})}};
+}
+
+} // namespace
+
+struct Call::Parts {
+    CLI::App app{"Thick shells of prisms and tets from triangle surfaces, as OpenVDB volumes.",
+                 "vdb_shell"};
+    Arguments a;
+    BoundOptions global;
+    std::vector<Subcommand> commands;
+
+    template <typename Add, typename Struct>
+    void add(const char* name, const char* help, Add add_options, Struct& arguments,
+             std::function<FilePlan()> plan, std::function<int(Context&)> run)
+    {
+        CLI::App* subcommand = app.add_subcommand(name, help);
+        subcommand->footer(
+            "Options of every command, as --frames and --progress: vdb_shell --help");
+        commands.push_back(
+            {subcommand, add_options(*subcommand, arguments), std::move(plan), std::move(run)});
+    }
+
+    void add_commands();
+    std::vector<CommandEntry> entries() const;
+    Subcommand& given();
+};
+
+/// The actions refer to fields of this struct, which outlive them.
+void Call::Parts::add_commands()
+{
+    add(
+        "build", "Build a shell from a triangle surface", add_build_command, a.build,
+        [this] { return plan_build(a.build); },
+        [this](Context& context) { return run_build(a.build, context); });
+    add(
+        "inspect", "Say what stands in the way of a shell, and what mends it", add_inspect_command,
+        a.inspect, [this] { return plan_inspect(a.inspect); },
+        [this](Context& context) { return run_inspect(a.inspect, context); });
+    add(
+        "repair", "Close and mend a surface, keeping what is sound", add_repair_command, a.repair,
+        [this] { return plan_repair(a.repair); },
+        [this](Context& context) { return run_repair(a.repair, context); });
+    add(
+        "pose", "Put a shell onto its surface in another pose", add_pose_command, a.pose,
+        [this] { return plan_pose(a.pose); },
+        [this](Context& context) { return run_pose(a.pose, context); });
+    add(
+        "info", "Print what a shell's file holds", add_info_command, a.info,
+        [this] { return plan_file(a.info); },
+        [this](Context& context) { return run_info(a.info, context); });
+    add(
+        "convert", "Write other formats from a shell's file", add_convert_command, a.convert,
+        [this] { return plan_convert(a.convert); },
+        [this](Context&) { return run_convert(a.convert); });
+    add(
+        "check", "Verify that a shell's file is what it claims", add_check_command, a.check,
+        [this] { return plan_file(a.check); },
+        [this](Context& context) { return run_check(a.check, context); });
+    add(
+        "doctor", "Say what is installed, and what a file needs", add_doctor_command, a.doctor,
+        [this] { return plan_doctor(a.doctor); },
+        [this](Context& context) { return run_doctor(a.doctor, context); });
+    add(
+        "options", "List the options, for people, programs and shells", add_options_command,
+        a.options, [] { return FilePlan(Existing::replaced); },
+        [this](Context& context) { return run_options(a.options, entries(), context.out); });
+}
+
+std::vector<CommandEntry> Call::Parts::entries() const
+{
+    std::vector<CommandEntry> entries{{"", "", &global}};
+    for (const Subcommand& command : commands)
+        entries.push_back(
+            {command.app->get_name(), command.app->get_description(), &command.bound});
+    return entries;
+}
+
+Subcommand& Call::Parts::given()
+{
+    for (Subcommand& command : commands)
+        if (command.app->parsed())
+            return command;
+    throw std::logic_error("the parser wants a command");
+}
+
+std::vector<std::string> words_of(int argc, char** argv)
+{
+    std::vector<std::string> words;
+    const auto style = [](const std::string& word) {
+        const auto& table = names(ProgressStyle::none);
+        return std::any_of(table.begin(), table.end(),
+                           [&](const auto& entry) { return entry.first == word; });
+    };
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        const std::string next = i + 1 < argc ? argv[i + 1] : "";
+        if (word == "--frames" && !next.empty()) {
+            words.push_back(word + "=" + next);
+            ++i;
+        } else if (word == "--progress") {
+            words.push_back(word + "=" + (style(next) ? next : "text"));
+            i += style(next) ? 1 : 0;
+        } else {
+            words.push_back(word == "--no-progress" ? "--progress=none" : word);
+        }
+    }
+    return words;
+}
+
+Call::Call() : parts_(std::make_unique<Parts>())
+{
+    Parts& p = *parts_;
+    p.app.set_version_flag("--version", version_text());
+    p.app.require_subcommand(1);
+    // Global options may stand behind the command as well, where people tend to add them.
+    p.app.fallthrough();
+    begin_help_with_examples(p.app);
+    p.global = bind(p.app, describe(p.a.global));
+    p.add_commands();
+}
+
+Call::~Call() = default;
+
+void Call::parse(const std::vector<std::string>& words)
+{
+    // The parser takes them from the back.
+    parts_->app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    apply(parts_->global);
+}
+
+int Call::end(const CLI::ParseError& error) const
+{
+    // Help and version are thrown as well, with status 0; CLI11's other numbers are its own and
+    // are replaced by ours.
+    return parts_->app.exit(error) == 0 ? success : usage_error;
+}
+
+const GlobalArguments& Call::global() const
+{
+    return parts_->a.global;
+}
+
+std::string Call::name() const
+{
+    return parts_->given().app->get_name();
+}
+
+std::string Call::options_text() const
+{
+    const Subcommand& command = parts_->given();
+    const auto name_alone = [](const std::string& file) {
+        return std::filesystem::path(file).filename().string();
+    };
+    std::string text = command.app->get_name() + '\n';
+    for (const CLI::Option* option : command.app->get_options())
+        if (option->get_positional())
+            for (const std::string& word : option->results())
+                text += name_alone(word) + '\n';
+    for (const BoundOption& bound : command.bound.options) {
+        const Option& option = bound.option;
+        const std::string value = text_of(option.get());
+        text += option.flag + ' ' + option.key + '=';
+        if (option.kind == OptionKind::text && bound.given)
+            for (const std::string& word : bound.given->results())
+                text += name_alone(word) + ' ';
+        text += (option.kind == OptionKind::text ? name_alone(value) : value) + '\n';
+    }
+    return text;
+}
+
+FilePlan Call::plan()
+{
+    Subcommand& command = parts_->given();
+    apply(command.bound);
+    return command.plan();
+}
+
+int Call::run(Context& context)
+{
+    return parts_->given().run(context);
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Every line that goes to standard error, but for what a signal handler has to say.
+
+#include "command/context.h"
+
+#include "command/error_status.h"
+#include "command/progress.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+using nlohmann::ordered_json;
+
+/// Names of files may be no UTF-8, which JSON has to be.
+std::string one_line(const ordered_json& json)
+{
+    return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+} // namespace
+
+const NameTable<LogLevel>& names(LogLevel)
+{
+    static const NameTable<LogLevel> table{
+        {"error", LogLevel::error}, {"warning", LogLevel::warning}, {"info", LogLevel::info}};
+    return table;
+}
+
+const NameTable<MessageFormat>& names(MessageFormat)
+{
+    static const NameTable<MessageFormat> table{{"text", MessageFormat::text},
+                                                {"json", MessageFormat::json}};
+    return table;
+}
+
+void Context::say(LogLevel of, const std::string& text) const
+{
+    if (of > level)
+        return;
+    if (progress)
+        progress->clear_line();
+    // At once as a whole: frames that run at the same time may share the stream.
+    if (format == MessageFormat::text) {
+        err << "vdb_shell: " + (frame ? "frame " + std::to_string(*frame) + ": " : "") + text +
+                   '\n';
+        return;
+    }
+    ordered_json json{{"event", "message"}, {"level", name_in_table(of)}};
+    if (frame)
+        json["frame"] = *frame;
+    json["message"] = text;
+    err << one_line(json);
+}
+
+void Context::say(const std::exception& error) const
+{
+    if (format == MessageFormat::text)
+        return say(LogLevel::error, message_of(error));
+    if (progress)
+        progress->clear_line();
+    const ErrorFacts facts = facts_of(error);
+    ordered_json json{{"event", "error"}, {"code", facts.code}, {"status", status_of(error)}};
+    if (frame)
+        json["frame"] = *frame;
+    for (const auto& [key, value] : {std::pair("file", &facts.file),
+                                     {"option", &facts.option},
+                                     {"element", &facts.element},
+                                     {"value", &facts.value},
+                                     {"limit", &facts.limit}})
+        if (!value->empty())
+            json[key] = *value;
+    json["message"] = message_of(error);
+    err << one_line(json);
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The command `doctor`: what this build and this machine have, so that a person who asks for help
+// can send it, and what a given file needs. It changes nothing and starts no program.
+
+#include "command/doctor_command.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/io/vdb_header.h"
+
+#include "command/exit_code.h"
+#include "command/help.h"
+#include "fill/outside_program.h"
+
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include <thread>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+void print_row(std::ostream& out, const std::string& what, const std::string& text)
+{
+    constexpr std::size_t kWidth = 14;
+    out << what << std::string(kWidth - std::min(what.size(), kWidth - 1), ' ') << text << '\n';
+}
+
+void print_program(std::ostream& out, const std::string& name)
+{
+    const fs::path program = fill::find_program(name);
+    print_row(out, name,
+              program.empty() ? "not found: --core-fill " + name +
+                                    " is refused (status 8); Debian "
+                                    "has it in the package " +
+                                    name
+                              : program.string() + ", for --core-fill " + name);
+}
+
+void print_folder(std::ostream& out, const char* what, const fs::path& folder)
+{
+    std::error_code unknown;
+    const fs::space_info space = fs::space(folder, unknown);
+    constexpr double kGib = 1024.0 * 1024 * 1024;
+    std::ostringstream text;
+    text.precision(3);
+    text << folder.string()
+         << (::access(folder.c_str(), W_OK) == 0 ? ", can be written" : ", CANNOT be written");
+    if (!unknown)
+        text << ", " << double(space.available) / kGib << " GiB free";
+    print_row(out, what, text.str());
+}
+
+void print_machine(std::ostream& out)
+{
+    out << version_text() << '\n';
+    print_row(out, "threads",
+              std::to_string(
+                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) +
+                  " of " + std::to_string(std::thread::hardware_concurrency()));
+    print_program(out, "gmsh");
+    print_program(out, "tetgen");
+    std::error_code none;
+    const fs::path temporary = fs::temp_directory_path(none);
+    if (none)
+        print_row(out, "temporary", "TMPDIR names no folder: standard input and --core-fill fail");
+    else
+        print_folder(out, "temporary", temporary);
+    print_folder(out, "here", fs::current_path());
+}
+
+/// Grids by name and type, and whether they are a shell of ours.
+void print_vdb(std::ostream& out, const fs::path& path)
+{
+    require_whole_vdb(path);
+    openvdb::initialize();
+    openvdb::io::File file(path.string());
+    file.open(false);
+    bool level_set = false;
+    const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
+    for (const openvdb::GridBase::Ptr& grid : *grids) {
+        const bool is_level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+        print_row(out, "grid",
+                  '"' + grid->getName() + "\", " + grid->type() +
+                      (is_level_set ? ", level set" : ""));
+        level_set = level_set || (is_level_set && grid->isType<openvdb::FloatGrid>());
+    }
+    const openvdb::MetaMap::Ptr metadata = file.getMetadata();
+    const bool shell = (*metadata)["vdb_shell_schema"] != nullptr;
+    print_row(out, "use",
+              shell       ? "info, convert and check read it as a shell"
+              : level_set ? "build reads it as a level set"
+                          : "no command reads it: it has neither a shell nor a level "
+                            "set of floats");
+}
+
+int print_file(std::ostream& out, const fs::path& path)
+{
+    std::error_code none;
+    const std::uintmax_t bytes = fs::file_size(path, none);
+    if (none)
+        throw ReadError(path.string() + ": " + none.message());
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    print_row(out, "file", path.string() + ", " + std::to_string(bytes) + " bytes");
+    if (extension == ".vdb") {
+        print_vdb(out, path);
+        return success;
+    }
+    if (houdini::has_geometry_extension(path)) {
+        print_row(out, "use",
+                  "polygons: inspect, repair and build; a shell of vdb_shell's: info, "
+                  "convert and check");
+        return success;
+    }
+    for (const char* known : {".obj", ".ply", ".off", ".stl"})
+        if (extension == known) {
+            print_row(out, "use",
+                      "inspect says what a shell of it needs; repair and build read it");
+            return success;
+        }
+    print_row(out, "use", "no command reads the extension \"" + extension + "\"");
+    return read_error;
+}
+
+} // namespace
+
+BoundOptions add_doctor_command(CLI::App& app, DoctorArguments& arguments)
+{
+    app.add_option("file", arguments.file, "A file that is to be read");
+    return {};
+}
+
+FilePlan plan_doctor(const DoctorArguments& arguments)
+{
+    FilePlan plan(Existing::replaced);
+    plan.add_input(arguments.file);
+    return plan;
+}
+
+int run_doctor(const DoctorArguments& arguments, Context& context)
+{
+    print_machine(context.out);
+    return arguments.file.empty() ? success : print_file(context.out, arguments.file);
+}
+
+} // namespace vdb_shell::command

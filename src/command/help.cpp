@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// What a person asks first: what to type, and which build this is.
+
+#include "command/help.h"
+
+#include <CLI/CLI.hpp>
+#include <blosc.h>
+#include <nlohmann/json.hpp>
+#include <openvdb/version.h>
+#include <tbb/version.h>
+
+#include <map>
+#include <memory>
+#include <sstream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+class HelpWithExamples : public CLI::Formatter
+{
+public:
+    std::string make_description(const CLI::App* app) const override
+    {
+        std::string text = CLI::Formatter::make_description(app);
+        const std::string command = app->get_parent() ? app->get_name() : "";
+        const std::vector<Example>& examples = examples_of(command);
+        if (!examples.empty())
+            text += "\nExamples:\n";
+        for (const Example& example : examples)
+            text += "  # " + example.does + "\n  vdb_shell " + example.words + '\n';
+        return text + (examples.empty() ? "" : "\n");
+    }
+};
+
+} // namespace
+
+const std::vector<Example>& examples_of(const std::string& command)
+{
+    static const std::map<std::string, std::vector<Example>> examples{
+        {"",
+         {{"inspect cow.obj", "what stands in the way of a shell"},
+          {"build cow.obj -o cow.vdb -o cow.vtu", "a shell, for Houdini and ParaView"},
+          {"build walk.####.obj --frames 1-100 -o walk.####.vdb", "one for each frame"},
+          {"check cow.vdb", "is it what it claims?"}}},
+        {"build",
+         {{"build cow.obj -o cow.vdb -o cow.png", "a shell and a picture of its cross-section"},
+          {"build scan.ply --repair --decimate-to 20000 -o scan.vdb", "of a scan with holes"},
+          {"build body.obj --for simulation -o body.msh", "tets for a solver"},
+          {"build walk.####.obj --frames 1-100 --keep-going --manifest walk.json --resume -o "
+           "walk.####.vdb",
+           "a sequence; typed again it does what is left"}}},
+        {"inspect",
+         {{"inspect scan.ply -o defects.ply", "what is wrong, and a picture of where"},
+          {"inspect scan.ply --json", "the same for a program"}}},
+        {"repair",
+         {{"repair scan.ply --cut-crossings -o mended.obj", "close holes, cut crossings"}}},
+        {"info", {{"info cow.vdb --json", "options and figures, as one JSON object"}}},
+        {"convert",
+         {{"convert cow.vdb -o cow.usda -o cow.msh", "other formats of the same shell"}}},
+        {"check", {{"check cow.vdb", "status 0: it is what it claims"}}},
+        {"doctor", {{"doctor", "what is installed"}, {"doctor scan.ply", "what a file needs"}}},
+        {"options",
+         {{"options --json", "all options of all commands, for programs"},
+          {"options --complete bash > ~/.local/share/bash-completion/completions/vdb_shell",
+           "completion with the tab key"}}}};
+    static const std::vector<Example> none;
+    const auto found = examples.find(command);
+    return found == examples.end() ? none : found->second;
+}
+
+void begin_help_with_examples(CLI::App& app)
+{
+    app.formatter(std::make_shared<HelpWithExamples>());
+}
+
+std::string version_text()
+{
+    std::ostringstream text;
+    text << "vdb_shell " VDB_SHELL_VERSION "\n"
+         << "OpenVDB " << openvdb::getLibraryVersionString() << ", oneTBB " << TBB_runtime_version()
+         << ", Blosc " BLOSC_VERSION_STRING ", JSON for Modern C++ " << NLOHMANN_JSON_VERSION_MAJOR
+         << '.' << NLOHMANN_JSON_VERSION_MINOR << '.' << NLOHMANN_JSON_VERSION_PATCH
+         << ", CLI11 " CLI11_VERSION "\n"
+#if defined(__clang__)
+         << "Clang " __clang_version__
+#else
+         << "GCC " __VERSION__
+#endif
+         << ", build " VDB_SHELL_BUILD_TYPE
+#if defined(NDEBUG)
+         << ", without assertions";
+#else
+         << ", with assertions";
+#endif
+    return text.str();
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// What is done of a sequence, in a file beside its outputs: of each step a fingerprint of all that
+// went into it, and size and digest of what came out. It is no part of the outputs, since half of
+// their formats have no place for it, and since a step that failed has no outputs at all. The file
+// is replaced in one step, so a process that is killed leaves that of the step before; a step whose
+// outputs came into their places in the same moment is done again, with the same bytes. Processes
+// that share a manifest take turns by a lock on its folder: the file itself is another one after
+// each write.
+
+#include "command/manifest.h"
+
+#include "core/temporary_file.h"
+#include "vdb_shell/core/digest.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/core/output_set.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <cerrno>
+#include <fstream>
+#include <utility>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// Raised when keys of the document change their meaning.
+constexpr int kSchema = 1;
+
+fs::path folder_of(const fs::path& file)
+{
+    const fs::path folder = file.parent_path();
+    return folder.empty() ? "." : folder;
+}
+
+/// Waits for its turn. File systems without locks have one process at a time.
+class FolderLock
+{
+public:
+    explicit FolderLock(const fs::path& folder)
+        : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+    {
+        while (folder_.number() >= 0 && ::flock(folder_.number(), LOCK_EX) != 0 && errno == EINTR) {
+        }
+    }
+
+private:
+    Descriptor folder_; // closing it ends the lock
+};
+
+ordered_json json_of(const std::vector<FileMark>& files)
+{
+    ordered_json json = ordered_json::array();
+    for (const FileMark& file : files)
+        json.push_back({{"file", file.path}, {"bytes", file.bytes}, {"xxh3", file.digest}});
+    return json;
+}
+
+std::vector<FileMark> marks_of(const ordered_json& json)
+{
+    std::vector<FileMark> files;
+    for (const ordered_json& file : json)
+        files.push_back({file.at("file").get<std::string>(), file.at("bytes").get<std::uint64_t>(),
+                         file.at("xxh3").get<std::string>()});
+    return files;
+}
+
+ordered_json json_of(const ManifestEntry& entry)
+{
+    ordered_json json;
+    json["frame"] = entry.frame ? ordered_json(*entry.frame) : ordered_json();
+    json["status"] = entry.status;
+    if (!entry.error.empty())
+        json["error"] = entry.error;
+    json["fingerprint"] = entry.fingerprint;
+    json["voxel_size"] = entry.voxel_size ? ordered_json(*entry.voxel_size) : ordered_json();
+    json["inputs"] = json_of(entry.inputs);
+    json["outputs"] = json_of(entry.outputs);
+    return json;
+}
+
+ManifestEntry entry_of(const ordered_json& json)
+{
+    ManifestEntry entry;
+    if (!json.at("frame").is_null())
+        entry.frame = json.at("frame").get<int>();
+    entry.status = json.at("status").get<int>();
+    entry.error = json.value("error", "");
+    entry.fingerprint = json.at("fingerprint").get<std::string>();
+    if (!json.at("voxel_size").is_null())
+        entry.voxel_size = json.at("voxel_size").get<double>();
+    entry.inputs = marks_of(json.at("inputs"));
+    entry.outputs = marks_of(json.at("outputs"));
+    return entry;
+}
+
+} // namespace
+
+bool FileMark::operator==(const FileMark& other) const
+{
+    return path == other.path && bytes == other.bytes && digest == other.digest;
+}
+
+FileMark mark_of(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    FileMark mark{file.string(), 0, ""};
+    Digest digest;
+    std::vector<char> buffer(std::size_t(1) << 20U);
+    while (in.read(buffer.data(), std::streamsize(buffer.size())) || in.gcount() > 0) {
+        digest.add(buffer.data(), std::size_t(in.gcount()));
+        mark.bytes += std::uint64_t(in.gcount());
+    }
+    if (!in.eof())
+        throw ReadError(file.string() + ": cannot be read");
+    mark.digest = digest.hex();
+    return mark;
+}
+
+Manifest::Manifest(fs::path file, std::string command)
+    : file_(std::move(file)), command_(std::move(command)), entries_(read())
+{
+}
+
+Manifest::Entries Manifest::read() const
+{
+    Entries entries;
+    std::ifstream in(file_, std::ios::binary);
+    if (!in && !fs::exists(file_))
+        return entries;
+    try {
+        const ordered_json json = ordered_json::parse(in);
+        if (json.at("schema").get<int>() != kSchema)
+            throw ReadError(file_.string() + ": schema is " + json.at("schema").dump() +
+                            ", must be " + std::to_string(kSchema));
+        if (json.at("command").get<std::string>() != command_)
+            throw ReadError(file_.string() + ": is the manifest of `" +
+                            json.at("command").get<std::string>() + "`, not of `" + command_ + "`");
+        for (const ordered_json& step : json.at("steps")) {
+            ManifestEntry entry = entry_of(step);
+            entries[entry.frame] = std::move(entry);
+        }
+    } catch (const ordered_json::exception& error) {
+        throw ReadError(file_.string() + ": is no manifest of vdb_shell: " + error.what());
+    }
+    return entries;
+}
+
+std::optional<ManifestEntry> Manifest::find(std::optional<int> frame) const
+{
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(frame);
+    return found == entries_.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// The manifest and its outputs may be moved together.
+std::string Manifest::relative(const fs::path& file) const
+{
+    const fs::path folder = fs::absolute(folder_of(file_)).lexically_normal();
+    return fs::absolute(file).lexically_normal().lexically_relative(folder).generic_string();
+}
+
+FileMark Manifest::mark_output(const fs::path& file) const
+{
+    FileMark mark = mark_of(file);
+    mark.path = relative(file);
+    return mark;
+}
+
+bool Manifest::outputs_are_there(const ManifestEntry& entry,
+                                 const std::vector<fs::path>& outputs) const
+{
+    if (entry.outputs.size() != outputs.size())
+        return false;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        // The size first, for it costs nothing.
+        std::error_code gone;
+        if (entry.outputs[i].path != relative(outputs[i]) ||
+            fs::file_size(outputs[i], gone) != entry.outputs[i].bytes || gone ||
+            !(mark_output(outputs[i]) == entry.outputs[i]))
+            return false;
+    }
+    return true;
+}
+
+void Manifest::put(const ManifestEntry& entry)
+{
+    const std::lock_guard lock(mutex_);
+    const FolderLock turn(folder_of(file_));
+    // Others may have noted theirs meanwhile.
+    entries_ = read();
+    entries_[entry.frame] = entry;
+    write();
+}
+
+void Manifest::write() const
+{
+    ordered_json json;
+    json["schema"] = kSchema;
+    json["program"] = "vdb_shell";
+    json["version"] = VDB_SHELL_VERSION;
+    json["command"] = command_;
+    json["steps"] = ordered_json::array();
+    for (const auto& [frame, entry] : entries_)
+        json["steps"].push_back(json_of(entry));
+    OutputSet files;
+    files.write_stream(file_, [&](std::ostream& out) {
+        out << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
+    });
+    files.commit();
+}
+
+} // namespace vdb_shell::command
