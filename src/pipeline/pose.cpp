@@ -9,6 +9,7 @@
 #include "report/stage_clock.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/narrow_band.h"
+#include "vdb_shell/write/rest_volume.h"
 
 #include <openvdb/openvdb.h>
 
@@ -99,6 +100,10 @@ ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
         file.rest.surface.push_back(at_rest.surface(k));
     file.rest.core = rest_core(rest).points;
     file.stack = std::move(posed.stack);
+    if (with_volumes)
+        file.rest_volume =
+            rest_volume(posed.tets, rest_of_tet_points(posed.tets, {file.rest.surface, {}}),
+                        rest.surface->voxelSize()[0], interrupter);
     file.core = std::move(posed.core);
     file.tets = std::move(posed.tets);
     return file;

@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "write/depth_lines.h"
+#include "write/tet_values_grid.h"
 
 #include <openvdb/openvdb.h>
 
@@ -62,7 +63,8 @@ struct IndexTet {
 
 /// Barycentric coordinates come from the cross products over the determinant (Cramer's rule). An
 /// inverted tet needs no case of its own: numerator and denominator change their signs together.
-IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double layers)
+IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size,
+                   const std::vector<double>& value)
 {
     IndexTet tet;
     std::array<Vec3d, 4> corner;
@@ -91,11 +93,11 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size, double
     for (std::size_t i = 0; i < 4; ++i) {
         if (i > 0)
             tet.barycentric[i] = {0.0, slopes[i - 1]};
-        // Depth is linear in the tet, so it is the mean of the corners' depths weighted by their
+        // It is linear in the tet, so it is the mean of the corners' values weighted by their
         // barycentric coordinates.
-        const double layer = mesh.layer[mesh.tets[t][int(i)]] / layers;
-        tet.depth.value += layer * tet.barycentric[i].value;
-        tet.depth.slope += layer * tet.barycentric[i].slope;
+        const double corner_value = value[mesh.tets[t][int(i)]];
+        tet.depth.value += corner_value * tet.barycentric[i].value;
+        tet.depth.slope += corner_value * tet.barycentric[i].slope;
     }
     return tet;
 }
@@ -261,7 +263,7 @@ struct Parts {
     }
 };
 
-Parts make_parts(const TetMesh& mesh, double voxel_size, double layers)
+Parts make_parts(const TetMesh& mesh, double voxel_size, const std::vector<double>& value)
 {
     const std::size_t count = (mesh.tets.size() + kTetsInPart - 1) / kTetsInPart;
     Parts parts{std::vector<std::vector<IndexTet>>(count), std::vector<std::vector<Job>>(count)};
@@ -270,7 +272,7 @@ Parts make_parts(const TetMesh& mesh, double voxel_size, double layers)
         [&](std::size_t i) {
             const std::size_t end = std::min((i + 1) * kTetsInPart, mesh.tets.size());
             for (std::size_t t = i * kTetsInPart; t < end; ++t) {
-                parts.tets[i].push_back(index_tet(mesh, t, voxel_size, layers));
+                parts.tets[i].push_back(index_tet(mesh, t, voxel_size, value));
                 add_jobs(parts.tets[i].back(), std::uint32_t(t), parts.jobs[i]);
             }
         },
@@ -323,12 +325,10 @@ void require_voxels_in_range(const TetMesh& mesh, double voxel_size)
                                     std::to_string(voxel_size));
 }
 
-openvdb::FloatGrid::Ptr empty_depth_grid(double voxel_size)
+openvdb::FloatGrid::Ptr empty_grid(double voxel_size)
 {
     auto grid = openvdb::FloatGrid::create(0.0f);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
-    grid->setName("depth");
-    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     return grid;
 }
 
@@ -354,10 +354,24 @@ void add_leaves(LeafColumn column, openvdb::FloatGrid& grid)
 openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
                                          Interrupter* interrupter)
 {
-    require_voxels_in_range(tets, voxel_size);
     const StageProgress progress(interrupter, "Shell depth");
-    auto grid = empty_depth_grid(voxel_size);
-    const Parts parts = make_parts(tets, voxel_size, layers_of(tets));
+    const double layers = layers_of(tets);
+    std::vector<double> depth;
+    depth.reserve(tets.layer.size());
+    for (const std::uint8_t layer : tets.layer)
+        depth.push_back(layer / layers);
+    auto grid = tet_values_grid(tets, depth, voxel_size, progress);
+    grid->setName("depth");
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    return grid;
+}
+
+openvdb::FloatGrid::Ptr tet_values_grid(const TetMesh& tets, const std::vector<double>& value,
+                                        double voxel_size, const StageProgress& progress)
+{
+    require_voxels_in_range(tets, voxel_size);
+    auto grid = empty_grid(voxel_size);
+    const Parts parts = make_parts(tets, voxel_size, value);
     const auto jobs = bucket_sort_by_column<Job>(
         parts.jobs,
         [](const Job& job) {

@@ -259,6 +259,13 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
         named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
         named_copy(file.depth, kDepthGrid, options.half, file.placement)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
+    if (file.rest_volume) {
+        const GridBase::Ptr rest = file.rest_volume->copyGrid();
+        rest->setCreator(creator_name());
+        rest->setSaveFloatAsHalf(options.half);
+        put_in_place(*rest, file.placement.shift());
+        volumes.push_back(rest);
+    }
     openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
                                std::move(made.tets)};
     if (!file.core.empty()) {

@@ -249,7 +249,8 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     map.insertMeta(kOrientationKey, StringMetadata(layered ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets, file.core)));
     map.insertMeta(kGridsKey, StringMetadata(std::string(kGridNames) +
-                                             (counts.core_tets > 0 ? kCoreGridNames : "")));
+                                             (counts.core_tets > 0 ? kCoreGridNames : "") +
+                                             (file.rest_volume ? " rest" : "")));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
                                                       : std::string()));

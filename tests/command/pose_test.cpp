@@ -59,6 +59,9 @@ TEST_F(Pose, WritesEveryFormatAndCheckProvesThem)
     const ShellFile at_rest = read_shell_vdb(folder / "rest.vdb");
     const ShellFile shell = read_shell_vdb(folder / "p.vdb");
     EXPECT_EQ(shell.tets.tets, at_rest.tets.tets);
+    openvdb::io::File volumes(file("p.vdb"));
+    volumes.open();
+    EXPECT_EQ(volumes.readGridMetadata("rest")->valueType(), "vec3s");
     EXPECT_EQ(shell.rest.surface[1], at_rest.stack.surface(1));
     EXPECT_EQ(shell.surface->voxelSize(), at_rest.surface->voxelSize());
 }

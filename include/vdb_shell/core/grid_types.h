@@ -16,6 +16,7 @@ namespace OPENVDB_VERSION_NAME
 {
 
 template <typename TreeType> class Grid;
+class GridBase;
 
 namespace tree
 {
@@ -37,5 +38,7 @@ namespace vdb_shell
 
 /// The same type as openvdb::FloatGrid::Ptr.
 using FloatGridPtr = std::shared_ptr<openvdb::FloatGrid>;
+/// Of any type of values.
+using GridBasePtr = std::shared_ptr<openvdb::GridBase>;
 
 } // namespace vdb_shell

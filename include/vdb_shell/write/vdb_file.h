@@ -43,6 +43,7 @@ struct ShellFile {
     std::vector<CoreFoot> core_feet{}; ///< by vertex; empty where there were no cores
     CoreTets core{};                   ///< empty where nothing fills the shell
     RestPoints rest{};                 ///< of a posed shell
+    GridBasePtr rest_volume{};         ///< written if there is one; not read
     /// Digests of parts of the file that held when it was read; 0 where it has none.
     std::size_t digests = 0;
 };

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes posed tets and where their points were at rest. Leaves one vector grid of it: three grids
+// of numbers, which have the same active voxels, put together leaf by leaf.
+
+#include "vdb_shell/write/rest_volume.h"
+
+#include "core/parallel.h"
+#include "write/tet_values_grid.h"
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cassert>
+
+namespace vdb_shell
+{
+
+using openvdb::Vec3f;
+
+GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>& rest,
+                        double voxel_size, Interrupter* interrupter)
+{
+    assert(rest.size() == posed.points.size());
+    const StageProgress progress(interrupter, "Shell rest");
+    std::array<openvdb::FloatGrid::Ptr, 3> part;
+    std::array<std::vector<const openvdb::FloatTree::LeafNodeType*>, 3> leaves;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::vector<double> value;
+        value.reserve(rest.size());
+        for (const openvdb::Vec3s& p : rest)
+            value.push_back(p[static_cast<int>(axis)]);
+        part[axis] = tet_values_grid(posed, value, voxel_size, progress);
+        part[axis]->tree().getNodes(leaves[axis]);
+    }
+    auto grid = openvdb::Vec3SGrid::create();
+    grid->setTransform(part[0]->transform().copy());
+    grid->setName("rest");
+    using Leaf = openvdb::Vec3STree::LeafNodeType;
+    std::vector<Leaf*> made(leaves[0].size());
+    for_each_index(made.size(), [&](std::size_t i) {
+        made[i] = new Leaf(leaves[0][i]->origin(), Vec3f(0.0f), false);
+        for (auto voxel = leaves[0][i]->cbeginValueOn(); voxel; ++voxel)
+            made[i]->setValueOn(voxel.pos(), Vec3f(*voxel, leaves[1][i]->getValue(voxel.pos()),
+                                                   leaves[2][i]->getValue(voxel.pos())));
+    });
+    for (Leaf* leaf : made)
+        grid->tree().addLeaf(leaf);
+    return grid;
+}
+
+} // namespace vdb_shell
