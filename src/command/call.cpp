@@ -179,10 +179,12 @@ std::vector<std::string> words_of(int argc, char** argv)
         const std::string word = argv[i];
         const std::string next = i + 1 < argc ? argv[i + 1] : "";
         if (word == "--frames" && !next.empty()) {
-            words.push_back(word + "=" + next);
+            words.push_back(word);
+            words.back().append("=").append(next);
             ++i;
         } else if (word == "--progress") {
-            words.push_back(word + "=" + (style(next) ? next : "text"));
+            words.push_back(word);
+            words.back().append("=").append(style(next) ? next : "text");
             i += style(next) ? 1 : 0;
         } else {
             words.push_back(word == "--no-progress" ? "--progress=none" : word);
