@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 
 namespace vdb_shell::command
 {
@@ -158,6 +159,15 @@ void Progress::show(const StepProgress& step)
         show_text(step, share);
     else if (style_ == ProgressStyle::json)
         show_json(step, share);
+}
+
+StepProgress::~StepProgress()
+{
+    try {
+        advance(failed_ ? "failed" : "done", 1.0, true);
+    } catch (const std::exception&) {
+        stage_.clear(); // a line that cannot be shown is no reason to fail
+    }
 }
 
 void StepProgress::stage(const std::string& name)

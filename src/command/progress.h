@@ -56,7 +56,7 @@ class StepProgress
 {
 public:
     StepProgress(Progress& all, std::optional<int> frame) : all_(all), frame_(frame) {}
-    ~StepProgress() { advance(failed_ ? "failed" : "done", 1.0, true); }
+    ~StepProgress();
     StepProgress(const StepProgress&) = delete;
     StepProgress& operator=(const StepProgress&) = delete;
 

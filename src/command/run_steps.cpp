@@ -25,7 +25,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <iostream>
+#include <limits>
 #include <mutex>
 #include <sstream>
 #include <thread>
@@ -38,10 +41,11 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Bytes of a frame's inputs up to which frames run at once: some 100,000 triangles as text. Above
-/// it one frame uses all threads nearly as well, and several of them would need their memory at the
-/// same time. Measured in docs/frames.md.
+/// Bytes of a frame's inputs up to which frames run at once: some 200,000 triangles as text. For
+/// those it was measured to be faster (docs/frames.md); larger ones need gigabytes each.
 constexpr std::uintmax_t kSmallInputs = 8U << 20U;
+/// Memory of a frame: some 40 MiB, and 60 bytes for each of its inputs (as measured), rounded up.
+constexpr double kFrameMemory = 64.0 * (1U << 20U), kMemoryPerByte = 70;
 
 std::string seconds_text(std::chrono::steady_clock::time_point start)
 {
@@ -56,21 +60,39 @@ std::size_t thread_count()
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
+/// In bytes, as Linux reports it.
+double free_memory()
+{
+    std::ifstream info("/proc/meminfo");
+    for (std::string key, rest; info >> key && std::getline(info, rest);)
+        if (key == "MemAvailable:")
+            return std::strtod(rest.c_str(), nullptr) * 1024.0;
+    return std::numeric_limits<double>::infinity();
+}
+
+std::uintmax_t bytes_of_inputs(const Step& step)
+{
+    std::uintmax_t bytes = 0;
+    for (const fs::path& input : step.inputs) {
+        std::error_code unknown;
+        const std::uintmax_t size = fs::file_size(input, unknown);
+        bytes += unknown ? 0 : size;
+    }
+    return bytes;
+}
+
 std::size_t frames_at_once(const std::vector<Step>& steps, const GlobalArguments& global)
 {
     if (global.frames_at_once > 0)
         return std::size_t(global.frames_at_once);
-    for (const Step& step : steps) {
-        std::uintmax_t bytes = 0;
-        for (const fs::path& input : step.inputs) {
-            std::error_code unknown;
-            const std::uintmax_t size = fs::file_size(input, unknown);
-            bytes += unknown ? 0 : size;
-        }
-        if (bytes > kSmallInputs)
-            return 1;
-    }
-    return thread_count();
+    std::uintmax_t largest = 0;
+    for (const Step& step : steps)
+        largest = std::max(largest, bytes_of_inputs(step));
+    if (largest > kSmallInputs)
+        return 1;
+    // Half of what is free, for other programs want some too.
+    const double fit = 0.5 * free_memory() / (kFrameMemory + kMemoryPerByte * double(largest));
+    return fit < double(thread_count()) ? std::size_t(std::max(fit, 1.0)) : thread_count();
 }
 
 class Runner

@@ -73,6 +73,27 @@ TEST_F(ForPrograms, ProgressForProgramsGrowsAndEndsAtOne)
         0u);
 }
 
+TEST_F(ForPrograms, ProgressSaysThatAFrameFailed)
+{
+    spheres(2);
+    write_bytes(folder / "s.0001.obj", "no mesh\n");
+    const Outcome result =
+        run(build("1-2", "--keep-going --errors json --progress json --log-level error"));
+    EXPECT_EQ(result.status, ExitCode::read_error);
+    const std::vector<json> lines = events(result.err, "progress");
+    ASSERT_FALSE(lines.empty());
+    EXPECT_EQ(lines.back().at("stage"), "done");
+    std::size_t failed = 0;
+    for (const json& line : lines)
+        if (line.at("stage") == "failed") {
+            ++failed;
+            EXPECT_EQ(line.at("frame"), 1);
+            EXPECT_EQ(line.at("share"), 0.5);
+        }
+    EXPECT_EQ(failed, 1u);
+    EXPECT_EQ(events(result.err, "message").size(), 1u) << "the count, as something failed";
+}
+
 TEST_F(ForPrograms, ErrorsForProgramsHaveTheirParts)
 {
     write_bytes(folder / "s.0001.obj", "v 0 0 0\nv 0 0 zero\n");
