@@ -2,8 +2,10 @@
 # sanitize.sh address [ROOM ...]  tests under the address and undefined-behaviour sanitizers, with Clang
 # sanitize.sh thread [ROOM ...]   tests under the thread sanitizer
 # sanitize.sh fuzz [SECONDS]      every fuzzer for so many seconds (20)
-# Without rooms: readers, exact tests, shells and certificates with the first, the stages whose loops are parallel with
-# the second. `all` is every test.
+# sanitize.sh readers             what continuous integration has time for: the first of readers, exact tests, shells and
+#                                 certificates, and every fuzzer of a mesh reader for 20 seconds
+# Without rooms: those of `readers` and the kept inputs of all fuzzers with the first, the stages whose loops are parallel
+# with the second. `all` is every test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,13 +32,20 @@ thread)
     rooms=(core field step growth layers)
     export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
     ;;
+readers)
+    rooms=(core options mesh io shell certify)
+    cmake --preset readers
+    cmake --build --preset readers --target "${rooms[@]/%/_test}" mesh_fuzzers
+    ctest --preset readers -j "$(nproc)" -R "^($(IFS='|'; echo "${rooms[*]}"))\."
+    exec python3 tests/fuzz/run.py build/readers --seconds 20 --targets obj ply off stl
+    ;;
 fuzz)
     cmake --preset fuzz
     cmake --build --preset fuzz --target fuzzers
     exec python3 tests/fuzz/run.py build/fuzz --seconds "${1:-20}"
     ;;
 *)
-    echo "usage: $0 address|thread [ROOM ...]|fuzz [SECONDS]" >&2
+    echo "usage: $0 address|thread [ROOM ...]|readers|fuzz [SECONDS]" >&2
     exit 2
     ;;
 esac

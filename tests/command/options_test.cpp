@@ -106,7 +106,6 @@ TEST_F(Options, OnesWithoutTheirPartnerAreRefused)
         {"--core-fill-edge-length 2", "--core-fill"},
         {"--core-fill-seconds 2", "--core-fill"},
         {"--core-reach 0.3", "--core"},
-        {"--core stitched", "--taper"},
         {"--contour-adaptivity 0.5", "a level set"},
         {"--method raw --min-quality 0.1", "--method certified thickest"},
         {"--method raw --free-rounds 4", "--method certified thickest"},
@@ -116,6 +115,8 @@ TEST_F(Options, OnesWithoutTheirPartnerAreRefused)
         expect_refusal(build + flags, ExitCode::usage_error,
                        {last.substr(0, last.find(' ')) + " needs " + needed});
     }
+    expect_refusal(build + "--core stitched", ExitCode::usage_error,
+                   {"--core stitched needs --taper"});
     expect_refusal("convert " + file("none.vdb") + " --half -o " + file("x.vtu"),
                    ExitCode::usage_error, {"--half needs --output .vdb"});
     // With its partner, also from a file or in capitals, or turned off: on to the missing surface.

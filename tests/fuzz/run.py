@@ -24,6 +24,8 @@ from runs import replace_tables, table  # noqa: E402
 # Bytes of an input at most: the smaller, the faster; a .vdb of one voxel has some thousand.
 LONGEST = {"tiny_meshes": 160, "vdb": 30000, "houdini": 4000}
 
+INTERRUPTED = 72 # libFuzzer's status when somebody ended it
+
 
 def run(build, name, seconds, work):
     corpus = work / name
@@ -39,10 +41,11 @@ def run(build, name, seconds, work):
     spent = after.children_user + after.children_system - before.children_user - before.children_system
     count = re.search(r"stat::number_of_executed_units:\s*(\d+)", done.stderr)
     ways = re.findall(r"cov: (\d+)", done.stderr)
-    if done.returncode:
+    broken = done.returncode not in (0, INTERRUPTED)
+    if broken:
         print(done.stderr[-4000:])
     return {"inputs": int(count[1]) if count else 0, "seconds": spent,
-            "broken": int(done.returncode != 0), "edges": int(ways[-1]) if ways else 0}
+            "broken": int(broken), "edges": int(ways[-1]) if ways else 0}
 
 
 def page_table(sums):
