@@ -8,3 +8,4 @@ cmake --preset dev
 cmake --build --preset dev
 ctest --preset dev -j "$(nproc)"
 bash .ci/lint.sh tidy
+bash .ci/sanitize.sh readers

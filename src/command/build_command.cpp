@@ -46,6 +46,12 @@ void keep_voxel_size(ShellOptions& options, const Context& context)
         options.level_set.voxel_size = context.sequence->voxel_size;
 }
 
+bool is_level_set(const BuildArguments& arguments)
+{
+    const GridName source = split_grid_name(arguments.mesh.string());
+    return std::filesystem::path(source.file).extension() == ".vdb";
+}
+
 /// Reads the triangles or the level set, and builds. `options` are left in the unit in which the
 /// stages worked, because the file has to state what its shell was made with.
 ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& options, Context& context,
@@ -57,7 +63,7 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
     // The small inputs come first: a wrong name of a grid is told before a large mesh is read.
     const FloatGridPtr thickness = read_thickness_grid(arguments.thickness_grid);
     ShellResult result;
-    if (std::filesystem::path(source.file).extension() == ".vdb") {
+    if (is_level_set(arguments)) {
         if (arguments.read.recentre || arguments.read.rescale)
             throw InvalidOption(name + ": --recentre and --rescale are for triangles; a level set "
                                        "has a transform of its own");
@@ -137,6 +143,20 @@ FilePlan plan_files(const BuildArguments& arguments)
     return plan;
 }
 
+/// What Option::needs cannot say: one value of an option, and the surface itself.
+void require_partners(const BuildArguments& arguments)
+{
+    const ShellOptions& shell = arguments.shell;
+    if (shell.taper.core == CoreSurface::stitched && !shell.taper.wanted)
+        throw InvalidOption("--core stitched needs --taper");
+    if (shell.contour.adaptivity != ContourOptions{}.adaptivity && !is_level_set(arguments))
+        throw InvalidOption("--contour-adaptivity needs a level set, FILE.vdb or FILE.vdb:GRID; "
+                            "the surface is " +
+                            arguments.mesh.filename().string());
+    if (arguments.cores.empty() && shell.cores.distance > 0)
+        throw InvalidOption("--core-distance needs --core FILE");
+}
+
 void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
@@ -149,10 +169,9 @@ void require_sensible(const BuildArguments& arguments)
     require_program(arguments.shell.core_fill);
     if (!arguments.remesh_map.empty())
         require_map_extension(arguments.remesh_map);
+    require_partners(arguments);
     if (!arguments.cores.empty())
         require_cores_possible(arguments.shell);
-    else if (arguments.shell.cores.distance > 0)
-        throw InvalidOption("--core-distance needs --core FILE");
 }
 
 /// The report is made last, because it is the only output that can tell how long the others took.

@@ -119,10 +119,11 @@ void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions&
     const double estimate = estimate_level_set_bytes(mesh, voxel, options);
     const double limit = options.max_memory_gib ? *options.max_memory_gib * kGib : free_memory();
     if (!(estimate <= limit))
-        fail<GeometryError>(
-            "voxel size ", voxel, " needs an estimated ", estimate / kGib,
-            " GiB, over the limit of ", limit / kGib,
-            " GiB; enlarge the voxels or bound the depth of the band (a thickness does)");
+        fail<GeometryError>("voxel size ", voxel, " needs an estimated ", estimate / kGib,
+                            " GiB, over the limit of ", limit / kGib,
+                            " GiB; enlarge the voxels or bound the depth of the band, ",
+                            band_of(mesh, voxel, options).exterior,
+                            " voxels outside (--exterior-depth, --thickness)");
 }
 
 openvdb::FloatGrid::Ptr convert(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
@@ -234,11 +235,18 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
     // average; half of that on either side.
     constexpr double kLeafReach = 6.0;
     const double inside = std::min(area * band.interior, solid) + area * kLeafReach;
-    const double outside = area * (band.exterior + kLeafReach);
     const Bounds bounds = bounds_of(mesh.points);
-    double box = 1;
-    for (int axis = 0; axis < 3; ++axis)
-        box *= (bounds.high[axis] - bounds.low[axis]) / voxel_size + 2 * band.exterior + 16;
+    double box = 1, sides = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double side = (bounds.high[axis] - bounds.low[axis]) / voxel_size;
+        sides += side;
+        box *= side + 2 * band.exterior + 16;
+    }
+    // Steiner's formula for the distances around a box: far from a small object the band is a ball,
+    // whatever the object's area.
+    const double depth = band.exterior;
+    const double outside =
+        area * (depth + kLeafReach) + M_PI * depth * depth * (sides + 4.0 / 3.0 * depth);
     // Where a surface has many folds, its bands overlap, and the box is the better bound.
     const double voxels = std::min(inside + outside, box);
     // The distance, the index of the nearest triangle and the buffer of the renormalisation take 4

@@ -218,8 +218,9 @@ ordered_json parse_options(const std::string& text, const std::string& name)
     ordered_json json;
     try {
         json = ordered_json::parse(text);
-        // The caller gets the project's own exception, with the name of the file in front.
-    } catch (const ordered_json::parse_error& error) {
+        // The caller gets the project's own exception, with the name of the file in front. Numbers
+        // that no double holds are another error of the parser's than bad syntax.
+    } catch (const ordered_json::exception& error) {
         throw ReadError(name + ": is no JSON: " + error.what());
     }
     if (!json.is_object())

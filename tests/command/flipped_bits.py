@@ -4,11 +4,13 @@
 passed with the same answer and the same converted files as from the sound one; passed with other ones; crashed.
 
     flipped_bits.py COMMAND MESH [--flips N] [--kinds vdb unsealed.vdb ...] [--jobs N] [--seed N]
+                    [--results FILE] [--page docs/reliability.md]
 
 The last two counts must be 0. Bits are drawn at random over the whole file; in a .vdb the UUID is drawn like the rest.
 An unsealed .vdb has another UUID, as one that another program wrote of the same grids: there the digest of the bytes
 says nothing, and the walk before decoding and the digests of values have to do.
-Prints a table (docs/reliability.md has one of a longer run); ends with status 1 at a violation."""
+Prints a table and ends with status 1 at a violation. --results keeps the kinds that are finished, --page writes the table of
+all of them."""
 import argparse
 import concurrent.futures
 import pathlib
@@ -16,6 +18,9 @@ import random
 import subprocess
 import sys
 import tempfile
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "docs" / "scripts"))
+from runs import Results, replace_tables, table  # noqa: E402
 
 KINDS = {"vdb": [], "unsealed.vdb": [], "layers.vdb": ["--layers", "2", "--side", "both"], "half.vdb": ["--half"], "geo": [], "bgeo": [], "bgeo.sc": []}
 CRASH, REFUSED, SAME, CHANGED = "crashed", "refused", "no effect", "CHANGED"
@@ -91,11 +96,15 @@ def flip_all(args, kind, work):
         for found in pool.map(lambda bit: one_flip(args.command, file.name, data, sound, bit, work), bits):
             for verb, what in found.items():
                 counts[verb][what] += 1
-    violations = 0
-    for verb, row in counts.items():
-        print(f"| .{kind} | {len(data)} | {verb} | {len(bits)} | " + " | ".join(str(n) for n in row.values()) + " |", flush=True)
-        violations += row[CHANGED] + row[CRASH]
-    return violations
+    return {"bytes": len(data), "flips": len(bits), "counts": counts}
+
+
+def rows_of(kind, found):
+    """One row for each command, or one for all of them where they agree."""
+    counts = {tuple(row.values()) for row in found["counts"].values()}
+    verbs = ["all three"] if len(counts) == 1 else list(found["counts"])
+    return [[f"`.{kind}`", f"{found['bytes']:,}", verb, f"{found['flips']:,}",
+             *(f"{n:,}" for n in found["counts"]["check" if verb == "all three" else verb].values())] for verb in verbs]
 
 
 def main():
@@ -106,10 +115,21 @@ def main():
     parser.add_argument("--kinds", nargs="+", default=list(KINDS), choices=list(KINDS))
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--results")
+    parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
-    print(f"| file | bytes | command | flips | {REFUSED} | {SAME} | other values | {CRASH} |\n|---|---|---|---|---|---|---|---|")
+    results = Results(args.results)
     with tempfile.TemporaryDirectory() as work:
-        return 1 if sum(flip_all(args, kind, work) for kind in args.kinds) else 0
+        for kind in args.kinds:
+            if kind not in results.runs:
+                results.keep(kind, flip_all(args, kind, work))
+    lines = table(["file", "bytes", "commands", "flips", REFUSED, SAME, "other values", CRASH],
+                  [row for kind in KINDS if kind in results.runs for row in rows_of(kind, results.runs[kind])])
+    print("\n".join(lines))
+    if args.page:
+        replace_tables(args.page, lines, "flipped bits")
+    wrong = sum(row[CHANGED] + row[CRASH] for found in results.runs.values() for row in found["counts"].values())
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

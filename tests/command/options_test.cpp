@@ -106,6 +106,7 @@ TEST_F(Options, OnesWithoutTheirPartnerAreRefused)
         {"--core-fill-edge-length 2", "--core-fill"},
         {"--core-fill-seconds 2", "--core-fill"},
         {"--core-reach 0.3", "--core"},
+        {"--contour-adaptivity 0.5", "a level set"},
         {"--method raw --min-quality 0.1", "--method certified thickest"},
         {"--method raw --free-rounds 4", "--method certified thickest"},
         {"--method raw --coarse-from 0", "--method certified thickest"}};
@@ -114,14 +115,16 @@ TEST_F(Options, OnesWithoutTheirPartnerAreRefused)
         expect_refusal(build + flags, ExitCode::usage_error,
                        {last.substr(0, last.find(' ')) + " needs " + needed});
     }
+    expect_refusal(build + "--core stitched", ExitCode::usage_error,
+                   {"--core stitched needs --taper"});
     expect_refusal("convert " + file("none.vdb") + " --half -o " + file("x.vtu"),
                    ExitCode::usage_error, {"--half needs --output .vdb"});
     // With its partner, also from a file or in capitals, or turned off: on to the missing surface.
     for (const std::string& fine :
          {std::string("--wrap-sheet 2 --wrap"),
           preset(R"({"wrap": {"wanted": true}})") + "--wrap-sheet 2", "--half -o " + file("y.VDB"),
-          std::string("--no-half --no-wrap-keep-voids"),
-          std::string("--layers-auto --layer-grading 2")})
+          std::string("--no-half --no-wrap-keep-voids"), std::string("--core stitched --taper"),
+          std::string("--core free"), std::string("--layers-auto --layer-grading 2")})
         expect_refusal(build + fine, ExitCode::read_error, {"none.obj"});
 }
 

@@ -132,6 +132,25 @@ TEST(LevelSet, EstimateIsNotBelowTheGridAndGrowsAsTheVoxelsShrink)
     EXPECT_GT(estimate_level_set_bytes(mesh, voxel / 32, options), 8000 * estimate / 32);
 }
 
+TEST(LevelSet, EstimateKnowsThatADeepBandAroundASmallObjectIsABall)
+{
+    LevelSetOptions options = at_resolution(8);
+    const TriangleMesh mesh = test::unit_tetrahedron();
+    const double voxel = resolve_voxel_size(mesh, options);
+    for (const double depth : {1.0, 4.0}) {
+        options.exterior_depth = depth;
+        EXPECT_GT(estimate_level_set_bytes(mesh, voxel, options),
+                  static_cast<double>(mesh_to_level_set(mesh, options)->memUsage()));
+    }
+    // A ball of 8,000 voxels across has 2.7e11 of them.
+    options.exterior_depth = 500;
+    EXPECT_GT(estimate_level_set_bytes(mesh, voxel, options), 1e12);
+    options.max_memory_gib = 100;
+    EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(mesh, options); }),
+                AllOf(HasSubstr("over the limit of 100 GiB"),
+                      HasSubstr("voxels outside (--exterior-depth, --thickness)")));
+}
+
 TEST(LevelSet, RefusesWhatCannotFitInMemoryBeforeItTries)
 {
     LevelSetOptions options;

@@ -2,23 +2,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the fuzzers of a build with the preset `fuzz`, one after the other.
 
-    run.py BUILD_FOLDER [--seconds N] [--targets NAME ...] [--work FOLDER]
+    run.py BUILD_FOLDER [--seconds N] [--targets NAME ...] [--work FOLDER] [--page docs/security.md]
 
 Each begins with the inputs in tests/fuzz/inputs/NAME and with what earlier runs found (WORK/NAME). An input that breaks
 something is kept as WORK/NAME-crash-*, -timeout-* or -oom-*; `BUILD_FOLDER/tests/fuzz_NAME FILE` runs it again. Inputs and
-seconds of all runs are added up in WORK/counts.json. Prints a table, and fails if anything broke.
+processor seconds of all runs are added up in WORK/counts.json. Prints a table, and fails if anything broke; with --page the
+sums are written there as well (--seconds 0: nothing is run for it).
 """
 import argparse
 import json
+import os
 import pathlib
 import re
 import subprocess
 import sys
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parents[1] / "docs" / "scripts"))
+from runs import replace_tables, table  # noqa: E402
+
 # Bytes of an input at most: the smaller, the faster; a .vdb of one voxel has some thousand.
-LONGEST = {"tiny_meshes": 160, "vdb": 30000, "houdini": 16000}
+LONGEST = {"tiny_meshes": 160, "vdb": 30000, "houdini": 4000}
+
+INTERRUPTED = 72 # libFuzzer's status when somebody ended it
 
 
 def run(build, name, seconds, work):
@@ -28,14 +34,25 @@ def run(build, name, seconds, work):
     line = [build / "tests" / f"fuzz_{name}", corpus, HERE / "inputs" / name, f"-max_total_time={seconds}",
             f"-max_len={LONGEST.get(name, 2000)}", "-timeout=30", "-rss_limit_mb=3000", "-print_final_stats=1",
             "-verbosity=1", f"-artifact_prefix={work / name}-", *([f"-dict={dictionary}"] if dictionary.exists() else [])]
-    began = time.monotonic()
+    before = os.times()
     done = subprocess.run([str(word) for word in line], capture_output=True, text=True, errors="replace")
+    after = os.times()
+    # Of the processor: runs of hours share the machine with other work.
+    spent = after.children_user + after.children_system - before.children_user - before.children_system
     count = re.search(r"stat::number_of_executed_units:\s*(\d+)", done.stderr)
     ways = re.findall(r"cov: (\d+)", done.stderr)
-    if done.returncode:
+    broken = done.returncode not in (0, INTERRUPTED)
+    if broken:
         print(done.stderr[-4000:])
-    return {"inputs": int(count[1]) if count else 0, "seconds": time.monotonic() - began,
-            "broken": int(done.returncode != 0), "edges": int(ways[-1]) if ways else 0}
+    return {"inputs": int(count[1]) if count else 0, "seconds": spent,
+            "broken": int(broken), "edges": int(ways[-1]) if ways else 0}
+
+
+def page_table(sums):
+    head = ["target", "inputs", "hours", "inputs a second", "edges", "broken"]
+    rows = [[f"`{name}`", f"{of['inputs']:,}", f"{of['seconds'] / 3600:.2f}", f"{of['inputs'] / of['seconds']:,.0f}",
+             f"{of['edges']:,}", str(of["broken"])] for name, of in sorted(sums.items())]
+    return table(head, rows)
 
 
 def main():
@@ -45,6 +62,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=30)
     parser.add_argument("--targets", nargs="+", choices=names, default=names)
     parser.add_argument("--work", type=pathlib.Path, help="default: fuzz in the build's folder")
+    parser.add_argument("--page", type=pathlib.Path)
     options = parser.parse_args()
     work = options.work or options.build / "fuzz"
     work.mkdir(parents=True, exist_ok=True)
@@ -52,15 +70,18 @@ def main():
     sums = json.loads(counts.read_text()) if counts.exists() else {}
     broken = 0
     print("| target | inputs | seconds | broken | all inputs | all hours |\n|---|---|---|---|---|---|")
-    for name in options.targets:
+    for name in options.targets if options.seconds else []:
         found = run(options.build, name, options.seconds, work)
         broken += found["broken"]
-        both = sums.setdefault(name, {"inputs": 0, "seconds": 0, "broken": 0})
-        for key in both:
+        both = sums.setdefault(name, {"inputs": 0, "seconds": 0, "broken": 0, "edges": 0})
+        for key in ("inputs", "seconds", "broken"):
             both[key] += found[key]
+        both["edges"] = max(both["edges"], found["edges"])
         counts.write_text(json.dumps(sums, indent=1) + "\n")
         print(f"| {name} | {found['inputs']:,} | {found['seconds']:.0f} | {found['broken']} | {both['inputs']:,} | "
               f"{both['seconds'] / 3600:.2f} |", flush=True)
+    if options.page:
+        replace_tables(options.page, page_table(sums), "fuzzers")
     return 1 if broken else 0
 
 

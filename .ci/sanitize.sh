@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# sanitize.sh address [ROOM ...]  tests under the address and undefined-behaviour sanitizers, with Clang
+# sanitize.sh thread [ROOM ...]   tests under the thread sanitizer
+# sanitize.sh fuzz [SECONDS]      every fuzzer for so many seconds (20)
+# sanitize.sh readers             what continuous integration has time for: the first of readers, exact tests, shells and
+#                                 certificates, and every fuzzer of a mesh reader for 20 seconds
+# Without rooms: those of `readers` and the kept inputs of all fuzzers with the first, the stages whose loops are parallel
+# with the second. `all` is every test.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+run_tests() { # PRESET ROOM...
+    local preset=$1
+    shift
+    cmake --preset "$preset"
+    if [ "$*" = all ]; then
+        cmake --build --preset "$preset"
+        ctest --preset "$preset" -j "$(nproc)"
+    else
+        cmake --build --preset "$preset" --target "${@/%/_test}"
+        ctest --preset "$preset" -j "$(nproc)" -R "^($(IFS='|'; echo "$*"))\."
+    fi
+}
+
+what=${1:-}
+shift || true
+case "$what" in
+address)
+    rooms=(core options mesh io shell certify fuzz)
+    ;;
+thread)
+    rooms=(core field step growth layers)
+    export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
+    ;;
+readers)
+    rooms=(core options mesh io shell certify)
+    cmake --preset readers
+    cmake --build --preset readers --target "${rooms[@]/%/_test}" mesh_fuzzers
+    ctest --preset readers -j "$(nproc)" -R "^($(IFS='|'; echo "${rooms[*]}"))\."
+    exec python3 tests/fuzz/run.py build/readers --seconds 20 --targets obj ply off stl
+    ;;
+fuzz)
+    cmake --preset fuzz
+    cmake --build --preset fuzz --target fuzzers
+    exec python3 tests/fuzz/run.py build/fuzz --seconds "${1:-20}"
+    ;;
+*)
+    echo "usage: $0 address|thread [ROOM ...]|readers|fuzz [SECONDS]" >&2
+    exit 2
+    ;;
+esac
+[ $# -eq 0 ] || rooms=("$@")
+if [ "$what" = address ]; then run_tests fuzz "${rooms[@]}"; else run_tests tsan "${rooms[@]}"; fi
