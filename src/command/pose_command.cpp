@@ -151,6 +151,24 @@ std::vector<std::uint8_t> certified_flags(const PosedShell& posed)
                                  : std::vector<std::uint8_t>(posed.tets.tets.size(), 1);
 }
 
+/// Where the skin crosses itself parts of the shell have to overlap: no fault of the shell's, if
+/// every tet is positive.
+int status_of(const ShellReport& report, const Context& context)
+{
+    const std::string faults = faults_of(report);
+    if (faults.empty())
+        return success;
+    const bool positive = report.signs.inverted.count + report.signs.flat.count == 0 &&
+                          report.conformity.conforming();
+    if (positive && report.mesh.self_intersections.count > 0) {
+        context.say(LogLevel::warning,
+                    report.source + ": the skin crosses itself; " + report.overlaps->summary());
+        return success;
+    }
+    context.say(LogLevel::error, report.source + ": the shell is NOT VALID: " + faults);
+    return check_failed;
+}
+
 } // namespace
 
 BoundOptions add_pose_command(CLI::App& app, PoseArguments& arguments)
@@ -211,11 +229,7 @@ int run_pose(const PoseArguments& arguments, Context& context)
     files.commit();
     if (to_output || !arguments.quiet)
         context.out << (to_output ? json : posed_report_text(report));
-    const std::string faults = faults_of(report);
-    if (faults.empty())
-        return success;
-    context.say(LogLevel::error, report.source + ": the shell is NOT VALID: " + faults);
-    return check_failed;
+    return status_of(report, context);
 }
 
 } // namespace vdb_shell::command

@@ -121,6 +121,20 @@ TEST_F(Pose, StandsWhereARecentredShellStands)
             1e-3);
 }
 
+TEST_F(Pose, ASkinThatCrossesItselfIsWarnedOfAndNoFailure)
+{
+    const TriangleMesh two = joined(rest, translated(rest, {1.5, 0, 0}));
+    ASSERT_EQ(
+        run("build " + mesh_file("two.obj", two) + kCoarse + " -q -o " + file("two.vdb")).status,
+        ExitCode::success);
+    const TriangleMesh pushed = joined(rest, translated(rest, {0.7, 0, 0}));
+    const Outcome posed = run("pose " + file("two.vdb") + " " + mesh_file("x.obj", pushed) +
+                              " -q -o " + file("x.vdb"));
+    EXPECT_EQ(posed.status, ExitCode::success);
+    EXPECT_NE(posed.err.find("the skin crosses itself"), std::string::npos) << posed.err;
+    EXPECT_EQ(run("check " + file("x.vdb")).status, ExitCode::success);
+}
+
 TEST_F(Pose, WhatCannotBeIsRefused)
 {
     const std::string skin = mesh_file("bent.obj", bent(0.5)), shell = file("rest.vdb");
