@@ -49,8 +49,8 @@ def run(build, name, seconds, work):
 
 
 def page_table(sums):
-    head = ["target", "inputs", "hours", "inputs a second", "edges", "broken"]
-    rows = [[f"`{name}`", f"{of['inputs']:,}", f"{of['seconds'] / 3600:.2f}", f"{of['inputs'] / of['seconds']:,.0f}",
+    head = ["target", "inputs", "minutes", "inputs a second", "edges", "broken"]
+    rows = [[f"`{name}`", f"{of['inputs']:,}", f"{of['seconds'] / 60:.1f}", f"{of['inputs'] / of['seconds']:,.0f}",
              f"{of['edges']:,}", str(of["broken"])] for name, of in sorted(sums.items())]
     return table(head, rows)
 
