@@ -123,6 +123,11 @@ TetLines lines_through(const IndexTet& tet)
     return lines;
 }
 
+/// Of the values of all points: rounding must not lead out of it.
+struct Range {
+    double least = 0, most = 0;
+};
+
 /// A column of leaves under construction, from the lowest that one of its tets may meet.
 struct LeafColumn {
     int x = 0, y = 0, low_z = 0; ///< of the lowest one's origin
@@ -170,7 +175,7 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
 /// smallest index stays. Going up and testing whether a voxel is set would read the mask of each
 /// row first.
 void fill_lines(LeafColumn& column, const IndexTet& tet, const TetInColumn& part,
-                std::vector<DepthRow>& rows)
+                const Range& range, std::vector<DepthRow>& rows)
 {
     rows.clear();
     for (std::size_t i = 0; i < part.count; ++i) {
@@ -191,7 +196,8 @@ void fill_lines(LeafColumn& column, const IndexTet& tet, const TetInColumn& part
             bits = std::uint8_t(bits | (0xffu >> (kLeafSize - (end - begin))) << begin);
         }
     }
-    fill_depth_rows(rows.data(), rows.size(), {tet.depth.value, tet.depth.slope[2], tet.origin[2]});
+    fill_depth_rows(rows.data(), rows.size(),
+                    {tet.depth.value, tet.depth.slope[2], tet.origin[2], range.least, range.most});
 }
 
 /// One tet in one column of leaves; sorted by column, then tet.
@@ -256,6 +262,7 @@ constexpr std::size_t kTetsInPart = 256;
 struct Parts {
     std::vector<std::vector<IndexTet>> tets;
     std::vector<std::vector<Job>> jobs;
+    Range range;
 
     const IndexTet& tet_of(const Job& job) const
     {
@@ -266,7 +273,12 @@ struct Parts {
 Parts make_parts(const TetMesh& mesh, double voxel_size, const std::vector<double>& value)
 {
     const std::size_t count = (mesh.tets.size() + kTetsInPart - 1) / kTetsInPart;
-    Parts parts{std::vector<std::vector<IndexTet>>(count), std::vector<std::vector<Job>>(count)};
+    Parts parts{
+        std::vector<std::vector<IndexTet>>(count), std::vector<std::vector<Job>>(count), {}};
+    if (!value.empty()) {
+        const auto ends = std::minmax_element(value.begin(), value.end());
+        parts.range = {*ends.first, *ends.second};
+    }
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -306,7 +318,7 @@ LeafColumn fill_column(const Parts& parts, const Job* first, const Job* last)
     while (last-- != first) {
         TetInColumn part;
         find_lines(parts.tet_of(*last), column.x, column.y, part);
-        fill_lines(column, parts.tet_of(*last), part, rows);
+        fill_lines(column, parts.tet_of(*last), part, parts.range, rows);
     }
     return column;
 }

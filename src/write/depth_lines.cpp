@@ -65,13 +65,14 @@ void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEn
 }
 
 /// The sum is made in double and rounded to float once, after the clamp. The clamp is needed
-/// because voxels may lie outside of the tet by the slack, where the linear function leaves [0, 1].
+/// because voxels may lie outside of the tet by the slack, where the linear function leaves the
+/// range.
 HWY_INLINE Group<float, kDoubleLanes> depth_from(const DepthRow& row, const DepthAlongZ& depth,
                                                  double from)
 {
     const Doubles at = row.z + from - depth.origin + Doubles::load(kUpToThree);
-    return to_floats(
-        clamped(depth.value + (row.depth + depth.slope * at), Doubles(0.0), Doubles(1.0)));
+    return to_floats(clamped(depth.value + (row.depth + depth.slope * at), Doubles(depth.least),
+                             Doubles(depth.most)));
 }
 
 void fill_depth_rows(const DepthRow* rows, std::size_t count, const DepthAlongZ& depth)

@@ -43,9 +43,11 @@ struct DepthRow {
     int z, begin, end;
 };
 
-/// Depth as a function of z: value + (row's depth + slope * (z - origin)), clamped to [0, 1].
+/// Depth as a function of z: value + (row's depth + slope * (z - origin)), clamped to [least,
+/// most].
 struct DepthAlongZ {
     double value, slope, origin;
+    double least, most;
 };
 
 /// Writes the depths into the rows, in order. The voxels of a row that do not lie between begin and
