@@ -294,7 +294,8 @@ TEST(Simd, DepthsAlongLinesAreTheSameOnAllTargets)
             std::array<float, 16> values{};
             const std::array<DepthRow, 2> rows{{{values.data(), numbers.next(), -8, 3, 8},
                                                 {values.data() + 8, numbers.next(), 0, 0, 5}}};
-            fill_depth_rows(rows.data(), rows.size(), {numbers.next(), numbers.next(), 0.5, 0.0, 1.0});
+            fill_depth_rows(rows.data(), rows.size(),
+                            {numbers.next(), numbers.next(), 0.5, 0.0, 1.0});
             append(bytes, values);
         }
         return bytes;
