@@ -91,7 +91,7 @@ int main(int argc, char** argv)
     occupy_standard_streams();
     Context context{std::cout, std::cerr, LogLevel::info, MessageFormat::text, std::nullopt};
     try {
-        const std::vector<std::string> words = words_of(argc, argv);
+        const std::vector<std::string> words = words_of({argv + 1, argv + argc});
         context.format = format_in(words);
         return finished(run(words, context), context);
         // Everything that is thrown ends here, so that temporary files are removed while the stack

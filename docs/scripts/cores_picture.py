@@ -11,6 +11,8 @@ import sys
 
 import vtk
 
+from vtk_pictures import read_grid, save_png, window_of
+
 
 def actor(mapper, colour=None):
     made = vtk.vtkActor()
@@ -23,13 +25,11 @@ def actor(mapper, colour=None):
 
 
 def cut_tets(name, x):
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(name)
     plane = vtk.vtkPlane()
     plane.SetOrigin(x, 0, 0)
     plane.SetNormal(-1, 0, 0)
     clip = vtk.vtkTableBasedClipDataSet()
-    clip.SetInputConnection(reader.GetOutputPort())
+    clip.SetInputData(read_grid(name))
     clip.SetClipFunction(plane)
     surface = vtk.vtkDataSetSurfaceFilter()
     surface.SetInputConnection(clip.GetOutputPort())
@@ -77,18 +77,9 @@ def main():
     camera.SetViewUp(0, 1, 0)
     renderer.ResetCamera()
     camera.Zoom(1.5)
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(1100, 800)
+    window = window_of(1100, 800)
     window.AddRenderer(renderer)
-    window.Render()
-    grab = vtk.vtkWindowToImageFilter()
-    grab.SetInput(window)
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(picture)
-    writer.SetInputConnection(grab.GetOutputPort())
-    writer.Write()
+    save_png(window, picture)
 
 
 if __name__ == "__main__":

@@ -13,6 +13,8 @@ import tempfile
 
 import vtk
 
+from vtk_pictures import read_grid, save_png, window_of
+
 command, mesh, picture = sys.argv[1:4]
 BLUE, SAND, EDGE = (0.55, 0.70, 0.85), (0.93, 0.80, 0.62), (0.25, 0.25, 0.30)
 
@@ -20,10 +22,7 @@ BLUE, SAND, EDGE = (0.55, 0.70, 0.85), (0.93, 0.80, 0.62), (0.25, 0.25, 0.30)
 def tets_of(folder):
     path = str(pathlib.Path(folder) / "creature.vtu")
     subprocess.run([command, "build", mesh, "-q", "--resolution", "64", "--samples", "0", "-o", path], check=True)
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(path)
-    reader.Update()
-    return reader.GetOutput()
+    return read_grid(path)
 
 
 def actor_of(port, colour, edges):
@@ -68,10 +67,7 @@ def main():
     surface = vtk.vtkDataSetSurfaceFilter()
     surface.SetInputData(tets)
     half = cut_away(tets, (0.0, 0.0, 0.0), (1, 0, 0))
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(8)
-    window.SetSize(1400, 700)
+    window = window_of(1400, 700)
     for left, actor in ((0.0, actor_of(surface.GetOutputPort(), BLUE, False)), (0.5, actor_of(half.GetOutputPort(), SAND, True))):
         renderer = vtk.vtkRenderer()
         renderer.SetViewport(left, 0, left + 0.5, 1)
@@ -79,14 +75,7 @@ def main():
         renderer.AddActor(actor)
         window.AddRenderer(renderer)
         view(renderer, tets.GetBounds(), (0.9, 0.25, 0.45))
-    window.Render()
-    image = vtk.vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(picture)
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.Write()
+    save_png(window, picture)
 
 
 main()

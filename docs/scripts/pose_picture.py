@@ -14,6 +14,8 @@ import tempfile
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
+from vtk_pictures import kept_cells, read_grid, save_png, window_of
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BLUE, SAND, EDGE = (0.55, 0.70, 0.85), (0.93, 0.80, 0.62), (0.25, 0.25, 0.30)
 FRAMES, SHOWN = 100, [1, 17, 33, 50, 67, 83]
@@ -35,26 +37,10 @@ def posed(build, folder):
 
 
 def kept_tets(path):
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    grid = reader.GetOutput()
+    grid = read_grid(path)
     rest = vtk_to_numpy(grid.GetPointData().GetArray("rest"))
     corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4)
-    kept = vtk.vtkIdTypeArray()
-    for cell in (rest[corners][:, :, 0].mean(axis=1) < CUT).nonzero()[0]:
-        kept.InsertNextValue(int(cell))
-    node = vtk.vtkSelectionNode()
-    node.SetFieldType(vtk.vtkSelectionNode.CELL)
-    node.SetContentType(vtk.vtkSelectionNode.INDICES)
-    node.SetSelectionList(kept)
-    selection = vtk.vtkSelection()
-    selection.AddNode(node)
-    extract = vtk.vtkExtractSelection()
-    extract.SetInputData(0, grid)
-    extract.SetInputData(1, selection)
-    extract.Update()
-    return extract.GetOutput()
+    return kept_cells(grid, rest[corners][:, :, 0].mean(axis=1) < CUT).GetOutput()
 
 
 def actor_of(grid):
@@ -83,9 +69,7 @@ def actor_of(grid):
 
 def main():
     build, picture = pathlib.Path(sys.argv[1]), sys.argv[2]
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetSize(3 * SIZE, 2 * SIZE)
+    window = window_of(3 * SIZE, 2 * SIZE)
     with tempfile.TemporaryDirectory() as folder:
         for i, path in enumerate(posed(build, pathlib.Path(folder))):
             renderer = vtk.vtkRenderer()
@@ -100,13 +84,7 @@ def main():
             camera.SetViewAngle(34)
             renderer.ResetCameraClippingRange()
             window.AddRenderer(renderer)
-    window.Render()
-    image = vtk.vtkWindowToImageFilter()
-    image.SetInput(window)
-    writer = vtk.vtkPNGWriter()
-    writer.SetFileName(picture)
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.Write()
+    save_png(window, picture)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the commands of the tutorial and the recipes, so that a page that no longer works is found out.
 
-    run_pages.py COMMAND PROJECT_FOLDER [--pages PAGE ...] [--timeout SECONDS]
+    run_pages.py COMMAND PROJECT_FOLDER [--pages PAGE ...] [--timeout SECONDS] [--pictures]
 
 Runs each fenced block whose first line is ```sh run in docs/tutorial.md and docs/recipes/*.md, one page after another,
 each in an empty folder of its own with `samples` of the project in it and COMMAND on the PATH as vdb_shell. Blocks of a
@@ -11,6 +11,8 @@ page share their folder. A word after `run` says more about a block:
     status=7        its last command ends with this status; 0 where nothing is said
     needs=NAME      it is left out where the program NAME is missing
     module=NAME     it is left out where python3 has no module NAME
+
+With --pictures the .png files that blocks have written go where their page shows files of the same names.
 
 Ends with status 1 if a block ends with another status than it should, and prints what that block printed.
 """
@@ -65,7 +67,14 @@ def run_block(text, work, env, timeout):
     return done.returncode, done.stdout
 
 
-def run_page(page, project, command, timeout):
+def take_pictures(page, work):
+    for shown in re.findall(r"!\[[^]]*\]\(([^)]*\.png)\)", page.read_text()):
+        made = work / pathlib.Path(shown).name
+        if made.exists():
+            shutil.copy(made, page.parent / shown)
+
+
+def run_page(page, project, command, timeout, pictures):
     """Numbers of blocks that ran, were left out, and failed."""
     counts = [0, 0, 0]
     with tempfile.TemporaryDirectory(prefix="vdb_shell_page_") as name:
@@ -88,6 +97,8 @@ def run_page(page, project, command, timeout):
             if status != wanted:
                 print(f"{where}: ended with {status}, not {wanted}:\n{printed}")
                 counts[2] += 1
+        if pictures:
+            take_pictures(page, work)
     return counts
 
 
@@ -97,12 +108,13 @@ def main():
     parser.add_argument("project", type=pathlib.Path)
     parser.add_argument("--pages", nargs="+", type=pathlib.Path)
     parser.add_argument("--timeout", type=float, default=120, help="seconds for one block")
+    parser.add_argument("--pictures", action="store_true", help="keep those that the pages show")
     given = parser.parse_args()
     project, command = given.project.resolve(), given.command.resolve()
     pages = given.pages or [project / "docs" / "tutorial.md", *sorted((project / "docs" / "recipes").glob("*.md"))]
     totals = [0, 0, 0]
     for page in pages:
-        totals = [sum(pair) for pair in zip(totals, run_page(page.resolve(), project, command, given.timeout))]
+        totals = [sum(pair) for pair in zip(totals, run_page(page.resolve(), project, command, given.timeout, given.pictures))]
     print(f"{totals[0]} blocks ran, {totals[1]} were left out, {totals[2]} failed")
     return 1 if totals[2] or not totals[0] else 0
 

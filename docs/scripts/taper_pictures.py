@@ -16,10 +16,11 @@ import tempfile
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtk.util.numpy_support import numpy_to_vtk
 
 from tet_files import read_tets
 from tet_shapes import dihedral_degrees
+from vtk_pictures import kept_cells, read_grid, save_png, window_of
 
 WAYS = [[], ["--for", "fewest-tets"], ["--for", "simulation"]]
 SIZE = 520
@@ -33,11 +34,8 @@ DIRECTIONS = {"x": (1, .25, .3), "y": (.25, 1, .3), "z": (.25, .3, 1)}
 def grid_of(mesh, words, command, folder):
     path = pathlib.Path(folder) / "tets.vtu"
     subprocess.run([command, "build", mesh, "-q", "--samples", "0", *words, "-o", path], check=True)
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(path))
-    reader.Update()
     points, tets = read_tets(path)
-    grid = reader.GetOutput()
+    grid = read_grid(path)
     angles = numpy_to_vtk(dihedral_degrees(points, tets).min(1), deep=True)
     angles.SetName("angle")
     grid.GetCellData().SetScalars(angles)
@@ -47,18 +45,7 @@ def grid_of(mesh, words, command, folder):
 def one_side(grid, points, tets, axis, position):
     low, high = points[:, axis].min(), points[:, axis].max()
     kept = points[tets].mean(1)[:, axis] < low + position * (high - low)
-    chosen = numpy_to_vtk(np.flatnonzero(kept).astype(np.int64), deep=True, array_type=vtk.VTK_ID_TYPE)
-    node = vtk.vtkSelectionNode()
-    node.SetFieldType(vtk.vtkSelectionNode.CELL)
-    node.SetContentType(vtk.vtkSelectionNode.INDICES)
-    node.SetSelectionList(chosen)
-    selection = vtk.vtkSelection()
-    selection.AddNode(node)
-    extract = vtk.vtkExtractSelection()
-    extract.SetInputData(0, grid)
-    extract.SetInputData(1, selection)
-    extract.Update()
-    return extract
+    return kept_cells(grid, kept)
 
 
 def actor_of(extract):
@@ -94,10 +81,7 @@ def view(renderer, points, axis):
 
 
 def draw(mesh, axis, position, command, picture):
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetMultiSamples(8)
-    window.SetSize(SIZE * len(WAYS), SIZE)
+    window = window_of(SIZE * len(WAYS), SIZE)
     with tempfile.TemporaryDirectory() as folder:
         for i, words in enumerate(WAYS):
             grid, points, tets = grid_of(mesh, words, command, folder)
@@ -108,14 +92,7 @@ def draw(mesh, axis, position, command, picture):
             window.AddRenderer(renderer)
             view(renderer, points, axis)
             print(mesh, *words, len(tets), "tets", flush=True)
-    window.Render()
-    image = vtk.vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
-    writer = vtk.vtkPNGWriter()
-    writer.SetInputConnection(image.GetOutputPort())
-    writer.SetFileName(str(picture))
-    writer.Write()
+    save_png(window, picture)
 
 
 def main():

@@ -51,6 +51,18 @@ std::vector<openvdb::Vec3d> positions_of(const HoudiniGeometry& geometry, const 
                      " components, or is not of floats; 3 or 4 floats are needed");
 }
 
+std::vector<std::int64_t> ids_of(const HoudiniGeometry& geometry)
+{
+    const Attribute* id = find(geometry.point_attributes, "id");
+    if (!id || id->size != 1)
+        return {};
+    if (const auto* small = std::get_if<std::vector<std::int32_t>>(&id->values))
+        return {small->begin(), small->end()};
+    if (const auto* large = std::get_if<std::vector<std::int64_t>>(&id->values))
+        return *large;
+    return {};
+}
+
 /// Tetrahedra are refused and not left out: what remained would be a surface that nobody has drawn.
 void require_polygons(const HoudiniGeometry& geometry, const std::string& name)
 {
@@ -70,6 +82,7 @@ ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
     PolygonSoup soup;
     soup.format = name_of(read.format);
     soup.points = positions_of(geometry, name);
+    soup.ids = ids_of(geometry);
     soup.corners.reserve(geometry.vertex_point.size());
     // The vertices of a primitive follow those of the primitive before it; the reader has made sure
     // that their sum is right.

@@ -14,10 +14,9 @@
 #include "vdb_shell/write/shell_points.h"
 
 #include "core_columns.h"
+#include "detail_figures.h"
 #include "geometry_digest.h"
 #include "shell_names.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -28,7 +27,6 @@ namespace vdb_shell::houdini
 namespace
 {
 
-using nlohmann::json;
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
@@ -39,14 +37,6 @@ constexpr const char* kIndex = "nonarithmetic_integer";
 constexpr const char* kOrientationText =
     "polygons clockwise seen from outside; tetrahedra (a,b,c,d) with det(b-a,c-a,d-a) < 0 unless "
     "inverted";
-
-/// Only figures for people can be too large; counts of elements have been bounded by
-/// require_consistent.
-std::int32_t as_int32(std::size_t value)
-{
-    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-    return static_cast<std::int32_t>(std::min(value, kMost));
-}
 
 template <typename Get>
 Attribute integers(const char* name, std::size_t count, int size, const Get& get)
@@ -123,7 +113,7 @@ void add_point_attributes(const ShellStack& stack, const ShellPoints& points,
     const auto vertex = [&](std::size_t i) { return points.vertex[i]; };
     const auto surface = [&](std::size_t i) { return points.layer[i]; };
     const auto position = [&](std::size_t i) { return points.position[i]; };
-    const std::vector<Vec3s> at_rest = rest.posed() ? rest_by_id(points, rest) : points.position;
+    const std::vector<Vec3s> at_rest = rest.posed() ? vectors_by_id(points, rest) : points.position;
     geometry.points = count;
     geometry.point_attributes = {
         vectors("P", "point", count, position),
@@ -142,6 +132,11 @@ void add_point_attributes(const ShellStack& stack, const ShellPoints& points,
     if (on_both_sides(stack))
         geometry.point_attributes.push_back(
             stop_reasons(kOuterStop, stack.layers.front(), points.vertex));
+    if (!rest.velocity.empty()) {
+        const std::vector<Vec3s> velocity = vectors_by_id(points, rest.velocity);
+        geometry.point_attributes.push_back(
+            vectors(kVelocity, "vector", count, [&](std::size_t i) { return velocity[i]; }));
+    }
     if (has_layers(stack))
         geometry.point_attributes.push_back(
             integers(kSurface, count, 1, [&](std::size_t i, int) { return surface(i); }));
@@ -278,77 +273,25 @@ void add_primitive_groups(const ShellFile& file, const std::vector<Part>& parts,
     add(kCollapsed, [&](std::size_t i) { return i >= collapsed; });
 }
 
-void add_text(HoudiniGeometry& geometry, const char* name, const std::string& text)
-{
-    geometry.detail_attributes.push_back({name, 1, "", Strings{{text}, {0}}});
-}
-
-void add_count(HoudiniGeometry& geometry, const char* name, std::size_t count)
-{
-    geometry.detail_attributes.push_back({name, 1, "", std::vector<std::int32_t>{as_int32(count)}});
-}
-
-/// Some figures of the report under names of their own, where it has them: Houdini's expressions
-/// can use an attribute, but not a number inside of JSON. A report without them, or one that is no
-/// JSON, just gives fewer attributes.
-void add_figures(HoudiniGeometry& geometry, const std::string& report_json)
-{
-    const json report = json::parse(report_json, nullptr, /*allow_exceptions=*/false);
-    const auto figure = [&](const char* pointer) -> const json* {
-        const json::json_pointer place(pointer);
-        return !report.is_discarded() && report.contains(place) ? &report.at(place) : nullptr;
-    };
-    static constexpr std::array<std::array<const char*, 2>, 7> kReals{
-        {{"solid_volume", "/volume/solid"},
-         {"shell_volume", "/volume/shell"},
-         {"fill", "/volume/fill"},
-         {"covered_share", "/coverage/covered_share"},
-         {"overlap_share", "/coverage/overlap_share"},
-         {"min_quality", "/quality/mean_ratio/min"},
-         {"median_quality", "/quality/mean_ratio/median"}}};
-    for (const auto& [name, pointer] : kReals)
-        if (const json* value = figure(pointer); value && value->is_number())
-            geometry.detail_attributes.push_back(
-                {name, 1, "", std::vector<double>{value->get<double>()}});
-    static constexpr std::array<std::array<const char*, 2>, 3> kCounts{
-        {{"pinned_vertices", "/prisms/pinned_vertices"},
-         {"inverted_tets", "/tets/inverted"},
-         {"certified", "/certificate/certified"}}};
-    for (const auto& [name, pointer] : kCounts) {
-        const json* value = figure(pointer);
-        if (value && value->is_boolean())
-            add_count(geometry, name, value->get<bool>() ? 1 : 0);
-        else if (value && value->is_number_unsigned())
-            add_count(geometry, name, value->get<std::size_t>());
-    }
-}
-
 void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 {
     // The reader bounds its memory by these counts, and compares them with the primitives.
-    const ShellCounts counts = counts_of(file.stack, file.tets);
-    std::size_t ripples = 0;
-    for (const PrismSplit& split : file.stack.splits)
-        ripples += split.ripples;
-    const bool posed = file.rest.posed(), tapered = file.stack.tapered;
-    const bool layers = posed || tapered || has_layers(file.stack);
-    add_count(geometry, kSchema,
-              posed     ? kPosedSchema
-              : tapered ? kTaperedSchema
-              : layers  ? kLayeredSchema
-                        : 1);
+    ShellCounts counts = counts_of(file.stack, file.tets);
+    counts.posed = file.rest.posed();
+    const int schema = schema_for(counts);
+    add_count(geometry, kSchema, static_cast<std::size_t>(schema));
     add_count(geometry, kVertices, static_cast<std::size_t>(counts.vertices));
     add_count(geometry, kPrisms, static_cast<std::size_t>(counts.prisms));
     add_count(geometry, kTets, file.tets.tets.size());
-    if (layers) {
+    if (schema >= kLayeredSchema) {
         add_count(geometry, kLayers, file.stack.layers.size());
         add_count(geometry, kSkin, file.stack.skin);
     }
-    if (tapered || posed)
-        add_count(geometry, kTapered, tapered ? 1 : 0);
-    if (posed)
+    if (schema >= kTaperedSchema)
+        add_count(geometry, kTapered, counts.tapered ? 1 : 0);
+    if (counts.posed)
         add_count(geometry, kPosed, 1);
-    add_count(geometry, kRipples, ripples);
+    add_count(geometry, kRipples, ripples_of(file.stack));
     if (file.placement.moves()) {
         const Vec3d& o = file.placement.origin;
         geometry.detail_attributes.push_back(

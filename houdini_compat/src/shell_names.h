@@ -18,6 +18,7 @@ inline constexpr const char* kSkin = "vdb_shell_skin";
 inline constexpr const char* kTapered = "vdb_shell_tapered";
 inline constexpr const char* kPosed = "vdb_shell_posed";
 inline constexpr const char* kRest = "rest";
+inline constexpr const char* kVelocity = "v";
 inline constexpr const char* kRipples = "vdb_shell_ripples";
 inline constexpr const char* kOrigin = "vdb_shell_origin";
 inline constexpr const char* kUnit = "vdb_shell_unit";

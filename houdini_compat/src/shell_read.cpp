@@ -285,7 +285,11 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
         refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
                          detail.text(kChecksum));
     if (counts.posed)
-        file.rest.surface = rest_by_surface(number_points(file.stack, {}), points.vectors(kRest));
+        file.rest.surface =
+            vectors_by_surface(number_points(file.stack, {}), points.vectors(kRest));
+    if (counts.posed && find(geometry.point_attributes, kVelocity))
+        file.rest.velocity.surface =
+            vectors_by_surface(number_points(file.stack, {}), points.vectors(kVelocity));
     file.core_feet = read_core_attributes(geometry, points, file.stack, name);
     // After the others, whose messages say more.
     file.digests = require_digests(geometry, name);

@@ -11,12 +11,6 @@
 namespace vdb_shell
 {
 
-const NameTable<UpAxis>& names(UpAxis)
-{
-    static const NameTable<UpAxis> table{{"y", UpAxis::y}, {"z", UpAxis::z}};
-    return table;
-}
-
 OptionList describe(UsdOptions& o)
 {
     return in_group("Output", {option("up_axis", o.up_axis, "--up-axis", "What a .usda says is up")

@@ -149,16 +149,27 @@ struct PosedShell {
     ShellStack stack;
     CoreTets core;
     TetMesh tets;
+    PointVectors velocity; ///< for posed_file; empty unless the caller sets it
     /// Only surface, tets, proofs, pose and costs are filled in.
     ShellReport report;
 };
 
 /// The shell at rest on its surface in another pose (pose_shell), certified and measured. `name` is
-/// what messages call the pose. Throws what pose_shell throws. Same result for any number of
-/// threads.
+/// what messages call the pose. Throws what pose_shell throws, and GeometryError where the pose
+/// puts two points into one place, so that the tets would not be those at rest. Same result for any
+/// number of threads.
 PosedShell build_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>& skin,
                        const PoseOptions& options, const std::string& name = "pose",
                        Interrupter* interrupter = nullptr);
+
+/// The same of what pose_shell has made for `skin`.
+PosedShell finish_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>& skin,
+                        PoseResult pose, const std::string& name = "pose",
+                        Interrupter* interrupter = nullptr);
+
+/// Of the points of one shell in two poses, `seconds` apart: world units a second. Precondition:
+/// poses of the same shell.
+PointVectors point_velocities(const PoseResult& before, const PoseResult& after, double seconds);
 
 /// All that the .vdb of a posed shell holds; `rest` is that of the shell at rest. Without
 /// `with_volumes` the grids are null; else they have rest.surface's voxel size, which it must have

@@ -229,8 +229,11 @@ bool is_there(BoundOptions& bound, const std::string& needed)
         // It may also come from the file, which shows only in the value: it is no longer the
         // default.
         return was_given(*other) || !(other->option.get() == other->default_value);
-    if (!other->option.repeated)
-        return one_of_them(text_of(other->option.get()));
+    // The value itself, or the extension of a file.
+    if (!other->option.repeated) {
+        const std::string text = text_of(other->option.get());
+        return one_of_them(text) || one_of_them(lower_case_extension(text));
+    }
     const std::vector<std::string> files = other->given->results();
     return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
         return one_of_them(lower_case_extension(file));

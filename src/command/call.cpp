@@ -7,14 +7,20 @@
 #include "command/call.h"
 
 #include "command/build_command.h"
+#include "command/compare_command.h"
 #include "command/doctor_command.h"
+#include "command/estimate_command.h"
 #include "command/exit_code.h"
+#include "command/farm_command.h"
 #include "command/file_commands.h"
 #include "command/help.h"
 #include "command/inspect_command.h"
+#include "command/join_command.h"
 #include "command/options_command.h"
+#include "command/page_command.h"
 #include "command/pose_command.h"
 #include "command/repair_command.h"
+#include "command/usd_command.h"
 
 #include <CLI/CLI.hpp>
 
@@ -34,7 +40,13 @@ struct Arguments {
     InspectArguments inspect;
     RepairArguments repair;
     PoseArguments pose;
+    PageArguments page;
+    UsdArguments usd;
     FileArguments info, convert, check;
+    CompareArguments compare;
+    EstimateArguments estimate;
+    FarmArguments farm;
+    JoinArguments join;
     DoctorArguments doctor;
     OptionsArguments options;
 };
@@ -45,6 +57,7 @@ struct Subcommand {
     BoundOptions bound;
     std::function<FilePlan()> plan;
     std::function<int(Context&)> run;
+    bool gathers_frames = false;
 };
 
 OptionSections describe(GlobalArguments& a)
@@ -111,9 +124,27 @@ struct Call::Parts {
     }
 
     void add_commands();
+    void add_farm_commands();
     std::vector<CommandEntry> entries() const;
     Subcommand& given();
 };
+
+/// What many builds need, beside builds.
+void Call::Parts::add_farm_commands()
+{
+    add(
+        "estimate", "Say what a build would cost: seconds, memory, bytes of files",
+        add_estimate_command, a.estimate, [this] { return plan_estimate(a.estimate); },
+        [this](Context& context) { return run_estimate(a.estimate, context); });
+    add(
+        "farm", "Write the job of a sequence, or of many assets, for the engine of a farm",
+        add_farm_command, a.farm, [this] { return plan_farm(a.farm); },
+        [this](Context& context) { return run_farm(a.farm, context); });
+    add(
+        "join", "Join the manifests of a farm's tasks, and say what is missing", add_join_command,
+        a.join, [this] { return plan_join(a.join); },
+        [this](Context& context) { return run_join(a.join, context); });
+}
 
 /// The actions refer to fields of this struct, which outlive them.
 void Call::Parts::add_commands()
@@ -135,8 +166,18 @@ void Call::Parts::add_commands()
         [this] { return plan_pose(a.pose); },
         [this](Context& context) { return run_pose(a.pose, context); });
     add(
+        "page", "Write a page that shows a shell, or its frames, in a browser", add_page_command,
+        a.page, [this] { return plan_page(a.page); },
+        [this](Context& context) { return run_page(a.page, context); });
+    commands.back().gathers_frames = true;
+    add(
+        "usd", "Write one USD stage of a shell's frames", add_usd_command, a.usd,
+        [this] { return plan_usd(a.usd); },
+        [this](Context& context) { return run_usd(a.usd, context); });
+    commands.back().gathers_frames = true;
+    add(
         "info", "Print what a shell's file holds", add_info_command, a.info,
-        [this] { return plan_file(a.info); },
+        [this] { return plan_reading(a.info.file); },
         [this](Context& context) { return run_info(a.info, context); });
     add(
         "convert", "Write other formats from a shell's file", add_convert_command, a.convert,
@@ -144,11 +185,16 @@ void Call::Parts::add_commands()
         [this](Context&) { return run_convert(a.convert); });
     add(
         "check", "Verify that a shell's file is what it claims", add_check_command, a.check,
-        [this] { return plan_file(a.check); },
+        [this] { return plan_reading(a.check.file); },
         [this](Context& context) { return run_check(a.check, context); });
     add(
+        "compare", "Say how two shells differ, and draw them side by side", add_compare_command,
+        a.compare, [this] { return plan_compare(a.compare); },
+        [this](Context& context) { return run_compare(a.compare, context); });
+    add_farm_commands();
+    add(
         "doctor", "Say what is installed, and what a file needs", add_doctor_command, a.doctor,
-        [this] { return plan_doctor(a.doctor); },
+        [this] { return plan_reading(a.doctor.file); },
         [this](Context& context) { return run_doctor(a.doctor, context); });
     add(
         "options", "List the options, for people, programs and shells", add_options_command,
@@ -173,7 +219,7 @@ Subcommand& Call::Parts::given()
     throw std::logic_error("the parser wants a command");
 }
 
-std::vector<std::string> words_of(int argc, char** argv)
+std::vector<std::string> words_of(const std::vector<std::string>& given)
 {
     std::vector<std::string> words;
     const auto style = [](const std::string& word) {
@@ -181,9 +227,9 @@ std::vector<std::string> words_of(int argc, char** argv)
         return std::any_of(table.begin(), table.end(),
                            [&](const auto& entry) { return entry.first == word; });
     };
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        const std::string next = i + 1 < argc ? argv[i + 1] : "";
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        const std::string& word = given[i];
+        const std::string next = i + 1 < given.size() ? given[i + 1] : "";
         if (word == "--frames" && !next.empty()) {
             words.push_back(word);
             words.back().append("=").append(next);
@@ -237,6 +283,11 @@ std::string Call::name() const
     return parts_->given().app->get_name();
 }
 
+bool Call::gathers_frames() const
+{
+    return parts_->given().gathers_frames;
+}
+
 std::string Call::options_text() const
 {
     const Subcommand& command = parts_->given();
@@ -258,6 +309,21 @@ std::string Call::options_text() const
         text += (option.kind == OptionKind::text ? name_alone(value) : value) + '\n';
     }
     return text;
+}
+
+std::string Call::value_of(const std::string& flag) const
+{
+    for (const BoundOption& bound : parts_->given().bound.options)
+        if (bound.option.flag == flag) {
+            const OptionValue value = bound.option.get();
+            return std::holds_alternative<std::monostate>(value) ? "" : text_of(value);
+        }
+    return "";
+}
+
+const BuildArguments& Call::build_arguments() const
+{
+    return parts_->a.build;
 }
 
 FilePlan Call::plan()

@@ -18,6 +18,8 @@ class ParseError;
 namespace vdb_shell::command
 {
 
+struct BuildArguments;
+
 /// What can be said beside any command.
 struct GlobalArguments {
     int threads = 0;
@@ -35,7 +37,7 @@ struct GlobalArguments {
 /// The words of a command line, without the program's name, as the parser wants them: joined to its
 /// flag is a value that begins with a minus (--frames -3-10), and one that may be left out
 /// (--progress json).
-std::vector<std::string> words_of(int argc, char** argv);
+std::vector<std::string> words_of(const std::vector<std::string>& given);
 
 /// One command with its options, from its words; each frame of a sequence has its own.
 class Call
@@ -54,11 +56,17 @@ public:
     const GlobalArguments& global() const;
     /// The command's.
     std::string name() const;
+    /// Whether the command takes all frames in one run.
+    bool gathers_frames() const;
     /// Sets the command's options, and refuses all that can be refused before anything is read.
     FilePlan plan();
     /// After plan(): the command and all that it was told, with names of files but without their
     /// folders. Equal texts and equal inputs give equal outputs.
     std::string options_text() const;
+    /// After plan(): the value of the command's option with that flag; empty where it is unset.
+    std::string value_of(const std::string& flag) const;
+    /// After plan() of a call of `build`.
+    const BuildArguments& build_arguments() const;
     /// After plan().
     int run(Context& context);
 

@@ -9,12 +9,14 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace vdb_shell::command
 {
 
 class StepProgress;
 struct PreparedShell;
+class PoseCache;
 
 /// How much is said on standard error; each level says all of those before it.
 enum class LogLevel { error, warning, info };
@@ -30,6 +32,8 @@ struct Sequence {
     std::optional<double> voxel_size;
     /// The shell that frames of `pose` have in common; under the mutex.
     std::shared_ptr<const PreparedShell> prepared;
+    /// What frames of `pose` have in common with their neighbours; under the mutex.
+    std::shared_ptr<PoseCache> poses;
     std::mutex mutex;
 };
 
@@ -41,6 +45,7 @@ struct Context {
     LogLevel level = LogLevel::info;
     MessageFormat format = MessageFormat::text;
     std::optional<int> frame;         ///< that is worked on; begins what is said
+    std::vector<int> gathered{};      ///< the frames whose files one run was given together
     StepProgress* progress = nullptr; ///< null: not wanted
     Sequence* sequence = nullptr;     ///< null for a call without frames
 

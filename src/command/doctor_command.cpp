@@ -145,13 +145,6 @@ BoundOptions add_doctor_command(CLI::App& app, DoctorArguments& arguments)
     return {};
 }
 
-FilePlan plan_doctor(const DoctorArguments& arguments)
-{
-    FilePlan plan(Existing::replaced);
-    plan.add_input(arguments.file);
-    return plan;
-}
-
 int run_doctor(const DoctorArguments& arguments, Context& context)
 {
     print_machine(context.out);

@@ -16,8 +16,6 @@ struct DoctorArguments {
 
 BoundOptions add_doctor_command(CLI::App& app, DoctorArguments& arguments);
 
-FilePlan plan_doctor(const DoctorArguments& arguments);
-
 /// Prints what is installed, and what the file needs; read_error where no command can read it.
 int run_doctor(const DoctorArguments& arguments, Context& context);
 

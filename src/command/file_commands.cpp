@@ -96,13 +96,6 @@ BoundOptions add_check_command(CLI::App& app, FileArguments& arguments)
     return {};
 }
 
-FilePlan plan_file(const FileArguments& arguments)
-{
-    FilePlan plan(Existing::replaced);
-    plan.add_input(arguments.file);
-    return plan;
-}
-
 int run_info(const FileArguments& arguments, Context& context)
 {
     const ShellFile file = read_shell(arguments.file);

@@ -30,8 +30,6 @@ BoundOptions add_check_command(CLI::App& app, FileArguments& arguments);
 /// A .vdb or Houdini geometry; the grids are null when the file has none.
 ShellFile read_shell(const std::filesystem::path& path);
 
-/// Of info and check, which only read.
-FilePlan plan_file(const FileArguments& arguments);
 FilePlan plan_convert(const FileArguments& arguments);
 
 int run_info(const FileArguments& arguments, Context& context);

@@ -133,4 +133,11 @@ Existing existing_files(bool keep)
     return keep ? Existing::kept : Existing::replaced;
 }
 
+FilePlan plan_reading(const std::filesystem::path& file)
+{
+    FilePlan plan(Existing::replaced);
+    plan.add_input(file);
+    return plan;
+}
+
 } // namespace vdb_shell::command

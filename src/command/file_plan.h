@@ -57,6 +57,9 @@ private:
     bool standard_input_ = false;
 };
 
+/// Of a command that only reads.
+FilePlan plan_reading(const std::filesystem::path& file);
+
 /// "-", standard input in the place of a file.
 bool is_standard_input(const std::filesystem::path& path);
 

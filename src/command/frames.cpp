@@ -37,7 +37,7 @@ bool is_digit(char c)
 class RangeReader
 {
 public:
-    explicit RangeReader(const std::string& text) : text_(text) {}
+    RangeReader(const std::string& text, const std::string& flag) : text_(text), flag_(flag) {}
 
     FrameList read()
     {
@@ -56,7 +56,7 @@ private:
                                       ? "at character " + std::to_string(place_ + 1) + ", \"" +
                                             text_.substr(place_) + "\", "
                                       : "at its end ";
-        throw InvalidOption("--frames is \"" + text_ + "\": " + where + why);
+        throw InvalidOption(flag_ + " is \"" + text_ + "\": " + where + why);
     }
 
     void pass_blanks()
@@ -127,6 +127,7 @@ private:
     }
 
     const std::string& text_;
+    const std::string& flag_;
     std::size_t place_ = 0;
     FrameList list_;
     std::unordered_set<int> known_;
@@ -210,9 +211,9 @@ std::string padded(int frame, int width)
 
 } // namespace
 
-FrameList parse_frames(const std::string& text)
+FrameList parse_frames(const std::string& text, const std::string& flag)
 {
-    return RangeReader(text).read();
+    return RangeReader(text, flag).read();
 }
 
 std::string frames_text(const std::vector<int>& frames)

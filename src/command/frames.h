@@ -17,7 +17,7 @@ struct FrameList {
 
 /// "1-100", "1-100x2" or "1-100:2" (every second), "10-1", "10-1x-3", "5,8,-3--1". Throws
 /// InvalidOption with the place in the text for anything else, and for more than a million frames.
-FrameList parse_frames(const std::string& text);
+FrameList parse_frames(const std::string& text, const std::string& flag = "--frames");
 
 /// The same the other way round, as short as it goes: "1-9x2,20".
 std::string frames_text(const std::vector<int>& frames);

@@ -102,6 +102,28 @@ ManifestEntry entry_of(const ordered_json& json)
     return entry;
 }
 
+ordered_json parsed(const fs::path& file)
+{
+    std::ifstream in(file, std::ios::binary);
+    if (!in)
+        throw ReadError(file.string() + ": cannot be read");
+    ordered_json json = ordered_json::parse(in);
+    if (json.at("schema").get<int>() != kSchema)
+        throw ReadError(file.string() + ": schema is " + json.at("schema").dump() + ", must be " +
+                        std::to_string(kSchema));
+    return json;
+}
+
+/// What the parser throws says nothing of the file.
+template <typename Body> auto with_file(const fs::path& file, const Body& body)
+{
+    try {
+        return body();
+    } catch (const ordered_json::exception& error) {
+        throw ReadError(file.string() + ": is no manifest of vdb_shell: " + error.what());
+    }
+}
+
 } // namespace
 
 bool FileMark::operator==(const FileMark& other) const
@@ -130,28 +152,27 @@ Manifest::Manifest(fs::path file, std::string command)
 {
 }
 
+std::string Manifest::command_in(const fs::path& file)
+{
+    return with_file(file, [&] { return parsed(file).at("command").get<std::string>(); });
+}
+
 Manifest::Entries Manifest::read() const
 {
-    Entries entries;
-    std::ifstream in(file_, std::ios::binary);
-    if (!in && !fs::exists(file_))
-        return entries;
-    try {
-        const ordered_json json = ordered_json::parse(in);
-        if (json.at("schema").get<int>() != kSchema)
-            throw ReadError(file_.string() + ": schema is " + json.at("schema").dump() +
-                            ", must be " + std::to_string(kSchema));
+    if (!fs::exists(file_))
+        return {};
+    return with_file(file_, [&] {
+        const ordered_json json = parsed(file_);
         if (json.at("command").get<std::string>() != command_)
             throw ReadError(file_.string() + ": is the manifest of `" +
                             json.at("command").get<std::string>() + "`, not of `" + command_ + "`");
+        Entries entries;
         for (const ordered_json& step : json.at("steps")) {
             ManifestEntry entry = entry_of(step);
             entries[entry.frame] = std::move(entry);
         }
-    } catch (const ordered_json::exception& error) {
-        throw ReadError(file_.string() + ": is no manifest of vdb_shell: " + error.what());
-    }
-    return entries;
+        return entries;
+    });
 }
 
 std::optional<ManifestEntry> Manifest::find(std::optional<int> frame) const
@@ -199,6 +220,35 @@ void Manifest::put(const ManifestEntry& entry)
     entries_ = read();
     entries_[entry.frame] = entry;
     write();
+}
+
+fs::path Manifest::place_of(const FileMark& output) const
+{
+    return folder_of(file_) / output.path;
+}
+
+void Manifest::put_all_of(const std::deque<Manifest>& others)
+{
+    const std::lock_guard lock(mutex_);
+    const FolderLock turn(folder_of(file_));
+    entries_ = read();
+    for (const Manifest& other : others)
+        for (const auto& [frame, entry] : other.entries_) {
+            ManifestEntry& own = entries_[frame] = entry;
+            for (FileMark& output : own.outputs)
+                output.path = relative(other.place_of(output));
+        }
+    write();
+}
+
+std::string Manifest::lost_output(const ManifestEntry& entry) const
+{
+    for (const FileMark& output : entry.outputs) {
+        std::error_code gone;
+        if (fs::file_size(place_of(output), gone) != output.bytes || gone)
+            return place_of(output).lexically_normal().string();
+    }
+    return "";
 }
 
 void Manifest::write() const

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -40,6 +41,8 @@ class Manifest
 public:
     /// Throws ReadError for a file that is no manifest, or that of another command.
     Manifest(std::filesystem::path file, std::string command);
+    /// The command whose manifest the file is. Throws ReadError.
+    static std::string command_in(const std::filesystem::path& file);
 
     /// Null where nothing is known of it. From any thread.
     std::optional<ManifestEntry> find(std::optional<int> frame) const;
@@ -50,11 +53,19 @@ public:
     /// Notes the step and writes the file. Throws WriteError. From any thread.
     void put(const ManifestEntry& entry);
 
+    /// Notes all steps of the others, which are manifests of the same command; where several know
+    /// of a step, the last one holds. Writes the file once.
+    void put_all_of(const std::deque<Manifest>& others);
+    /// The first of the entry's outputs that is gone, or has another size; empty: none. What is in
+    /// it is not read.
+    std::string lost_output(const ManifestEntry& entry) const;
+
 private:
     using Entries = std::map<std::optional<int>, ManifestEntry>;
     Entries read() const;
     void write() const;
     std::string relative(const std::filesystem::path& file) const;
+    std::filesystem::path place_of(const FileMark& output) const;
 
     const std::filesystem::path file_;
     const std::string command_;

@@ -14,6 +14,7 @@
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/shell/shared_points.h"
+#include "vdb_shell/write/html_page.h"
 #include "vdb_shell/write/tet_file.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-enum class Kind { vdb, houdini, tets, surface, picture, usd, unknown };
+enum class Kind { vdb, houdini, tets, surface, picture, page, usd, unknown };
 
 Kind kind_of(const fs::path& path)
 {
@@ -38,6 +39,8 @@ Kind kind_of(const fs::path& path)
         return Kind::houdini;
     if (extension == ".png")
         return Kind::picture;
+    if (extension == ".html")
+        return Kind::page;
     if (extension == ".usda")
         return Kind::usd;
     const std::vector<std::string>& tets = tet_file_extensions();
@@ -107,8 +110,9 @@ OptionSections describe(Outputs& o)
                "File to write; give it once for each file wanted. By extension: .vdb (everything), "
                ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .usda (surface, tets, and "
                "the volumes of the .vdb written with it), .vtu .node .ele .mesh .msh (tets), .obj "
-               ".ply .off .stl (inner surface; the outer one of an outward shell), .png (picture "
-               "of a cross-section)")
+               ".ply .off .stl (inner surface; the outer one of an outward shell), .png (picture: "
+               "a section, or the surface whole or cut open), .html (a page to turn "
+               "and cut it in a browser)")
             .with_names({"-o"});
     return {{"", in_group("Output", {output, no_clobber_option(o.no_clobber)})},
             {"vdb", describe(o.vdb)},
@@ -123,7 +127,8 @@ void add_outputs(FilePlan& plan, const Outputs& outputs)
             throw InvalidOption(path.string() + ": unknown extension \"" +
                                 path.extension().string() +
                                 "\"; known are .vdb .geo .bgeo .bgeo.sc .usda .vtu .node .ele "
-                                ".mesh .msh .obj .ply .off .stl .png");
+                                ".mesh .msh .obj .ply .off .stl .png .html");
+    require_sensible(outputs.picture);
     const fs::path volume = first_vdb(outputs);
     for (const fs::path& path : outputs.paths)
         if (kind_of(path) == Kind::usd && !volume.empty())
@@ -173,19 +178,22 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
         case Kind::tets:
             write_tets(path, solid.tets, solid.certified, file.placement,
                        {feet_of_tet_points(file.stack, solid.tets, file.core_feet),
-                        file.rest.posed() ? rest_of_tet_points(file.tets, file.rest)
-                                          : std::vector<openvdb::Vec3s>{}},
+                        vectors_of_tet_points(file.tets, file.rest),
+                        vectors_of_tet_points(file.tets, file.rest.velocity)},
                        &files);
             break;
         case Kind::surface:
             write_mesh(path, grown_surface(file.stack), file.placement, &files);
             break;
-        // The picture shows the outermost and the innermost surface; surfaces between layers show
-        // by the edges of the tets.
         case Kind::picture:
-            write_cross_section(path, hull_of(file.stack), joined_tets(file.tets, file.core),
-                                outputs.picture, &files);
+            write_picture(path, file, outputs.picture, &files);
             break;
+        case Kind::page: {
+            HtmlPage page;
+            page.add(path.stem().string(), file);
+            page.write(path, &files);
+            break;
+        }
         case Kind::usd:
             write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd, &files);
             break;

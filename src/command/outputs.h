@@ -3,7 +3,7 @@
 
 #include "vdb_shell/houdini/usd_file.h"
 #include "vdb_shell/options/section.h"
-#include "vdb_shell/write/cross_section.h"
+#include "vdb_shell/write/picture.h"
 #include "vdb_shell/write/vdb_file.h"
 
 #include "command/file_plan.h"
@@ -19,7 +19,7 @@ namespace vdb_shell::command
 struct Outputs {
     std::vector<std::filesystem::path> paths;
     VdbWriteOptions vdb;
-    CrossSectionOptions picture;
+    PictureOptions picture;
     UsdOptions usd;
     bool no_clobber = false;
 };

@@ -10,10 +10,11 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/pipeline.h"
-#include "vdb_shell/pose/bind_surface.h"
 
 #include "command/exit_code.h"
 #include "command/file_commands.h"
+#include "command/pose_motion.h"
+#include "command/posed_surface.h"
 #include "command/signals.h"
 #include "report/stage_clock.h"
 
@@ -39,7 +40,6 @@ struct PreparedShell {
 namespace
 {
 
-using openvdb::Vec3d;
 using openvdb::Vec3s;
 
 OptionSections describe(PoseArguments& a)
@@ -53,78 +53,20 @@ OptionSections describe(PoseArguments& a)
                "Write all figures as JSON; - is standard output, in place of the text"),
         option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"})};
     sections.push_back({"", in_group("Output", figures)});
-    sections.push_back(
-        {"", in_group("Pose", {option("", a.rest_mesh, "--rest-mesh",
-                                      "The surface at rest, where the posed one has other "
-                                      "triangles than the shell's: vertices go with the nearest "
-                                      "triangle")})});
+    const OptionList meshes{
+        option("", a.rest_mesh, "--rest-mesh",
+               "The surface at rest, where the posed one has other triangles than the shell's: "
+               "vertices go with the nearest triangle"),
+        option("", a.before, "--mesh-before",
+               "The surface one frame before, for velocities; its tokens have that frame's number. "
+               "Left out where there is no such file"),
+        option("", a.after, "--mesh-after", "The surface one frame after, the same"),
+        option("", a.frame_seconds, "--frame-seconds", "From one frame to the next")
+            .within(above(0))
+            .needing("--mesh-before or --mesh-after")};
+    sections.push_back({"", in_group("Pose", meshes)});
     sections.push_back({"pose", vdb_shell::describe(a.pose)});
     return sections;
-}
-
-/// The mesh in the frame of the shell's.
-TriangleMesh read_placed(const std::filesystem::path& path, InputFormat format,
-                         const Placement& placement, bool weld)
-{
-    ReadOptions options;
-    options.weld = weld;
-    // Where the shell keeps digits of its own, so must the pose.
-    options.recentre = placement.moves();
-    ReadResult read = read_surface(path, options, format);
-    const Placement& own = read.report.placement;
-    if (own.moves() || placement.moves())
-        for (Vec3s& p : read.mesh.points)
-            p = Vec3s((own.in_file(p) - placement.origin) / placement.unit);
-    return std::move(read.mesh);
-}
-
-/// The triangles and the number of vertices that a mesh has to have, and whose they are.
-struct Wanted {
-    std::size_t vertices;
-    const std::vector<openvdb::Vec3I>& triangles;
-    std::string whose;
-};
-
-/// Equal vertices of the file are merged or not, whichever gives the triangles that are wanted: in
-/// a pose other vertices can be equal than at rest. Standard input can be read only once.
-TriangleMesh read_matching(const PoseArguments& arguments, const Placement& placement,
-                           const Wanted& wanted)
-{
-    const auto fits = [&](const TriangleMesh& mesh) {
-        return mesh.points.size() == wanted.vertices && mesh.triangles == wanted.triangles;
-    };
-    const std::filesystem::path& path = arguments.mesh;
-    TriangleMesh mesh = read_placed(path, arguments.format, placement, true);
-    if (fits(mesh))
-        return mesh;
-    if (arguments.format == InputFormat::by_extension) {
-        TriangleMesh apart = read_placed(path, arguments.format, placement, false);
-        if (fits(apart))
-            return apart;
-    }
-    throw InvalidOption(path.string() + ": it has " + std::to_string(mesh.points.size()) +
-                        " vertices and " + std::to_string(mesh.triangles.size()) +
-                        " triangles that are not those of " + wanted.whose + ", which has " +
-                        std::to_string(wanted.vertices) + " and " +
-                        std::to_string(wanted.triangles.size()) +
-                        "; --rest-mesh gives the same surface at rest where the shell's was "
-                        "repaired, wrapped or remeshed");
-}
-
-std::vector<Vec3s> posed_skin(const PoseArguments& arguments, const ShellStack& at_rest,
-                              const Placement& placement)
-{
-    const std::vector<Vec3s>& skin = at_rest.surface(at_rest.skin);
-    if (arguments.rest_mesh.empty())
-        return read_matching(
-                   arguments, placement,
-                   {skin.size(), at_rest.triangles(), "the surface of " + arguments.shell.string()})
-            .points;
-    const TriangleMesh rest =
-        read_placed(arguments.rest_mesh, InputFormat::by_extension, placement, true);
-    const TriangleMesh posed = read_matching(
-        arguments, placement, {rest.points.size(), rest.triangles, arguments.rest_mesh.string()});
-    return move_bound(bind_surface(skin, rest), posed);
 }
 
 /// Frames of a call that pose the same shell read it once.
@@ -143,6 +85,59 @@ std::shared_ptr<const PreparedShell> prepare(const std::filesystem::path& path, 
     if (!known || known->path != path)
         known = make();
     return known;
+}
+
+/// The first frame of a shot has none before it, the last one none after it.
+std::vector<std::filesystem::path> neighbours_of(const PoseArguments& arguments)
+{
+    std::vector<std::filesystem::path> there;
+    for (const std::filesystem::path& path : {arguments.before, arguments.after})
+        if (!path.empty() && std::filesystem::exists(path))
+            there.push_back(path);
+    return there;
+}
+
+/// Frames of a call share what they pose; each pose is the same whoever makes it.
+std::shared_ptr<PoseCache> cache_of(Context& context)
+{
+    if (!context.sequence)
+        return std::make_shared<PoseCache>();
+    const std::lock_guard<std::mutex> lock(context.sequence->mutex);
+    if (!context.sequence->poses)
+        context.sequence->poses = std::make_shared<PoseCache>();
+    return context.sequence->poses;
+}
+
+/// With velocities where a neighbour is there.
+PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prepared,
+                       Context& context, Interrupter* interrupter)
+{
+    const auto skin_of = [&](const std::filesystem::path& mesh) {
+        return read_posed_skin({mesh, arguments.format, arguments.rest_mesh}, prepared.rest.stack(),
+                               prepared.file.placement, arguments.shell);
+    };
+    const std::vector<Vec3s> skin = skin_of(arguments.mesh);
+    const std::string name = arguments.mesh.filename().string();
+    if (neighbours_of(arguments).empty())
+        return build_posed(prepared.rest, skin, arguments.pose, name, interrupter);
+    const std::shared_ptr<PoseCache> cache = cache_of(context);
+    const auto pose_of = [&](const std::filesystem::path& mesh) {
+        return cache->get(mesh, [&] {
+            return pose_shell(prepared.rest, mesh == arguments.mesh ? skin : skin_of(mesh),
+                              arguments.pose, interrupter);
+        });
+    };
+    const PoseCache::Pose own = pose_of(arguments.mesh);
+    int frames = 0;
+    const auto neighbour = [&](const std::filesystem::path& mesh) {
+        const bool there = !mesh.empty() && std::filesystem::exists(mesh);
+        frames += there;
+        return there ? pose_of(mesh) : own;
+    };
+    const PoseCache::Pose before = neighbour(arguments.before), after = neighbour(arguments.after);
+    PosedShell posed = finish_posed(prepared.rest, skin, *own, name, interrupter);
+    posed.velocity = point_velocities(*before, *after, frames * arguments.frame_seconds);
+    return posed;
 }
 
 std::vector<std::uint8_t> certified_flags(const PosedShell& posed)
@@ -191,6 +186,8 @@ FilePlan plan_pose(const PoseArguments& arguments)
     plan.add_input(arguments.shell);
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.rest_mesh);
+    for (const std::filesystem::path& neighbour : neighbours_of(arguments))
+        plan.add_input(neighbour);
     plan.add_input(arguments.preset);
     add_outputs(plan, arguments.outputs);
     if (!arguments.report.empty() && !is_standard_output(arguments.report))
@@ -210,9 +207,7 @@ int run_pose(const PoseArguments& arguments, Context& context)
     if (wants_vdb(arguments.outputs) && !rest.surface)
         throw InvalidOption(arguments.shell.string() +
                             ": it has no level set, whose voxels a .vdb would have; pose the .vdb");
-    PosedShell posed =
-        build_posed(prepared->rest, posed_skin(arguments, prepared->rest.stack(), rest.placement),
-                    arguments.pose, arguments.mesh.filename().string(), &interrupter);
+    PosedShell posed = posed_shell(arguments, *prepared, context, &interrupter);
     const std::vector<std::uint8_t> certified = certified_flags(posed);
     ShellReport report = posed.report;
     OutputSet files(existing_files(arguments.outputs.no_clobber));

@@ -17,7 +17,9 @@ namespace vdb_shell::command
 
 struct PoseArguments {
     std::filesystem::path shell, mesh;
-    std::filesystem::path rest_mesh; ///< empty: `mesh` has the triangles of the shell's surface
+    std::filesystem::path rest_mesh;     ///< empty: `mesh` has the triangles of the shell's surface
+    std::filesystem::path before, after; ///< meshes of the neighbouring frames; may not be there
+    double frame_seconds = 1.0 / 24;     ///< from one frame to the next
     InputFormat format = InputFormat::by_extension; ///< of `mesh`
     std::filesystem::path preset, report;
     PoseOptions pose;

@@ -214,6 +214,7 @@ private:
         Result& result = results_[i];
         const auto start = std::chrono::steady_clock::now();
         context.frame = step.frame;
+        context.gathered = step.gathered;
         context.sequence = step.frame ? &sequence_ : nullptr;
         std::optional<StepProgress> progress;
         if (progress_)
@@ -330,7 +331,7 @@ private:
             first = first == success ? result.status : first;
             failed.push_back(steps_[i].frame.value_or(0));
         }
-        if (global_.frames.empty())
+        if (!steps_.front().frame)
             return first;
         std::string text = std::to_string(begun - left_out - failed.size()) + " of " +
                            std::to_string(steps_.size()) + " frames done";

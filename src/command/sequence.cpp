@@ -2,11 +2,13 @@
 
 // A call with --frames is as many calls as it has frames: its words with the frame's number in
 // place of each token. So commands need not know of frames. All of them are planned before the
-// first one runs: what is known to fail after an hour is told at once.
+// first one runs: what is known to fail after an hour is told at once. One command is the
+// exception: a page has all frames, so it is one call whose input is as many files.
 
 #include "command/sequence.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 
 #include "command/frames.h"
 
@@ -64,7 +66,10 @@ private:
             throw InvalidOption(output.path.string() + ": would be written " + other->second.who +
                                 " and " + who +
                                 "; in a sequence its name needs a frame token (####, @@@@, %04d, "
-                                "or '$F4' in quotes)");
+                                "or '$F4' in quotes)" +
+                                (lower_case_extension(output.path) == ".html"
+                                     ? "; one page of all frames is made by vdb_shell page"
+                                     : ""));
     }
 
     std::map<FilePlan::Identity, std::string> readers_;
@@ -134,20 +139,55 @@ template <typename Body> void with_name(const Step& step, const Body& body)
     }
 }
 
+/// How far the frame that a word names is from the one that is worked on: the meshes of `pose`'s
+/// neighbours are those of other frames.
+int shift_of(const std::vector<std::string>& words, std::size_t i)
+{
+    const auto behind = [&](const std::string& flag) {
+        return words[i].rfind(flag + "=", 0) == 0 || (i > 0 && words[i - 1] == flag);
+    };
+    return behind("--mesh-after") - behind("--mesh-before");
+}
+
+/// One step, in which each name with a token stands once for each frame.
+Step gathered(const std::vector<std::string>& words, const FrameList& list)
+{
+    Call call;
+    call.parse(words);
+    const FilePlan plan = call.plan();
+    for (const FilePlan::Entry& output : plan.outputs())
+        if (const std::string token = frame_token(output.path.string()); !token.empty())
+            throw InvalidOption(output.path.string() + ": has the frame token \"" + token +
+                                "\", and all frames come into one file");
+    Step step{std::nullopt, {}, {}, {}, {}, list.frames};
+    for (const std::string& word : words) {
+        if (frame_token(word).empty())
+            step.words.push_back(word);
+        else
+            for (const int frame : list.frames)
+                step.words.push_back(with_frame(word, frame));
+    }
+    return step;
+}
+
 std::vector<Step> steps_of(const std::vector<std::string>& words, const GlobalArguments& global,
                            const Context& context)
 {
     if (global.frames.empty())
-        return {{std::nullopt, words, {}, {}, {}}};
+        return {{std::nullopt, words, {}, {}, {}, {}}};
     const FrameList list = parse_frames(global.frames);
     if (!list.repeated.empty())
         context.say(LogLevel::warning, "warning: --frames has " + frames_text(list.repeated) +
                                            " more than once; each frame is done once");
+    Call whole;
+    whole.parse(words);
+    if (whole.gathers_frames())
+        return {gathered(words, list)};
     std::vector<Step> steps;
     for (const int frame : list.frames) {
-        Step step{frame, {}, {}, {}, {}};
-        for (const std::string& word : words)
-            step.words.push_back(with_frame(word, frame));
+        Step step{frame, {}, {}, {}, {}, {}};
+        for (std::size_t i = 0; i < words.size(); ++i)
+            step.words.push_back(with_frame(words[i], frame + shift_of(words, i)));
         steps.push_back(std::move(step));
     }
     return steps;

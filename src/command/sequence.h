@@ -17,6 +17,7 @@ struct Step {
     std::vector<std::string> words; ///< with the frame's number in place of tokens
     std::vector<std::filesystem::path> inputs, outputs;
     std::vector<std::filesystem::path> missing; ///< inputs that are not there
+    std::vector<int> gathered{};                ///< the frames of a step that has all of them
 };
 
 /// All runs of a call, held against each other and against what is known before any work. Throws

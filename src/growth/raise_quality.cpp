@@ -9,6 +9,7 @@
 
 #include "growth/diagonals.h"
 #include "growth/sweep.h"
+#include "growth/trust_radius.h"
 #include "vdb_shell/shell/quality.h"
 
 #include <algorithm>
@@ -95,14 +96,6 @@ bool propose_better(const GrowState& s, const SeparatingPlanes& planes, int v, d
     return false;
 }
 
-double mean_edge(const GrowState& s, int v)
-{
-    double sum = 0;
-    for (const int u : neighbours(*s.mesh, v))
-        sum += (s.a[u] - s.a[v]).length();
-    return sum / std::max(1, neighbours(*s.mesh, v).size());
-}
-
 /// Sum over all tets of the squares of what they are short of the bound; counts them.
 double whole_shortfall(const GrowState& s, double bound, QualityResult& result)
 {
@@ -136,7 +129,7 @@ QualityResult raise_quality(GrowState& s, double bound, bool flips, const StageP
     const QualitySchedule& schedule = s.schedule.quality;
     SeparatingPlanes planes;
     for (int v = 0; v < s.mesh->vertices; ++v)
-        s.trust_radius[v] = std::max(schedule.radius_edge_share * mean_edge(s, v),
+        s.trust_radius[v] = std::max(schedule.radius_edge_share * mean_edge(*s.mesh, s.a, v),
                                      kLeastRadiusInRoundings * s.rounding);
     // All vertices but the pinned ones are active in every round, so the pins are the list of those
     // left out, and radii stay as they are.

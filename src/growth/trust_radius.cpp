@@ -66,4 +66,12 @@ Vec3d within_trust_radius(const GrowState& s, int v, const Vec3d& x)
     return distance > most ? s.trust_centre[v] + off * (most / distance) : x;
 }
 
+double mean_edge(const Connectivity& mesh, const std::vector<Vec3d>& points, int v)
+{
+    double sum = 0;
+    for (const int u : neighbours(mesh, v))
+        sum += (points[u] - points[v]).length();
+    return sum / std::max(1, neighbours(mesh, v).size());
+}
+
 } // namespace vdb_shell::growth

@@ -18,6 +18,9 @@ void set_first_radii(GrowState& s, double fill);
 /// vertex went.
 void adapt_radii(GrowState& s, const std::vector<std::uint8_t>& inactive);
 
+/// The mean length of the edges at a vertex, its surface having these points; 0 where it has none.
+double mean_edge(const Connectivity& mesh, const std::vector<Vec3d>& points, int v);
+
 /// x, or the point towards it that rounding cannot take out of the trust region of v.
 Vec3d within_trust_radius(const GrowState& s, int v, const Vec3d& x);
 

@@ -30,6 +30,7 @@ struct FileScan {
     std::vector<openvdb::Vec3s> points;
     std::vector<std::uint32_t> corners;       ///< of all polygons, one polygon after the other
     std::vector<std::uint32_t> polygon_sizes; ///< how many of `corners` each takes
+    std::vector<std::int64_t> ids;            ///< by point, or empty (ReadResult::ids)
     std::vector<std::size_t> skipped_faces;   ///< faces of the file that are no polygon, ascending
 };
 

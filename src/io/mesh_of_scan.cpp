@@ -63,9 +63,12 @@ void append_faces(const FileScan& scan, ReadResult& result)
     skipped.insert(skipped.end(), skipped_before, scan.skipped_faces.end());
 }
 
-/// Copies the points that triangles use to the mesh, in order; returns how many those are.
-std::size_t keep_used_points(const std::vector<openvdb::Vec3s>& points, TriangleMesh& mesh)
+/// Copies the points that triangles use to the mesh, in order, with their ids; returns how many
+/// those are.
+std::size_t keep_used_points(const FileScan& scan, ReadResult& result)
 {
+    const std::vector<openvdb::Vec3s>& points = scan.points;
+    TriangleMesh& mesh = result.mesh;
     // An index would have to be near 2^32 to be taken for one of these marks.
     constexpr std::uint32_t kUnused = UINT32_MAX, kUsed = UINT32_MAX - 1;
     std::vector<std::uint32_t> new_index(points.size(), kUnused);
@@ -78,6 +81,8 @@ std::size_t keep_used_points(const std::vector<openvdb::Vec3s>& points, Triangle
             continue;
         new_index[v] = static_cast<std::uint32_t>(mesh.points.size());
         mesh.points.push_back(points[v]);
+        if (!scan.ids.empty())
+            result.ids.push_back(scan.ids[v]);
     }
     for (openvdb::Vec3I& t : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner)
@@ -101,7 +106,7 @@ ReadResult mesh_of_scan(const std::string& name, FileScan scan, const Coordinate
     const std::size_t vertices = options.weld ? weld(scan) : scan.points.size();
     result.report.welded_vertices = scan.file_vertices - vertices;
     append_faces(scan, result);
-    const std::size_t used = keep_used_points(scan.points, result.mesh);
+    const std::size_t used = keep_used_points(scan, result);
     result.report.unused_vertices = vertices - used;
     // In float32 a small object far from the origin falls together into a few points.
     if (result.mesh.triangles.empty())

@@ -71,6 +71,7 @@ ReadResult mesh_of_polygons(const PolygonSoup& soup, const std::string& name,
     scan.format = soup.format;
     scan.file_vertices = soup.points.size();
     scan.points = rounded_points(soup, name, coordinates);
+    scan.ids = soup.ids;
     add_polygons(soup, name, scan);
     return mesh_of_scan(name, std::move(scan), coordinates, options);
 }

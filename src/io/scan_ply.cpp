@@ -55,31 +55,6 @@ float coordinate(PlyScan& ply, const PlyProperty& property, const Place& place, 
                : ply.coordinates.from_number(ply.name, place, value.number, axis);
 }
 
-void read_vertices(PlyScan& ply, const PlyElement& element)
-{
-    // Which coordinate each property is, found once instead of for every vertex.
-    constexpr std::string_view kAxes = "xyz";
-    std::vector<std::size_t> axes;
-    for (const PlyProperty& property : element.properties)
-        axes.push_back(property.is_list || property.name.size() != 1 ? kAxes.npos
-                                                                     : kAxes.find(property.name));
-    ply.scan.points.reserve(element.count);
-    for (std::size_t v = 0; v < element.count; ++v) {
-        const Place place{"vertex", v, 0};
-        openvdb::Vec3s point;
-        for (std::size_t k = 0; k < axes.size(); ++k) {
-            const PlyProperty& property = element.properties[k];
-            if (axes[k] == kAxes.npos) {
-                skip_property(ply, property, place);
-                continue;
-            }
-            const int axis = static_cast<int>(axes[k]);
-            point[axis] = coordinate(ply, property, place, axis);
-        }
-        ply.scan.points.push_back(point);
-    }
-}
-
 std::int64_t whole_number(const PlyScan& ply, const PlyValue& value, const Place& place)
 {
     if (ply.header.is_text())
@@ -90,6 +65,41 @@ std::int64_t whole_number(const PlyScan& ply, const PlyValue& value, const Place
         refuse(ply.name, place.text() + ": the vertex index " + std::to_string(value.number) +
                              " is not a whole number");
     return static_cast<std::int64_t>(value.number);
+}
+
+void read_vertices(PlyScan& ply, const PlyElement& element)
+{
+    // Which coordinate each property is, found once instead of for every vertex.
+    constexpr std::string_view kAxes = "xyz";
+    std::vector<std::size_t> axes;
+    const PlyProperty* id = nullptr;
+    for (const PlyProperty& property : element.properties) {
+        axes.push_back(property.is_list || property.name.size() != 1 ? kAxes.npos
+                                                                     : kAxes.find(property.name));
+        const bool real = property.type == PlyType::float32 || property.type == PlyType::float64;
+        if (property.name == "id" && !property.is_list && !real)
+            id = &property;
+    }
+    ply.scan.points.reserve(element.count);
+    for (std::size_t v = 0; v < element.count; ++v) {
+        const Place place{"vertex", v, 0};
+        openvdb::Vec3s point;
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            const PlyProperty& property = element.properties[k];
+            if (&property == id) {
+                ply.scan.ids.push_back(
+                    whole_number(ply, ply.values.next(id->type, place), ply.values.here(place)));
+                continue;
+            }
+            if (axes[k] == kAxes.npos) {
+                skip_property(ply, property, place);
+                continue;
+            }
+            const int axis = static_cast<int>(axes[k]);
+            point[axis] = coordinate(ply, property, place, axis);
+        }
+        ply.scan.points.push_back(point);
+    }
 }
 
 std::uint32_t checked_corner(const PlyScan& ply, std::int64_t index, const Place& place)

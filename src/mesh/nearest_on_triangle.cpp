@@ -8,6 +8,8 @@
 
 #include "mesh/nearest_on_triangle.h"
 
+#include <algorithm>
+
 namespace vdb_shell
 {
 
@@ -49,6 +51,27 @@ NearestOnTriangle nearest_on_triangle(const std::array<Vec3d, 3>& c, const Vec3d
             best = other;
     }
     return best;
+}
+
+std::array<double, 3> nearest_weights(const std::array<Vec3d, 3>& corner, const Vec3d& point)
+{
+    const Vec3d to = nearest_on_triangle(corner, point).point;
+    const Vec3d u = corner[1] - corner[0], v = corner[2] - corner[0], w = to - corner[0];
+    const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), wu = w.dot(u), wv = w.dot(v);
+    const double determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) {
+        // So narrow that doubles see a segment: the nearest corner.
+        std::size_t nearest = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if ((corner[k] - to).lengthSqr() < (corner[nearest] - to).lengthSqr())
+                nearest = k;
+        std::array<double, 3> at{};
+        at[nearest] = 1;
+        return at;
+    }
+    const double b = std::clamp((vv * wu - uv * wv) / determinant, 0.0, 1.0);
+    const double c = std::clamp((uu * wv - uv * wu) / determinant, 0.0, 1.0 - b);
+    return {1.0 - b - c, b, c};
 }
 
 } // namespace vdb_shell

@@ -105,17 +105,6 @@ std::vector<std::uint32_t> find_non_manifold_vertices(const TriangleMesh& mesh)
     return raised(bad);
 }
 
-std::vector<char> find_degenerate(const TriangleMesh& mesh)
-{
-    std::vector<char> degenerate(mesh.triangles.size());
-    for_each_index(degenerate.size(), [&](std::size_t t) {
-        const openvdb::Vec3I& corner = mesh.triangles[t];
-        degenerate[t] = exact::collinear(mesh.points[corner[0]], mesh.points[corner[1]],
-                                         mesh.points[corner[2]]);
-    });
-    return degenerate;
-}
-
 std::array<std::uint32_t, 3> sorted_corners(const openvdb::Vec3I& triangle)
 {
     std::array<std::uint32_t, 3> corners{triangle[0], triangle[1], triangle[2]};
@@ -141,16 +130,34 @@ std::vector<std::uint32_t> find_duplicates(const TriangleMesh& mesh)
     return raised(duplicate);
 }
 
-/// Pairs of triangles that are neither degenerate nor repeats, which are listed as what they are.
-/// Only such triangles get a box: the pairs among n copies of one triangle would be n^2 / 2.
-std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
-                                                  const SurfaceDefects& defects,
-                                                  Interrupter* interrupter)
+/// Degenerate triangles and repeats are listed as what they are. They get no box: the pairs among n
+/// copies of one triangle would be n^2 / 2.
+std::vector<char> left_out_of_contacts(std::size_t triangles, const SurfaceDefects& defects)
 {
-    std::vector<char> left_out(mesh.triangles.size());
+    std::vector<char> left_out(triangles);
     for (const auto* list : {&defects.degenerate_triangles, &defects.duplicate_triangles})
         for (const std::uint32_t t : *list)
             left_out[t] = 1;
+    return left_out;
+}
+
+} // namespace
+
+std::vector<char> find_degenerate(const TriangleMesh& mesh)
+{
+    std::vector<char> degenerate(mesh.triangles.size());
+    for_each_index(degenerate.size(), [&](std::size_t t) {
+        const openvdb::Vec3I& corner = mesh.triangles[t];
+        degenerate[t] = exact::collinear(mesh.points[corner[0]], mesh.points[corner[1]],
+                                         mesh.points[corner[2]]);
+    });
+    return degenerate;
+}
+
+std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
+                                                  const std::vector<char>& left_out,
+                                                  Interrupter* interrupter)
+{
     std::vector<std::uint32_t> tested;
     std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
     for (std::uint32_t t = 0; t < left_out.size(); ++t)
@@ -170,8 +177,6 @@ std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
     return pairs;
 }
 
-} // namespace
-
 SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
                             Interrupter* interrupter)
 {
@@ -180,7 +185,8 @@ SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>
     defects.non_manifold_vertices = find_non_manifold_vertices(mesh);
     defects.degenerate_triangles = raised(find_degenerate(mesh));
     defects.duplicate_triangles = find_duplicates(mesh);
-    defects.self_intersections = find_self_intersections(mesh, defects, interrupter);
+    defects.self_intersections = find_self_intersections(
+        mesh, left_out_of_contacts(mesh.triangles.size(), defects), interrupter);
     return defects;
 }
 

@@ -19,6 +19,15 @@ struct SurfaceDefects {
     std::vector<TrianglePair> self_intersections;
 };
 
+/// The pairs of triangles that meet beyond shared corners, ascending; those marked in `left_out`,
+/// one for each triangle, are not looked at. The interrupter may be null; throws Cancelled.
+std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
+                                                  const std::vector<char>& left_out,
+                                                  Interrupter* interrupter = nullptr);
+
+/// Per triangle, whether its corners lie on one line.
+std::vector<char> find_degenerate(const TriangleMesh& mesh);
+
 /// The interrupter may be null; throws Cancelled.
 SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
                             Interrupter* interrupter = nullptr);

@@ -56,16 +56,25 @@ PosedShell build_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>&
                        const PoseOptions& options, const std::string& name,
                        Interrupter* interrupter)
 {
+    std::vector<StageCost> stages;
+    StageClock clock(stages);
+    PoseResult pose;
+    clock.run("pose", [&] { pose = pose_shell(rest, skin, options, interrupter); });
+    PosedShell posed = finish_posed(rest, skin, std::move(pose), name, interrupter);
+    posed.report.stages.insert(posed.report.stages.begin(), stages.begin(), stages.end());
+    return posed;
+}
+
+PosedShell finish_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>& skin,
+                        PoseResult pose, const std::string& name, Interrupter* interrupter)
+{
     PosedShell posed;
+    posed.stack = std::move(pose.stack);
+    posed.core = std::move(pose.core);
     ShellReport& report = posed.report;
+    report.pose = pose.report;
     report.source = name;
     StageClock clock(report.stages);
-    clock.run("pose", [&] {
-        PoseResult result = pose_shell(rest, skin, options, interrupter);
-        posed.stack = std::move(result.stack);
-        posed.core = std::move(result.core);
-        report.pose = result.report;
-    });
     clock.run("tets", [&] { posed.tets = make_tets(posed.stack); });
     if (posed.tets.points.size() != rest.tets().points.size() ||
         posed.tets.tets != rest.tets().tets)
@@ -83,6 +92,23 @@ PosedShell build_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>&
     return posed;
 }
 
+PointVectors point_velocities(const PoseResult& before, const PoseResult& after, double seconds)
+{
+    const auto difference = [&](const std::vector<openvdb::Vec3s>& from,
+                                const std::vector<openvdb::Vec3s>& to) {
+        std::vector<openvdb::Vec3s> made;
+        made.reserve(from.size());
+        for (std::size_t i = 0; i < from.size(); ++i)
+            made.emplace_back((openvdb::Vec3d(to[i]) - openvdb::Vec3d(from[i])) / seconds);
+        return made;
+    };
+    PointVectors velocity;
+    for (std::size_t k = 0; k < before.stack.surfaces(); ++k)
+        velocity.surface.push_back(difference(before.stack.surface(k), after.stack.surface(k)));
+    velocity.core = difference(before.core.points, after.core.points);
+    return velocity;
+}
+
 ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
                      Interrupter* interrupter)
 {
@@ -95,15 +121,17 @@ ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
     file.report_json = posed_report_json(posed.report, rest.report_json, false);
     file.parameters_json = rest.parameters_json;
     file.placement = rest.placement;
-    const ShellStack at_rest = rest_stack(rest);
-    for (std::size_t k = 0; k < at_rest.surfaces(); ++k)
-        file.rest.surface.push_back(at_rest.surface(k));
-    file.rest.core = rest_core(rest).points;
+    file.rest = rest_points(rest);
+    file.rest.velocity = std::move(posed.velocity);
     file.stack = std::move(posed.stack);
     if (with_volumes)
         file.rest_volume =
-            rest_volume(posed.tets, rest_of_tet_points(posed.tets, {file.rest.surface, {}}),
+            rest_volume(posed.tets, vectors_of_tet_points(posed.tets, {file.rest.surface, {}}),
                         rest.surface->voxelSize()[0], interrupter);
+    if (with_volumes && !file.rest.velocity.empty())
+        file.velocity_volume = velocity_volume(
+            posed.tets, vectors_of_tet_points(posed.tets, {file.rest.velocity.surface, {}}),
+            rest.surface->voxelSize()[0], interrupter);
     file.core = std::move(posed.core);
     file.tets = std::move(posed.tets);
     return file;

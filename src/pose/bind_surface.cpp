@@ -5,12 +5,16 @@
 
 #include "vdb_shell/pose/bind_surface.h"
 
+#include "vdb_shell/core/error.h"
+
 #include "core/parallel.h"
+#include "mesh/nearest_on_triangle.h"
+#include "mesh/triangle_corners.h"
 #include "obstacles/nearest_core.h"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
+#include <unordered_map>
 
 namespace vdb_shell
 {
@@ -27,28 +31,13 @@ struct Frame {
 Frame frame_of(const TriangleMesh& mesh, std::uint32_t triangle)
 {
     Frame frame;
-    for (std::size_t k = 0; k < 3; ++k)
-        frame.corner[k] = Vec3d(mesh.points[mesh.triangles[triangle][int(k)]]);
+    frame.corner = triangle_corners(mesh, triangle);
     const Vec3d side = frame.corner[1] - frame.corner[0];
     Vec3d along = side, normal = side.cross(frame.corner[2] - frame.corner[0]);
     along.normalize(0.0);
     normal.normalize(0.0);
     frame.axis = {along, normal.cross(along), normal};
     return frame;
-}
-
-/// Barycentric coordinates of a point in the triangle's plane, by least squares.
-Vec3d weights_of(const Frame& frame, const Vec3d& point)
-{
-    const Vec3d u = frame.corner[1] - frame.corner[0], v = frame.corner[2] - frame.corner[0],
-                w = point - frame.corner[0];
-    const double uu = u.lengthSqr(), vv = v.lengthSqr(), uv = u.dot(v);
-    const double area = uu * vv - uv * uv;
-    if (!(area > 0))
-        return {1, 0, 0};
-    const double second = (vv * u.dot(w) - uv * v.dot(w)) / area;
-    const double third = (uu * v.dot(w) - uv * u.dot(w)) / area;
-    return {1 - second - third, second, third};
 }
 
 Vec3d at(const Frame& frame, const Vec3d& weight)
@@ -65,11 +54,11 @@ std::vector<BoundPoint> bind_surface(const std::vector<openvdb::Vec3s>& points,
     std::vector<BoundPoint> bound(points.size());
     for_each_index(points.size(), [&](std::size_t i) {
         const Vec3d p(points[i]);
-        const NearestPoint found = nearest.nearest(p);
-        const Frame frame = frame_of(rest, found.triangle);
         BoundPoint& made = bound[i];
-        made.triangle = found.triangle;
-        made.weight = weights_of(frame, found.point);
+        made.triangle = nearest.nearest(p).triangle;
+        const Frame frame = frame_of(rest, made.triangle);
+        const std::array<double, 3> weight = nearest_weights(frame.corner, p);
+        made.weight = {weight[0], weight[1], weight[2]};
         const Vec3d left = p - at(frame, made.weight);
         for (int k = 0; k < 3; ++k)
             made.offset[k] = left.dot(frame.axis[std::size_t(k)]);
@@ -91,6 +80,28 @@ std::vector<openvdb::Vec3s> move_bound(const std::vector<BoundPoint>& bound,
         points[i] = openvdb::Vec3s(p);
     });
     return points;
+}
+
+std::vector<openvdb::Vec3s> in_order_of_ids(const std::vector<openvdb::Vec3s>& points,
+                                            const std::vector<std::int64_t>& ids,
+                                            const std::vector<std::int64_t>& wanted,
+                                            const std::string& name)
+{
+    assert(points.size() == ids.size());
+    std::unordered_map<std::int64_t, std::size_t> place;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+        if (!place.emplace(ids[i], i).second)
+            throw InvalidOption(name + ": the points " + std::to_string(place[ids[i]]) + " and " +
+                                std::to_string(i) + " have the same id " + std::to_string(ids[i]));
+    std::vector<openvdb::Vec3s> ordered;
+    ordered.reserve(wanted.size());
+    for (const std::int64_t id : wanted) {
+        const auto found = place.find(id);
+        if (found == place.end())
+            throw InvalidOption(name + ": no point has the id " + std::to_string(id));
+        ordered.push_back(points[found->second]);
+    }
+    return ordered;
 }
 
 } // namespace vdb_shell

@@ -10,6 +10,7 @@
 #include "growth/move_tests.h"
 #include "growth/separating_planes.h"
 #include "growth/sweep.h"
+#include "growth/trust_radius.h"
 
 #include <algorithm>
 #include <utility>
@@ -32,14 +33,6 @@ constexpr double kLeastShare = 0.1;
 constexpr int kSweeps = 4, kHalvings = 6;
 /// What a move has to leave of its energy at most.
 constexpr double kLeastGain = 0.999;
-
-double mean_inner_edge(const GrowState& s, int v)
-{
-    double sum = 0;
-    for (const int u : growth::neighbours(*s.mesh, v))
-        sum += (s.b[u] - s.b[v]).length();
-    return sum / std::max(1, growth::neighbours(*s.mesh, v).size());
-}
 
 /// Moves below that are not worth a look.
 bool near_carried(const Parts& parts, const PoseState& state, std::uint32_t point)
@@ -142,9 +135,10 @@ void improve_pose(const Parts& parts, const SkinSide& side, const PoseOptions& o
     growth::SeparatingPlanes planes;
     for (int v = 0; v < s.mesh->vertices; ++v) {
         const std::uint32_t point = point_at(parts, side.end, std::size_t(v));
-        s.trust_radius[v] = point == Parts::kFree ? 0 : kRadius * mean_inner_edge(s, v);
+        s.trust_radius[v] =
+            point == Parts::kFree ? 0 : kRadius * growth::mean_edge(*s.mesh, s.b, v);
     }
-    std::vector<std::uint8_t> inactive = s.pinned;
+    std::vector<std::uint8_t> inactive(s.pinned.size());
     for_each_index(inactive.size(), [&](std::size_t v) {
         const std::uint32_t point = point_at(parts, side.end, v);
         inactive[v] =

@@ -13,9 +13,11 @@
 #include "pose/improve_pose.h"
 #include "pose/relax_pose.h"
 #include "pose/release_lost.h"
+#include "pose/restart_lost.h"
 #include "vdb_shell/shell/sides.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace vdb_shell
@@ -29,7 +31,6 @@ using Parts = RestShell::Parts;
 using growth::Connectivity;
 using growth::GrowState;
 
-constexpr double kNoCap = 1e30;
 std::vector<SkinSide> sides_of(const ShellStack& stack)
 {
     std::vector<SkinSide> sides;
@@ -61,27 +62,6 @@ void put_between(const Parts& parts, const SkinSide& side, const std::vector<Vec
         }
 }
 
-/// The ends of pillars that growth gave up, and of those beside them. Which of them can be made
-/// valid after all, without the tests that growth needs at every step, a certificate tells.
-std::vector<std::uint8_t> around_lost(const Parts& parts, const SkinSide& side,
-                                      const Connectivity& mesh, const std::vector<double>& cap,
-                                      const std::vector<std::uint8_t>& valid)
-{
-    std::vector<std::uint8_t> around(parts.rest.size(), 0);
-    const auto mark = [&](int v) {
-        if (cap[std::size_t(v)] > 0)
-            around[point_at(parts, side.end, std::size_t(v))] = 1;
-    };
-    for (int v = 0; v < mesh.vertices; ++v) {
-        if (valid[v] || !(cap[v] > 0))
-            continue;
-        mark(v);
-        for (const int u : growth::neighbours(mesh, v))
-            mark(u);
-    }
-    return around;
-}
-
 /// Growth's state with the inner points where they are carried. A cap of 0 keeps a vertex pinned.
 GrowState state_of(const Parts& parts, const SkinSide& side, const Connectivity& connectivity,
                    const std::vector<Vec3s>& skin, const SkinCrossings& crossings,
@@ -94,7 +74,8 @@ GrowState state_of(const Parts& parts, const SkinSide& side, const Connectivity&
         if (point == Parts::kFree || parts.skin_vertex[point] != Parts::kFree)
             continue;
         ends[v] = growth::rounded(state.place[point]);
-        cap[v] = side.outside ? 2 * (ends[v] - Vec3d(skin[v])).length() : kNoCap;
+        cap[v] = side.outside ? 2 * (ends[v] - Vec3d(skin[v])).length()
+                              : std::numeric_limits<double>::infinity();
     }
     GrowState s = growth::make_state(connectivity, skin, cap);
     s.excused = crossings.region;
@@ -114,8 +95,9 @@ GrowState state_of(const Parts& parts, const SkinSide& side, const Connectivity&
 }
 
 void mend_side(const Parts& parts, const SkinSide& side, const std::vector<Vec3s>& skin,
-               const SkinCrossings& crossings, const PoseOptions& options, PoseState& state,
-               PoseReport& report, const StageProgress& progress)
+               const SkinCrossings& crossings, const InvertedTets& inverted,
+               const PoseOptions& options, PoseState& state, PoseReport& report,
+               const StageProgress& progress)
 {
     TriangleMesh mesh{skin, parts.stack.triangles()};
     if (side.outside)
@@ -124,19 +106,20 @@ void mend_side(const Parts& parts, const SkinSide& side, const std::vector<Vec3s
     GrowState s = state_of(parts, side, connectivity, skin, crossings, state);
     growth::mend_placed(s, progress);
     release_lost(s, mesh, progress);
+    // Where the skin crosses itself some pillars have no place at all, and attempts cost time.
+    if (crossings.pairs == 0)
+        restart_lost(parts, side, state, inverted, options, s, progress);
     bring_back(parts, side, s, state);
     std::vector<std::uint8_t> valid(skin.size(), 0);
-    std::size_t lost = 0;
+    const std::size_t lost = lost_pillars(s);
     for (std::size_t v = 0; v < skin.size(); ++v) {
         valid[v] = s.cap[v] > 0 && !s.pinned[v];
-        lost += s.cap[v] > 0 && s.pinned[v];
         if (valid[v])
             state.place[point_at(parts, side.end, v)] = s.b[v];
     }
     improve_pose(parts, side, options, s, state, report, progress);
     if (lost > 0)
-        relax_pose(parts, state, options.most_distortion,
-                   around_lost(parts, side, connectivity, s.cap, valid), progress);
+        relax_pose(parts, state, options.most_distortion, around_lost(parts, side, s), progress);
     report.lost_pillars += lost;
     put_between(parts, side, skin, valid, state);
 }
@@ -149,11 +132,11 @@ bool can_mend_sides(const Parts& parts)
 }
 
 void mend_sides(const Parts& parts, PoseState& state, const std::vector<Vec3s>& skin,
-                const SkinCrossings& crossings, const PoseOptions& options, PoseReport& report,
-                const StageProgress& progress)
+                const SkinCrossings& crossings, const InvertedTets& inverted,
+                const PoseOptions& options, PoseReport& report, const StageProgress& progress)
 {
     for (const SkinSide& side : sides_of(parts.stack))
-        mend_side(parts, side, skin, crossings, options, state, report, progress);
+        mend_side(parts, side, skin, crossings, inverted, options, state, report, progress);
 }
 
 } // namespace vdb_shell

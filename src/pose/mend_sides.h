@@ -2,13 +2,13 @@
 #pragma once
 
 #include "core/stage_progress.h"
+#include "pose/centre_points.h"
 #include "pose/skin_crossings.h"
 
 namespace vdb_shell
 {
 
-/// Whether mend_sides can make the shell valid: it is not tapered, nothing fills it, and its prisms
-/// are such as growth makes them.
+/// Whether mend_sides can make the shell valid: it is not tapered and nothing fills it.
 bool can_mend_sides(const RestShell::Parts& parts);
 
 /// Makes a nearly valid pose of an untapered shell valid by the means of growth: prisms that fail
@@ -18,6 +18,7 @@ bool can_mend_sides(const RestShell::Parts& parts);
 /// is counted. Precondition: can_mend_sides(parts).
 void mend_sides(const RestShell::Parts& parts, PoseState& state,
                 const std::vector<openvdb::Vec3s>& skin, const SkinCrossings& crossings,
-                const PoseOptions& options, PoseReport& report, const StageProgress& progress);
+                const InvertedTets& inverted, const PoseOptions& options, PoseReport& report,
+                const StageProgress& progress);
 
 } // namespace vdb_shell

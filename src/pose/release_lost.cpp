@@ -10,6 +10,7 @@
 #include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
 #include "growth/pins.h"
+#include "growth/trust_radius.h"
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/mesh/normals.h"
 
@@ -29,14 +30,6 @@ using growth::GrowState;
 /// in edges of the skin.
 constexpr std::array<int, 3> kRings{1, 4, 16};
 constexpr double kRestartShare = 0.2;
-
-double mean_edge(const GrowState& s, int v)
-{
-    double sum = 0;
-    for (const int u : growth::neighbours(*s.mesh, v))
-        sum += (s.a[u] - s.a[v]).length();
-    return sum / std::max(1, growth::neighbours(*s.mesh, v).size());
-}
 
 /// Vertices that are pinned and must not be: their cap allows a pillar.
 std::vector<std::uint8_t> lost_vertices(const GrowState& s)
@@ -76,7 +69,7 @@ void release_lost(GrowState& s, const TriangleMesh& mesh, const StageProgress& p
         for (int v = 0; v < s.mesh->vertices; ++v) {
             if (!around[v] || !(s.cap[v] > 0) || !(seeing->visibility[std::size_t(v)] > 0))
                 continue;
-            const double length = kRestartShare * mean_edge(s, v);
+            const double length = kRestartShare * growth::mean_edge(*s.mesh, s.a, v);
             s.b[v] = growth::end_within_cap(s, v, seeing->inward[std::size_t(v)], length);
             s.pinned[v] = s.b[v] == s.a[v];
         }

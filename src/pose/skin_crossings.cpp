@@ -6,11 +6,9 @@
 
 #include "pose/skin_crossings.h"
 
-#include "core/box_pairs.h"
-#include "core/exact.h"
 #include "core/parallel.h"
 #include "field/winding_number.h"
-#include "mesh/triangle_contacts.h"
+#include "mesh/surface_defects.h"
 
 #include <array>
 #include <cmath>
@@ -24,24 +22,6 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
-
-std::vector<std::array<std::uint32_t, 2>> crossing_pairs(const std::vector<Vec3s>& skin,
-                                                         const std::vector<Vec3I>& triangles,
-                                                         Interrupter* interrupter)
-{
-    std::vector<std::uint8_t> line(triangles.size());
-    for_each_index(line.size(), [&](std::size_t t) {
-        line[t] =
-            exact::collinear(skin[triangles[t][0]], skin[triangles[t][1]], skin[triangles[t][2]]);
-    });
-    const TriangleContacts contacts(skin, triangles);
-    return overlapping_pairs(
-        triangle_boxes(skin, triangles),
-        [&](std::uint32_t f, std::uint32_t g) {
-            return !line[f] && !line[g] && contacts.touch(f, g);
-        },
-        interrupter);
-}
 
 /// Vertices whose pillar leaves what the skin encloses once. Winding numbers of points near the
 /// skin are off by up to 0.02, so half a turn tells for certain.
@@ -80,7 +60,9 @@ SkinCrossings find_skin_crossings(const RestShell::Parts& parts, const PoseState
                                   const std::vector<Vec3s>& skin, Interrupter* interrupter)
 {
     const std::vector<Vec3I>& triangles = parts.stack.triangles();
-    const auto pairs = crossing_pairs(skin, triangles, interrupter);
+    const TriangleMesh mesh{skin, triangles};
+    const std::vector<TrianglePair> pairs =
+        find_self_intersections(mesh, find_degenerate(mesh), interrupter);
     SkinCrossings found;
     found.pairs = pairs.size();
     if (pairs.empty())

@@ -5,6 +5,7 @@
 #include "report/pose_report.h"
 
 #include "report/text_lines.h"
+#include "vdb_shell/core/error.h"
 
 #include <nlohmann/json.hpp>
 
@@ -13,7 +14,9 @@
 namespace vdb_shell
 {
 
-nlohmann::ordered_json pose_json(const PoseReport& pose)
+using nlohmann::ordered_json;
+
+ordered_json pose_json(const PoseReport& pose)
 {
     return {{"tets", pose.tets},
             {"free_points", pose.free_points},
@@ -48,6 +51,23 @@ void pose_lines(std::ostringstream& out, const PoseReport& pose)
         line(out, "",
              number(double(pose.lost_pillars), 12) +
                  " pillars for which the skin leaves no valid place");
+}
+
+std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)
+{
+    ordered_json json = ordered_json::parse(at_rest, nullptr, false);
+    if (!json.is_object())
+        throw ReadError(posed.source + ": the report of the shell at rest is no JSON object");
+    const ordered_json now = ordered_json::parse(report_json(posed, with_costs));
+    for (const char* key : {"mesh", "prisms", "tets", "conformity", "quality", "volume",
+                            "certificate", "overlaps", "pose"})
+        json[key] = now[key];
+    // Of the shell at rest they would be taken for this one's.
+    for (const char* key : {"coverage", "wanted", "surface_bounds", "layers"})
+        json[key] = nullptr;
+    if (with_costs)
+        json["stages"] = now["stages"];
+    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 } // namespace vdb_shell

@@ -11,8 +11,6 @@
 
 #include "vdb_shell/report/report.h"
 
-#include "vdb_shell/core/error.h"
-
 #include "certify/certificate_findings.h"
 #include "core/degrees.h"
 #include "mesh/components_json.h"
@@ -386,23 +384,6 @@ std::string report_json(const ShellReport& report, bool with_costs)
         json["stages"] = costs_json(report.stages);
     // A file name may hold bytes that are no UTF-8. They are replaced, since JSON cannot hold them
     // and a report must not fail for the name of its input.
-    return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)
-{
-    ordered_json json = ordered_json::parse(at_rest, nullptr, false);
-    if (!json.is_object())
-        throw ReadError(posed.source + ": the report of the shell at rest is no JSON object");
-    const ordered_json now = ordered_json::parse(report_json(posed, with_costs));
-    for (const char* key : {"mesh", "prisms", "tets", "conformity", "quality", "volume",
-                            "certificate", "overlaps", "pose"})
-        json[key] = now[key];
-    // Of the shell at rest they would be taken for this one's.
-    for (const char* key : {"coverage", "wanted", "surface_bounds", "layers"})
-        json[key] = nullptr;
-    if (with_costs)
-        json["stages"] = now["stages"];
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace);
 }
 

@@ -14,35 +14,8 @@
 
 namespace vdb_shell
 {
-namespace
-{
-
 using openvdb::Vec3d;
 using openvdb::Vec3I;
-
-/// The weights of the nearest point of the triangle.
-std::array<double, 3> weights_in(const std::array<Vec3d, 3>& corner, const Vec3d& p)
-{
-    const Vec3d to = nearest_on_triangle(corner, p).point;
-    const Vec3d u = corner[1] - corner[0], v = corner[2] - corner[0], w = to - corner[0];
-    const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), wu = w.dot(u), wv = w.dot(v);
-    const double determinant = uu * vv - uv * uv;
-    if (!(determinant > 0)) {
-        // So narrow that doubles see a segment: the nearest corner.
-        std::size_t nearest = 0;
-        for (std::size_t k = 1; k < 3; ++k)
-            if ((corner[k] - to).lengthSqr() < (corner[nearest] - to).lengthSqr())
-                nearest = k;
-        std::array<double, 3> at{};
-        at[nearest] = 1;
-        return at;
-    }
-    const double b = std::clamp((vv * wu - uv * wv) / determinant, 0.0, 1.0);
-    const double c = std::clamp((uu * wv - uv * wu) / determinant, 0.0, 1.0 - b);
-    return {1.0 - b - c, b, c};
-}
-
-} // namespace
 
 RemeshResult RemeshSurface::result() const
 {
@@ -57,7 +30,7 @@ RemeshResult RemeshSurface::result() const
         const Vec3d p(points_[v]);
         const std::uint32_t t = tree_.nearest(p, 0.0F, seed).triangle;
         out.map.result_on_input.push_back(
-            {t, input_.triangles[t], weights_in(triangle_corners(input_, t), p)});
+            {t, input_.triangles[t], nearest_weights(triangle_corners(input_, t), p)});
     }
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         if (!alive(t))
@@ -70,8 +43,9 @@ RemeshResult RemeshSurface::result() const
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
         for (const std::uint32_t s : samples_of_[t])
             if (s < input_.points.size())
-                out.map.input_on_result[s] = {place[t], out.mesh.triangles[place[t]],
-                                              weights_in(corners_of(triangles_[t]), samples_[s])};
+                out.map.input_on_result[s] = {
+                    place[t], out.mesh.triangles[place[t]],
+                    nearest_weights(corners_of(triangles_[t]), samples_[s])};
     return out;
 }
 

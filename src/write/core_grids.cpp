@@ -38,14 +38,16 @@ Vec3s centre_of(const TetMesh& all, const openvdb::Vec4I& tet)
 } // namespace
 
 CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core,
-                          const std::vector<Vec3s>& rest)
+                          const RestPoints& rest)
 {
     CoreGrids grids;
     PointGridBuilder own(kCorePointsGrid, core.points);
     own.add("id", ids(core.points.size()));
-    own.add(position_attribute(!rest.empty()), core.points);
-    if (!rest.empty())
-        own.add("rest", rest);
+    own.add(position_attribute(rest.posed()), core.points);
+    if (rest.posed())
+        own.add("rest", rest.core);
+    if (!rest.velocity.empty())
+        own.add("v", rest.velocity.core);
     std::vector<std::int32_t> vertex;
     for (const std::uint32_t v : core.source_vertex)
         vertex.push_back(v == CoreTets::kNoVertex ? -1 : std::int32_t(v));

@@ -27,7 +27,7 @@ struct CoreGrids {
     openvdb::points::PointDataGrid::Ptr points, tets;
 };
 CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const CoreTets& core,
-                          const std::vector<openvdb::Vec3s>& rest = {});
+                          const RestPoints& rest = {});
 
 /// Throws ReadError, its message opened by `name`, unless every id is there once and in range.
 /// `shell` are the shell's points by id.

@@ -280,6 +280,11 @@ CutDrawing in_samples(CutDrawing drawing)
 
 } // namespace
 
+Vec3f tint_colour(std::uint8_t tint)
+{
+    return tint_colours[tint];
+}
+
 std::vector<std::uint8_t> draw_cut(const CutDrawing& pixels)
 {
     const CutDrawing drawing = in_samples(pixels);

@@ -16,6 +16,9 @@ struct CutDrawing {
     int width = 0, height = 0;
 };
 
+/// Of a prism's tint, and of kCoreTint.
+openvdb::Vec3f tint_colour(std::uint8_t tint);
+
 /// 8-bit RGB, rows from the top.
 std::vector<std::uint8_t> draw_cut(const CutDrawing& drawing);
 

@@ -43,39 +43,6 @@ bool is_above(const Vec3s& point, const CutPlane& plane)
     return double(point[plane.normal]) >= plane.offset;
 }
 
-/// The section of one tet; no corners where it lies on one side.
-CutPolygon cut_tet(const TetMesh& mesh, std::size_t t, const CutPlane& plane)
-{
-    std::array<std::uint32_t, 4> above{}, below{};
-    std::size_t aboves = 0, belows = 0;
-    for (int corner = 0; corner < 4; ++corner) {
-        const std::uint32_t point = mesh.tets[t][corner];
-        if (is_above(mesh.points[point], plane))
-            above[aboves++] = point;
-        else
-            below[belows++] = point;
-    }
-    CutPolygon polygon;
-    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
-        return crossing(mesh.points, a, b, plane);
-    };
-    // Two against two: consecutive corners of this list lie on a common face of the tet, so they go
-    // round the section once and the polygon does not cross itself.
-    if (aboves == 2) {
-        polygon.corners = 4;
-        polygon.corner = {meet(below[0], above[0]), meet(below[0], above[1]),
-                          meet(below[1], above[1]), meet(below[1], above[0])};
-    } else if (aboves == 1 || belows == 1) {
-        const std::uint32_t apex = aboves == 1 ? above[0] : below[0];
-        const auto& base = aboves == 1 ? below : above;
-        for (std::size_t i = 0; i < 3; ++i)
-            polygon.corner[i] = meet(apex, base[i]);
-    } else {
-        polygon.corners = 0;
-    }
-    return polygon;
-}
-
 } // namespace
 
 CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds)
@@ -124,6 +91,38 @@ std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangl
         tints[p] = std::min<std::uint8_t>(tints[p], kTintCount - 1);
     }
     return tints;
+}
+
+CutPolygon cut_tet(const TetMesh& mesh, std::size_t t, const CutPlane& plane)
+{
+    std::array<std::uint32_t, 4> above{}, below{};
+    std::size_t aboves = 0, belows = 0;
+    for (int corner = 0; corner < 4; ++corner) {
+        const std::uint32_t point = mesh.tets[t][corner];
+        if (is_above(mesh.points[point], plane))
+            above[aboves++] = point;
+        else
+            below[belows++] = point;
+    }
+    CutPolygon polygon;
+    const auto meet = [&](std::uint32_t a, std::uint32_t b) {
+        return crossing(mesh.points, a, b, plane);
+    };
+    // Two against two: consecutive corners of this list lie on a common face of the tet, so they go
+    // round the section once and the polygon does not cross itself.
+    if (aboves == 2) {
+        polygon.corners = 4;
+        polygon.corner = {meet(below[0], above[0]), meet(below[0], above[1]),
+                          meet(below[1], above[1]), meet(below[1], above[0])};
+    } else if (aboves == 1 || belows == 1) {
+        const std::uint32_t apex = aboves == 1 ? above[0] : below[0];
+        const auto& base = aboves == 1 ? below : above;
+        for (std::size_t i = 0; i < 3; ++i)
+            polygon.corner[i] = meet(apex, base[i]);
+    } else {
+        polygon.corners = 0;
+    }
+    return polygon;
 }
 
 std::vector<CutPolygon> cut_tets(const TetMesh& tets, const std::vector<std::uint8_t>& tints,

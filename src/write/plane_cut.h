@@ -37,8 +37,10 @@ inline constexpr std::uint8_t kCoreTint = kTintCount; ///< of tets that belong t
 /// A tint per prism, never that of a prism across an edge; greedy, in the order of the prisms.
 std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangles);
 
-/// Corners on the plane count as above it, so every section is a proper polygon; a tet edge meets
-/// the plane in the very same point for all tets around it.
+/// The section of one tet, without a tint; no corners where it lies on one side. Corners on the
+/// plane count as above it, so every section is a proper polygon; a tet edge meets the plane in the
+/// very same point for all tets around it.
+CutPolygon cut_tet(const TetMesh& tets, std::size_t t, const CutPlane& plane);
 std::vector<CutPolygon> cut_tets(const TetMesh& tets, const std::vector<std::uint8_t>& tints,
                                  const CutPlane& plane);
 std::vector<CutSegment> cut_surface(const std::vector<openvdb::Vec3s>& points,

@@ -71,7 +71,9 @@ void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const Shel
         normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
     builder.add(position_attribute(rest.posed()), points.position);
     if (rest.posed())
-        builder.add("rest", rest_by_id(points, rest));
+        builder.add("rest", vectors_by_id(points, rest));
+    if (!rest.velocity.empty())
+        builder.add("v", vectors_by_id(points, rest.velocity));
     builder.add("opposite", column<Vec3s>(count, [&](std::size_t i) {
                     return opposite_of(stack, points.layer[i], points.vertex[i]);
                 }));
@@ -245,15 +247,15 @@ ShellPoints number_points(const ShellStack& stack, const TetMesh& tets)
     return points;
 }
 
-std::vector<Vec3s> rest_by_id(const ShellPoints& points, const RestPoints& rest)
+std::vector<Vec3s> vectors_by_id(const ShellPoints& points, const PointVectors& vectors)
 {
     return column<Vec3s>(points.position.size(), [&](std::size_t i) {
-        return rest.surface[points.layer[i]][points.vertex[i]];
+        return vectors.surface[points.layer[i]][points.vertex[i]];
     });
 }
 
-std::vector<std::vector<Vec3s>> rest_by_surface(const ShellPoints& points,
-                                                const std::vector<Vec3s>& by_id)
+std::vector<std::vector<Vec3s>> vectors_by_surface(const ShellPoints& points,
+                                                   const std::vector<Vec3s>& by_id)
 {
     std::vector<std::vector<Vec3s>> surfaces;
     for (const std::vector<std::uint32_t>& ids : points.id)
@@ -261,12 +263,12 @@ std::vector<std::vector<Vec3s>> rest_by_surface(const ShellPoints& points,
     return surfaces;
 }
 
-std::vector<Vec3s> rest_of_tet_points(const TetMesh& tets, const RestPoints& rest)
+std::vector<Vec3s> vectors_of_tet_points(const TetMesh& tets, const PointVectors& vectors)
 {
     std::vector<Vec3s> points;
-    for (std::size_t p = 0; p < tets.points.size(); ++p)
-        points.push_back(rest.surface[tets.layer[p]][tets.source_vertex[p]]);
-    points.insert(points.end(), rest.core.begin(), rest.core.end());
+    for (std::size_t p = 0; !vectors.empty() && p < tets.points.size(); ++p)
+        points.push_back(vectors.surface[tets.layer[p]][tets.source_vertex[p]]);
+    points.insert(points.end(), vectors.core.begin(), vectors.core.end());
     return points;
 }
 

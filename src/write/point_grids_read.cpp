@@ -238,6 +238,12 @@ void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts
                    });
 }
 
+bool has_attribute(const openvdb::points::PointDataGrid& grid, const std::string& name)
+{
+    const auto leaf = grid.tree().cbeginLeaf();
+    return leaf && leaf->attributeSet().find(name) != openvdb::points::AttributeSet::INVALID_POS;
+}
+
 } // namespace
 
 RestPoints read_rest_points(const PointGrids& grids, const CoreGrids& core,
@@ -247,9 +253,16 @@ RestPoints read_rest_points(const PointGrids& grids, const CoreGrids& core,
     RestPoints rest;
     std::vector<Vec3s> by_id;
     Reader(*grids.points, counts.points, name).positions("rest", by_id);
-    rest.surface = rest_by_surface(number_points(stack, {}), by_id);
+    const ShellPoints points = number_points(stack, {});
+    rest.surface = vectors_by_surface(points, by_id);
     if (core.points)
         Reader(*core.points, counts.core_points, name).positions("rest", rest.core);
+    if (!has_attribute(*grids.points, "v"))
+        return rest;
+    Reader(*grids.points, counts.points, name).positions("v", by_id);
+    rest.velocity.surface = vectors_by_surface(points, by_id);
+    if (core.points)
+        Reader(*core.points, counts.core_points, name).positions("v", rest.velocity.core);
     return rest;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes posed tets and where their points were at rest. Leaves one vector grid of it: three grids
-// of numbers, which have the same active voxels, put together leaf by leaf.
+// Takes posed tets and a vector for each of their points. Leaves one vector grid: three grids of
+// numbers, which have the same active voxels, put together leaf by leaf.
 
 #include "vdb_shell/write/rest_volume.h"
 
@@ -16,26 +16,28 @@
 namespace vdb_shell
 {
 
+namespace
+{
+
 using openvdb::Vec3f;
 
-GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>& rest,
-                        double voxel_size, Interrupter* interrupter)
+openvdb::Vec3SGrid::Ptr vector_volume(const TetMesh& posed,
+                                      const std::vector<openvdb::Vec3s>& vectors, double voxel_size,
+                                      const StageProgress& progress)
 {
-    assert(rest.size() == posed.points.size());
-    const StageProgress progress(interrupter, "Shell rest");
+    assert(vectors.size() == posed.points.size());
     std::array<openvdb::FloatGrid::Ptr, 3> part;
     std::array<std::vector<const openvdb::FloatTree::LeafNodeType*>, 3> leaves;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::vector<double> value;
-        value.reserve(rest.size());
-        for (const openvdb::Vec3s& p : rest)
+        value.reserve(vectors.size());
+        for (const openvdb::Vec3s& p : vectors)
             value.push_back(p[static_cast<int>(axis)]);
         part[axis] = tet_values_grid(posed, value, voxel_size, progress);
         part[axis]->tree().getNodes(leaves[axis]);
     }
     auto grid = openvdb::Vec3SGrid::create();
     grid->setTransform(part[0]->transform().copy());
-    grid->setName("rest");
     using Leaf = openvdb::Vec3STree::LeafNodeType;
     std::vector<Leaf*> made(leaves[0].size());
     for_each_index(made.size(), [&](std::size_t i) {
@@ -46,6 +48,27 @@ GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>&
     });
     for (Leaf* leaf : made)
         grid->tree().addLeaf(leaf);
+    return grid;
+}
+
+} // namespace
+
+GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>& rest,
+                        double voxel_size, Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "Shell rest");
+    const auto grid = vector_volume(posed, rest, voxel_size, progress);
+    grid->setName("rest");
+    return grid;
+}
+
+GridBasePtr velocity_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>& velocity,
+                            double voxel_size, Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "Shell velocity");
+    const auto grid = vector_volume(posed, velocity, voxel_size, progress);
+    grid->setName("v");
+    grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
     return grid;
 }
 

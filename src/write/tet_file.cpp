@@ -67,6 +67,7 @@ void write_tets(const fs::path& path, const TetMesh& tets,
     };
     require_one_a_point(extras.feet.size(), " feet on cores for ");
     require_one_a_point(extras.rest.size(), " places at rest for ");
+    require_one_a_point(extras.velocity.size(), " velocities for ");
     const std::string extension = lower_case_extension(path);
     if (extension == ".node" || extension == ".ele")
         return write_tetgen(path, tets, placement, with);

@@ -166,13 +166,16 @@ void require_consistent_rest(const ShellFile& file)
 {
     if (!file.rest.posed())
         return;
-    bool fits = file.rest.surface.size() == file.stack.surfaces() &&
-                file.rest.core.size() == file.core.points.size();
-    for (const std::vector<openvdb::Vec3s>& surface : file.rest.surface)
-        fits = fits && surface.size() == file.stack.surface(0).size();
-    if (!fits)
-        throw InvalidOption("the shell cannot be written: its points at rest are not as many as "
-                            "its points");
+    const auto fit = [&](const PointVectors& vectors) {
+        bool fits = vectors.surface.size() == file.stack.surfaces() &&
+                    vectors.core.size() == file.core.points.size();
+        for (const std::vector<openvdb::Vec3s>& surface : vectors.surface)
+            fits = fits && surface.size() == file.stack.surface(0).size();
+        return fits;
+    };
+    if (!fit(file.rest) || !(file.rest.velocity.empty() || fit(file.rest.velocity)))
+        throw InvalidOption("the shell cannot be written: its points at rest or their velocities "
+                            "are not as many as its points");
 }
 
 /// With digests of all that it holds.
@@ -259,18 +262,20 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
         named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
         named_copy(file.depth, kDepthGrid, options.half, file.placement)};
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
-    if (file.rest_volume) {
-        const GridBase::Ptr rest = file.rest_volume->copyGrid();
-        rest->setCreator(creator_name());
-        rest->setSaveFloatAsHalf(options.half);
-        put_in_place(*rest, file.placement.shift());
-        volumes.push_back(rest);
+    for (const GridBase::Ptr& vectors : {file.rest_volume, file.velocity_volume}) {
+        if (!vectors)
+            continue;
+        const GridBase::Ptr volume = vectors->copyGrid();
+        volume->setCreator(creator_name());
+        volume->setSaveFloatAsHalf(options.half);
+        put_in_place(*volume, file.placement.shift());
+        volumes.push_back(volume);
     }
     openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
                                std::move(made.tets)};
     if (!file.core.empty()) {
-        const CoreGrids core = make_core_grids(number_points(file.stack, file.tets), file.tets,
-                                               file.core, file.rest.core);
+        const CoreGrids core =
+            make_core_grids(number_points(file.stack, file.tets), file.tets, file.core, file.rest);
         points.push_back(core.points);
         points.push_back(core.tets);
     }
@@ -293,24 +298,6 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
                 write_sealed(temporary, std::move(points), metadata);
             });
     });
-}
-
-ShellStack rest_stack(const ShellFile& file)
-{
-    ShellStack stack = file.stack;
-    for (std::size_t k = 0; file.rest.posed() && k < stack.layers.size(); ++k) {
-        stack.layers[k].outer = file.rest.surface[k];
-        stack.layers[k].inner = file.rest.surface[k + 1];
-    }
-    return stack;
-}
-
-CoreTets rest_core(const ShellFile& file)
-{
-    CoreTets core = file.core;
-    if (file.rest.posed())
-        core.points = file.rest.core;
-    return core;
 }
 
 ShellInfo read_shell_info(const fs::path& path)

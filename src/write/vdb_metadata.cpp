@@ -134,19 +134,6 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
     return path.parent_path() / stated;
 }
 
-/// The oldest schema that has words for the shell. Files of one layer below the surface say nothing
-/// of layers.
-int schema_for(const ShellCounts& counts)
-{
-    if (counts.posed)
-        return kPosedSchema;
-    if (counts.core_tets > 0)
-        return kFilledSchema;
-    if (counts.tapered)
-        return kTaperedSchema;
-    return counts.layers > 1 || counts.skin > 0 ? kLayeredSchema : 1;
-}
-
 void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellInfo& info)
 {
     if (info.schema < kLayeredSchema)
@@ -186,14 +173,6 @@ void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Plac
                        ", expected a finite point and a power of two");
 }
 
-std::size_t ripples_of(const ShellStack& stack)
-{
-    std::size_t sum = 0;
-    for (const PrismSplit& split : stack.splits)
-        sum += split.ripples;
-    return sum;
-}
-
 /// The number of ripples is a figure for people; too large a one is cut off rather than refused.
 std::int32_t as_int32(std::size_t value)
 {
@@ -206,6 +185,25 @@ std::int32_t as_int32(std::size_t value)
 std::string creator_name()
 {
     return std::string("vdb_shell ") + VDB_SHELL_VERSION;
+}
+
+int schema_for(const ShellCounts& counts)
+{
+    if (counts.posed)
+        return kPosedSchema;
+    if (counts.core_tets > 0)
+        return kFilledSchema;
+    if (counts.tapered)
+        return kTaperedSchema;
+    return counts.layers > 1 || counts.skin > 0 ? kLayeredSchema : 1;
+}
+
+std::size_t ripples_of(const ShellStack& stack)
+{
+    std::size_t sum = 0;
+    for (const PrismSplit& split : stack.splits)
+        sum += split.ripples;
+    return sum;
 }
 
 fs::path points_file_of(const fs::path& path)
@@ -248,9 +246,10 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     }
     map.insertMeta(kOrientationKey, StringMetadata(layered ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets, file.core)));
-    map.insertMeta(kGridsKey, StringMetadata(std::string(kGridNames) +
-                                             (counts.core_tets > 0 ? kCoreGridNames : "") +
-                                             (file.rest_volume ? " rest" : "")));
+    map.insertMeta(
+        kGridsKey,
+        StringMetadata(std::string(kGridNames) + (counts.core_tets > 0 ? kCoreGridNames : "") +
+                       (file.rest_volume ? " rest" : "") + (file.velocity_volume ? " v" : "")));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
                                                       : std::string()));

@@ -8,6 +8,7 @@
 
 #include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/write/text_out.h"
+#include "write/base64.h"
 #include "write/tet_formats.h"
 
 #include <cstdint>
@@ -29,26 +30,6 @@ const char* byte_order()
     unsigned char first = 0;
     std::memcpy(&first, &one, 1);
     return first == 1 ? "LittleEndian" : "BigEndian";
-}
-
-/// Base 64 of `size` bytes; padded to whole groups.
-std::string base64(const unsigned char* bytes, std::size_t size)
-{
-    static constexpr char kDigits[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((size + 2) / 3 * 4);
-    for (std::size_t i = 0; i < size; i += 3) {
-        const std::size_t left = size - i;
-        const std::uint32_t group = (std::uint32_t(bytes[i]) << 16) |
-                                    (left > 1 ? std::uint32_t(bytes[i + 1]) << 8 : 0u) |
-                                    (left > 2 ? std::uint32_t(bytes[i + 2]) : 0u);
-        text += kDigits[group >> 18];
-        text += kDigits[(group >> 12) & 63u];
-        text += left > 1 ? kDigits[(group >> 6) & 63u] : '=';
-        text += left > 2 ? kDigits[group & 63u] : '=';
-    }
-    return text;
 }
 
 template <typename T>
@@ -141,6 +122,8 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
     write_feet(text, extras.feet);
     if (!extras.rest.empty())
         write_array(text, "Float32", "rest", 3, extras.rest);
+    if (!extras.velocity.empty())
+        write_array(text, "Float32", "v", 3, extras.velocity);
     text << "</PointData>\n<CellData>\n";
     write_numbers(text, tets, "UInt32", "prism", tets.prism);
     if (has_layers(tets))

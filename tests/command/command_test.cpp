@@ -296,9 +296,10 @@ TEST_F(Command, RefusesBadOptionsAndOutputs)
 TEST_F(Command, DocumentationIsWhatHelpSays)
 {
     const std::string page = read_bytes(VDB_SHELL_COMMAND_PAGE);
-    for (const char* arguments :
-         {"--help", "build --help", "inspect --help", "repair --help", "info --help",
-          "convert --help", "check --help", "doctor --help", "options --help", "options"}) {
+    for (const char* arguments : {"--help", "build --help", "inspect --help", "repair --help",
+                                  "info --help", "convert --help", "check --help", "compare --help",
+                                  "usd --help", "estimate --help", "farm --help", "join --help",
+                                  "page --help", "doctor --help", "options --help", "options"}) {
         const Outcome help = run(arguments);
         EXPECT_EQ(help.status, ExitCode::success);
         EXPECT_NE(page.find(help.out), std::string::npos)

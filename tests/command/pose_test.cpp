@@ -9,6 +9,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <functional>
+#include <sstream>
+
 // `pose`: a shell on its surface in another pose.
 
 namespace vdb_shell::test
@@ -34,6 +38,16 @@ protected:
                 rest.triangles};
     }
 
+    /// p.#.vdb, bent more from frame to frame.
+    int pose_frames(const std::vector<int>& numbers, const std::string& frames)
+    {
+        for (const int frame : numbers)
+            mesh_file("b." + std::to_string(frame) + ".obj", bent(0.1 * frame));
+        return run("pose " + file("rest.vdb") + " " + file("b.#.obj") + frames + "-q -o " +
+                   file("p.#.vdb"))
+            .status;
+    }
+
     const TriangleMesh rest = round_rod();
     const std::string rod = mesh_file("rod.obj", rest);
 };
@@ -42,7 +56,8 @@ TEST_F(Pose, WritesEveryFormatAndCheckProvesThem)
 {
     const std::string skin = mesh_file("bent.obj", bent(1.2));
     std::string outputs;
-    for (const char* name : {"p.vdb", "p.bgeo", "p.vtu", "p.usda", "p.msh", "p.png", "p.obj"})
+    for (const char* name :
+         {"p.vdb", "p.bgeo", "p.vtu", "p.usda", "p.msh", "p.png", "p.html", "p.obj"})
         outputs += " -o " + file(name);
     const Outcome posed =
         run("pose " + file("rest.vdb") + " " + skin + outputs + " --report " + file("p.json"));
@@ -64,6 +79,63 @@ TEST_F(Pose, WritesEveryFormatAndCheckProvesThem)
     EXPECT_EQ(volumes.readGridMetadata("rest")->valueType(), "vec3s");
     EXPECT_EQ(shell.rest.surface[1], at_rest.stack.surface(1));
     EXPECT_EQ(shell.surface->voxelSize(), at_rest.surface->voxelSize());
+}
+
+TEST_F(Pose, FramesComeIntoOneStage)
+{
+    const std::string frames = " --frames 12-8x2 ";
+    ASSERT_EQ(pose_frames({12, 10, 8}, frames), ExitCode::success);
+    const std::string call = "usd " + file("p.#.vdb") + frames;
+    const Outcome made = run(call + "--up-axis z -o " + file("p.usda"));
+    ASSERT_EQ(made.status, ExitCode::success) << made.err;
+    const std::string stage = read_bytes(folder / "p.usda");
+    // Times are the frames, in their order.
+    for (const char* said : {"startTimeCode = 8\n", "endTimeCode = 12\n", "upAxis = \"Z\"",
+                             "@./p.10.vdb@", "points.timeSamples"})
+        EXPECT_NE(stage.find(said), std::string::npos) << said;
+    EXPECT_LT(stage.find("@./p.8.vdb@"), stage.find("@./p.12.vdb@"));
+    // The tets are those at rest at all times, so they are written once.
+    EXPECT_EQ(stage.find("tetVertexIndices.timeSamples"), std::string::npos);
+    expect_refusal(call + "-o " + file("p.usd"), ExitCode::usage_error, {"p.usd", ".usda"});
+    expect_refusal(call + "-o " + file("p.#.usda"), ExitCode::usage_error, {"into one file"});
+    expect_refusal("usd " + file("p.8.vdb") + " " + file("none.vdb") + " -o " + file("q.usda"),
+                   ExitCode::read_error, {"none.vdb"});
+}
+
+TEST_F(Pose, FramesComeOntoOnePage)
+{
+    const std::string frames = " --frames 1-3 ";
+    ASSERT_EQ(pose_frames({1, 2, 3}, frames), ExitCode::success);
+    const std::string page = "page " + file("p.#.vdb") + frames + "-o ";
+    const Outcome plan = run(page + file("p.html") + " --dry-run");
+    EXPECT_EQ(plan.out, "reads " + file("p.1.vdb") + " " + file("p.2.vdb") + " " + file("p.3.vdb") +
+                            ", writes " + file("p.html") + "\n");
+    EXPECT_EQ(run(page + file("p.html")).status, ExitCode::success);
+    const std::string text = read_bytes(folder / "p.html");
+    EXPECT_NE(text.find("id=\"frame2\""), std::string::npos);
+    EXPECT_EQ(text.find("id=\"frame3\""), std::string::npos);
+    // The same without --frames; and one of them, by the way of all other formats.
+    const std::string named = file("p.1.vdb") + " " + file("p.2.vdb") + " " + file("p.3.vdb");
+    EXPECT_EQ(run("page " + named + " -o " + file("n.html")).status, ExitCode::success);
+    EXPECT_EQ(read_bytes(folder / "n.html"), text);
+    EXPECT_EQ(run("page " + file("p.2.vdb") + " -o " + file("a.html")).status, ExitCode::success);
+    EXPECT_EQ(run("convert " + file("p.2.vdb") + " -o " + file("b.html")).status,
+              ExitCode::success);
+    // Only what the frame is called differs: the page's own parts are the same.
+    EXPECT_EQ(read_bytes(folder / "a.html").substr(0, 5000),
+              read_bytes(folder / "b.html").substr(0, 5000));
+
+    expect_refusal(page + file("p.#.html"), ExitCode::usage_error, {"\"#\"", "into one file"});
+    expect_refusal(page + file("p.png"), ExitCode::usage_error, {".html"});
+    expect_refusal("page " + file("p.#.vdb") + " --frames 2-4 -o " + file("x.html"),
+                   ExitCode::read_error, {"p.4.vdb"});
+    expect_refusal("convert " + file("p.#.vdb") + frames + "-o " + file("x.html"),
+                   ExitCode::usage_error, {"vdb_shell page"});
+    ASSERT_EQ(run("build " + rod + kCoarse + " --layers 2 -q -o " + file("two.vdb")).status,
+              ExitCode::success);
+    expect_refusal("page " + file("p.1.vdb") + " " + file("two.vdb") + " -o " + file("x.html"),
+                   ExitCode::usage_error, {"two", "not those of p.1"});
+    EXPECT_FALSE(std::filesystem::exists(folder / "x.html"));
 }
 
 TEST_F(Pose, APosedShellIsPosedFromItsRest)
@@ -100,6 +172,101 @@ TEST_F(Pose, OtherTrianglesNeedTheSurfaceAtRest)
                  expected = turn(rest).points;
     for (std::size_t v = 0; v < skin.size(); ++v)
         EXPECT_LT((skin[v] - expected[v]).length(), 1e-5f);
+}
+
+/// The mesh's points back to front, as text, with ids.
+std::string with_ids(const TriangleMesh& mesh, const std::function<int(std::size_t)>& id)
+{
+    const std::size_t n = mesh.points.size();
+    std::ostringstream out;
+    out.precision(9);
+    out << "ply\nformat ascii 1.0\nelement vertex " << n
+        << "\nproperty float x\nproperty float y\nproperty float z\nproperty int id\nelement face "
+        << mesh.triangles.size() << "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (std::size_t i = n; i-- > 0;)
+        out << mesh.points[i][0] << ' ' << mesh.points[i][1] << ' ' << mesh.points[i][2] << ' '
+            << id(i) << '\n';
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        out << "3 " << n - 1 - t[0] << ' ' << n - 1 - t[1] << ' ' << n - 1 - t[2] << '\n';
+    return out.str();
+}
+
+TEST_F(Pose, VelocitiesAreThoseOfTheFramesBesides)
+{
+    // It is faster from frame to frame: 0, .3, .9, 1.8 along x.
+    for (int k = 0; k < 4; ++k)
+        mesh_file("w." + std::to_string(k + 1) + ".obj",
+                  translated(rest, {0.15 * k * (k + 1), 0, 0}));
+    const std::string call = "pose " + file("rest.vdb") + " " + file("w.#.obj") + " --frames 1-4";
+    const std::string neighbours =
+        " --mesh-before " + file("w.#.obj") + " --mesh-after " + file("w.#.obj");
+    const Outcome moving = run(call + neighbours + " --frame-seconds 0.5 -q -o " + file("v.#.vdb") +
+                               " -o " + file("v.#.bgeo"));
+    ASSERT_EQ(moving.status, ExitCode::success) << moving.err;
+    ASSERT_EQ(run(call + " -q -o " + file("s.#.vdb")).status, ExitCode::success);
+    // One way at both ends, and over two frames between them; by hand.
+    const std::array<double, 4> expected{0.6, 0.9, 1.5, 1.8};
+    for (int k = 0; k < 4; ++k) {
+        const std::string number = std::to_string(k + 1);
+        const ShellFile shell = read_shell_vdb(folder / ("v." + number + ".vdb"));
+        const ShellFile still = read_shell_vdb(folder / ("s." + number + ".vdb"));
+        EXPECT_TRUE(still.rest.velocity.empty());
+        ASSERT_EQ(shell.rest.velocity.surface.size(), 2U);
+        for (std::size_t surface = 0; surface < 2; ++surface) {
+            EXPECT_EQ(shell.stack.surface(surface), still.stack.surface(surface));
+            for (const openvdb::Vec3s& v : shell.rest.velocity.surface[surface])
+                EXPECT_LT((Vec3d(v) - Vec3d(expected[std::size_t(k)], 0, 0)).length(), 1e-5);
+        }
+        openvdb::io::File grids(file("v." + number + ".vdb"));
+        grids.open();
+        const auto volume = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grids.readGrid("v"));
+        EXPECT_GT(volume->activeVoxelCount(), 100U);
+        for (auto voxel = volume->cbeginValueOn(); voxel; ++voxel)
+            EXPECT_NEAR(voxel->x(), expected[std::size_t(k)], 1e-5);
+    }
+    // A piece of the sequence has the same bytes as the whole one, so that a farm can share it out.
+    const std::string whole = read_bytes(folder / "v.2.bgeo");
+    ASSERT_EQ(run("pose " + file("rest.vdb") + " " + file("w.#.obj") + neighbours +
+                  " --frames 2 --frame-seconds 0.5 -q -o " + file("v.#.bgeo"))
+                  .status,
+              ExitCode::success);
+    EXPECT_EQ(read_bytes(folder / "v.2.bgeo"), whole);
+    ASSERT_EQ(run("convert " + file("v.2.vdb") + " -o " + file("again.vtu") + " && " +
+                  VDB_SHELL_COMMAND + " convert " + file("v.2.bgeo") + " -o " + file("houdini.vtu"))
+                  .status,
+              ExitCode::success);
+    EXPECT_NE(read_bytes(folder / "again.vtu").find("Name=\"v\""), std::string::npos);
+    EXPECT_EQ(read_bytes(folder / "again.vtu"), read_bytes(folder / "houdini.vtu"));
+    expect_refusal(call + neighbours + " --frame-seconds 0 -q -o " + file("x.#.vdb"),
+                   ExitCode::usage_error, {"--frame-seconds"});
+    expect_refusal(call + " --frame-seconds 1 -q -o " + file("x.#.vdb"), ExitCode::usage_error,
+                   {"--frame-seconds", "--mesh-before"});
+}
+
+TEST_F(Pose, IdsSayWhichPointIsWhich)
+{
+    const TriangleMesh pose = bent(0.8);
+    ASSERT_EQ(
+        run("pose " + file("rest.vdb") + " " + mesh_file("b.obj", pose) + " -q -o " + file("b.vdb"))
+            .status,
+        ExitCode::success);
+    write_bytes(folder / "ids.ply", with_ids(pose, [](std::size_t v) { return int(v); }));
+    const Outcome by_ids =
+        run("pose " + file("rest.vdb") + " " + file("ids.ply") + " -q -o " + file("i.vdb"));
+    ASSERT_EQ(by_ids.status, ExitCode::success) << by_ids.err;
+    EXPECT_EQ(read_shell_vdb(folder / "i.vdb").stack.surface(1),
+              read_shell_vdb(folder / "b.vdb").stack.surface(1));
+
+    // Names of the artist's own, which the surface at rest has too.
+    const auto name = [](std::size_t v) { return 1000 - 3 * int(v); };
+    write_bytes(folder / "posed.ply", with_ids(pose, name));
+    write_bytes(folder / "still.ply", with_ids(rest, name));
+    expect_refusal("pose " + file("rest.vdb") + " " + file("posed.ply") + " -q -o " + file("o.vdb"),
+                   ExitCode::usage_error, {"posed.ply", "no point has the id"});
+    EXPECT_EQ(run("pose " + file("rest.vdb") + " " + file("posed.ply") + " --rest-mesh " +
+                  file("still.ply") + " -q -o " + file("o.vdb"))
+                  .status,
+              ExitCode::success);
 }
 
 TEST_F(Pose, StandsWhereARecentredShellStands)

@@ -10,6 +10,7 @@ COMMAND is the real program, MESH a closed .obj that it can make a shell of.
 import json
 import os
 import re
+import shutil
 import stat
 import subprocess
 import sys
@@ -283,6 +284,46 @@ class Scene(unittest.TestCase):
         self.assertTrue(os.path.isfile(os.path.join(self.folder, "shell.0002.bgeo.sc")))
         failed = subprocess.run(command.replace("--index 2", "--index 3"), shell=True, capture_output=True)
         self.assertNotEqual(failed.returncode, 0)
+
+    # Farms
+
+    def farm(self, *words):
+        """The network of a job of three frames, in tasks of two, and the program's call for a node and an index."""
+        for frame in (1, 2, 3):
+            shutil.copy(MESH, os.path.join(self.folder, f"it's.{frame}.obj"))
+        subprocess.run([COMMAND, "farm", "--engine", "tops", "-o", "job.json", "--chunk", "2", *words, "--", "build",
+                        "it's.#.obj", "-o", "t.#.vtu", "--frames", "1-3", "--voxel-size", "0.1", "--samples", "0", "-q"],
+                       cwd=self.folder, check=True, capture_output=True)
+        network = tops.create_farm(hou.node("/obj"), os.path.join(self.folder, "job.json"))
+
+        def call(node, index=0):
+            command = node.evalParm("pdg_command").replace("`@pdg_index`", str(index))
+            return subprocess.run(command.replace("__PDG_PYTHON__", sys.executable + " -B"), shell=True, capture_output=True,
+                                  text=True)
+        return network, call
+
+    def test_farm_network_does_a_sequence(self):
+        network, call = self.farm()
+        run, wait, join = network._children
+        self.assertEqual([run._type, wait._type, join._type], ["genericgenerator", "waitforall", "genericgenerator"])
+        self.assertEqual([wait._inputs, join._inputs], [{0: run}, {0: wait}])
+        self.assertEqual([run.evalParm("itemcount"), join.evalParm("itemcount")], [2, 1])
+        self.assertEqual(call(run, 1).returncode, 0)
+        early = call(join)
+        self.assertEqual((early.returncode, "not done: 1-2" in early.stdout), (7, True), early.stdout)
+        self.assertEqual(call(run, 0).returncode, 0)
+        whole = call(join)
+        self.assertEqual((whole.returncode, "3 of 3 frames done" in whole.stdout), (0, True), whole.stdout)
+        self.assertTrue(all(os.path.isfile(os.path.join(self.folder, f"t.{frame}.vtu")) for frame in (1, 2, 3)))
+        self.assertNotEqual(call(run, 2).returncode, 0)
+
+    def test_farm_tasks_pass_their_status_on(self):
+        network, call = self.farm()
+        with open(os.path.join(self.folder, "it's.1.obj"), "w", encoding="ascii") as file:
+            file.write("v 0 0 zero\n")
+        self.assertEqual(call(network._children[0], 0).returncode, 3)
+        with self.assertRaisesRegex(ValueError, "expanded"):
+            tops.farm_command("/a$b/job.json", "--join")
 
     def test_thicknesses_span_the_range(self):
         values = [tool.thickness_of(i, 5, 0.1, 0.5) for i in range(5)]

@@ -62,6 +62,10 @@ TEST(ShellGeometry, APosedShellKeepsItsRestBitForBit)
     expect_round_trips(file);
     const ShellFile read = shell_of_geometry(shell_geometry(file), "s");
     EXPECT_EQ(read.rest.surface, file.rest.surface);
+    EXPECT_TRUE(read.rest.velocity.empty());
+    file.rest.velocity.surface = file.rest.surface;
+    EXPECT_EQ(shell_of_geometry(shell_geometry(file), "s").rest.velocity.surface,
+              file.rest.surface);
     file.rest = {};
     EXPECT_FALSE(shell_of_geometry(shell_geometry(file), "s").rest.posed());
 }

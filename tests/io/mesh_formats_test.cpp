@@ -86,6 +86,27 @@ std::string binary_strips(const StripGrid& grid, bool big_endian)
     return bytes;
 }
 
+TEST_F(MeshFormats, ids_of_ply_go_with_their_points)
+{
+    // Vertex 1 is in no triangle; vertex 4 stands where vertex 0 stands.
+    const std::string vertices = "0 0 0 70\n9 9 9 5\n1 0 0 -3\n0 1 0 12345678901\n0 0 0 8\n";
+    const auto text = [&](const char* property) {
+        return std::string("ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\n") +
+               "property float y\nproperty float z\nproperty " + property +
+               "\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
+               "3 0 2 3\n3 4 3 2\n";
+    };
+    EXPECT_EQ(read("ids.ply", text("int id")).ids,
+              (std::vector<std::int64_t>{70, -3, 12345678901}));
+    ReadOptions apart;
+    apart.weld = false;
+    EXPECT_EQ(read_mesh(folder_ / "ids.ply", apart).ids,
+              (std::vector<std::int64_t>{70, -3, 12345678901, 8}));
+    // Numbers of another kind are no ids, and neither is another name.
+    EXPECT_TRUE(read("real.ply", text("float id")).ids.empty());
+    EXPECT_TRUE(read("name.ply", text("int number")).ids.empty());
+}
+
 TEST_F(MeshFormats, reads_triangle_strips_of_ply_in_every_encoding)
 {
     const std::int32_t n = 5;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/pose/bind_surface.h"
 
+#include "vdb_shell/core/error.h"
+
 #include "support/bends.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +43,25 @@ TEST(BindSurface, CornersGoWithTheirTriangles)
     const test::Points there = move_bound(bind_surface(rod.points, rod), posed);
     for (std::size_t i = 0; i < there.size(); ++i)
         EXPECT_LT((there[i] - posed.points[i]).length(), 1e-5f);
+}
+
+TEST(BindSurface, IdsOrderPointsWhereverTheyStand)
+{
+    const test::Points points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    EXPECT_EQ(in_order_of_ids(points, {70, -5, 8}, {-5, 8, 70}, "m.ply"),
+              (test::Points{{1, 0, 0}, {2, 0, 0}, {0, 0, 0}}));
+    // Points that nobody asks for are left aside: a vertex without triangles has an id, too.
+    EXPECT_EQ(in_order_of_ids(points, {70, -5, 8}, {8}, "m.ply"), (test::Points{{2, 0, 0}}));
+    const auto complaint = [&](const std::vector<std::int64_t>& ids) -> std::string {
+        try {
+            in_order_of_ids(points, ids, {1, 2, 3}, "m.ply");
+        } catch (const InvalidOption& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(complaint({1, 2, 2}), "m.ply: the points 1 and 2 have the same id 2");
+    EXPECT_EQ(complaint({1, 3, 4}), "m.ply: no point has the id 2");
 }
 
 } // namespace

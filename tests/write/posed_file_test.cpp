@@ -73,6 +73,27 @@ TEST(PosedFile, RestOfOtherSizeIsNotWritten)
     EXPECT_FALSE(std::filesystem::exists(folder / "p.vdb"));
 }
 
+TEST(PosedFile, VelocitiesReadBackBitForBit)
+{
+    const test::TemporaryFolder folder;
+    ShellFile written = posed_sample();
+    EXPECT_TRUE(written.rest.velocity.empty());
+    write_shell_vdb(folder / "still.vdb", written);
+    EXPECT_TRUE(read_shell_vdb(folder / "still.vdb").rest.velocity.empty());
+    written.rest.velocity.surface = written.rest.surface;
+    for (std::vector<Vec3s>& surface : written.rest.velocity.surface)
+        for (Vec3s& v : surface)
+            v = Vec3s(v[1] / 7.0f, -v[0], 1e-30f);
+    write_shell_vdb(folder / "v.vdb", written);
+    const ShellFile read = read_shell_vdb(folder / "v.vdb");
+    ASSERT_EQ(read.rest.velocity.surface.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k)
+        EXPECT_TRUE(
+            test::same_bits(read.rest.velocity.surface[k], written.rest.velocity.surface[k]));
+    written.rest.velocity.surface[0].pop_back();
+    EXPECT_THROW(write_shell_vdb(folder / "w.vdb", written), InvalidOption);
+}
+
 TEST(PosedFile, AMissingRestIsRefused)
 {
     const test::TemporaryFolder folder;
@@ -92,9 +113,13 @@ TEST(PosedFile, TetsOfVtuHaveTheirRest)
 {
     const test::TemporaryFolder folder;
     const ShellFile file = posed_sample();
-    write_tets(folder / "p.vtu", file.tets, {}, {}, {{}, rest_of_tet_points(file.tets, file.rest)});
+    write_tets(folder / "p.vtu", file.tets, {}, {},
+               {{}, vectors_of_tet_points(file.tets, file.rest), {}});
     EXPECT_NE(test::read_bytes(folder / "p.vtu").find("Name=\"rest\""), std::string::npos);
-    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {Vec3s(0)}}), InvalidOption);
+    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {}, {Vec3s(0)}}),
+                 InvalidOption);
+    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {Vec3s(0)}, {}}),
+                 InvalidOption);
 }
 
 } // namespace

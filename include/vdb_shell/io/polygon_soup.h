@@ -22,6 +22,7 @@ struct PolygonSoup {
     /// Indices of points, polygon after polygon, each counter-clockwise seen from outside.
     std::vector<std::uint32_t> corners;
     std::vector<std::uint32_t> polygon_sizes; ///< how many of `corners` each polygon takes
+    std::vector<std::int64_t> ids;            ///< by point (ReadResult::ids); may be empty
 };
 
 /// The steps that read_mesh takes after it has parsed a file, with the same guarantees: moves the

@@ -6,6 +6,7 @@
 #include "vdb_shell/options/describe.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -47,6 +48,10 @@ struct ReadReport {
 struct ReadResult {
     TriangleMesh mesh;
     ReadReport report;
+    /// By point of the mesh: the vertex property `id` of a PLY file, the point attribute `id` of
+    /// Houdini geometry, which name a vertex whatever its place in the file; of merged vertices
+    /// that of the first. Empty where the file has none, or none of whole numbers.
+    std::vector<std::int64_t> ids;
 };
 
 /// Reads OBJ, PLY, OFF or STL by extension; docs/mesh_files.md lists the forms that are understood.

@@ -4,6 +4,7 @@
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace vdb_shell
@@ -26,5 +27,12 @@ std::vector<BoundPoint> bind_surface(const std::vector<openvdb::Vec3s>& points,
 /// surface.
 std::vector<openvdb::Vec3s> move_bound(const std::vector<BoundPoint>& bound,
                                        const TriangleMesh& posed);
+
+/// The points in the order in which `wanted` names them. Throws InvalidOption, its message opened
+/// by `name`, for an id that comes twice or is missing. Precondition: an id for each point.
+std::vector<openvdb::Vec3s> in_order_of_ids(const std::vector<openvdb::Vec3s>& points,
+                                            const std::vector<std::int64_t>& ids,
+                                            const std::vector<std::int64_t>& wanted,
+                                            const std::string& name);
 
 } // namespace vdb_shell

@@ -83,8 +83,7 @@ private:
 /// Nothing is guaranteed but what the report and a certificate tell: a skin that is folded too
 /// sharply has no shell of these tets. Same bits for any number of threads.
 /// Throws InvalidOption when `skin` has another number of points, a point is not finite, or an
-/// option is out of range; GeometryError where a tapered shell's skin puts two vertices in one
-/// place; Cancelled.
+/// option is out of range; Cancelled.
 PoseResult pose_shell(const RestShell& rest, const std::vector<openvdb::Vec3s>& skin,
                       const PoseOptions& options = {}, Interrupter* interrupter = nullptr);
 

@@ -10,7 +10,12 @@ namespace vdb_shell
 {
 class OutputSet;
 
-enum class Axis { x, y, z };
+enum class Axis {
+    x,
+    y,
+    z,
+    view ///< towards the viewer: of a picture in space alone
+};
 const NameTable<Axis>& names(Axis);
 
 struct CrossSectionOptions {
@@ -22,7 +27,8 @@ OptionList describe(CrossSectionOptions& options);
 
 /// Draws the shell cut by a plane, as a PNG: prisms in alternating tints, tet edges, the outer and
 /// inner outlines, places that more than one tet covers in red. Throws WriteError; InvalidOption
-/// for a width outside [16, 16384] or a position outside [0, 1].
+/// for a width outside [16, 16384], a position outside [0, 1], and
+/// Axis::view.
 void write_cross_section(const std::filesystem::path& path, const PrismShell& shell,
                          const TetMesh& tets, const CrossSectionOptions& options = {},
                          OutputSet* with = nullptr);

@@ -48,18 +48,24 @@ struct ShellPoints {
 /// Precondition: require_consistent.
 ShellPoints number_points(const ShellStack& stack, const TetMesh& tets);
 
-/// Where the points of a posed shell were at rest.
-struct RestPoints {
-    std::vector<std::vector<openvdb::Vec3s>> surface; ///< by surface and vertex; empty: not posed
+/// A vector for each point of a shell.
+struct PointVectors {
+    std::vector<std::vector<openvdb::Vec3s>> surface; ///< by surface and vertex; may be empty
     std::vector<openvdb::Vec3s> core;                 ///< of CoreTets::points
 
-    bool posed() const { return !surface.empty(); }
+    bool empty() const { return surface.empty(); }
 };
-std::vector<openvdb::Vec3s> rest_by_id(const ShellPoints& points, const RestPoints& rest);
-std::vector<std::vector<openvdb::Vec3s>> rest_by_surface(const ShellPoints& points,
-                                                         const std::vector<openvdb::Vec3s>& by_id);
-/// By point of joined_tets(tets, core).
-std::vector<openvdb::Vec3s> rest_of_tet_points(const TetMesh& tets, const RestPoints& rest);
+/// What a posed shell's points have besides their places.
+struct RestPoints : PointVectors { ///< where they were at rest
+    PointVectors velocity;         ///< a second; empty where it is not known
+
+    bool posed() const { return !empty(); }
+};
+std::vector<openvdb::Vec3s> vectors_by_id(const ShellPoints& points, const PointVectors& vectors);
+std::vector<std::vector<openvdb::Vec3s>>
+vectors_by_surface(const ShellPoints& points, const std::vector<openvdb::Vec3s>& by_id);
+/// By point of joined_tets(tets, core); empty where there are none.
+std::vector<openvdb::Vec3s> vectors_of_tet_points(const TetMesh& tets, const PointVectors& vectors);
 
 /// By id: the foot of the pillar whose innermost point it is; other points have none.
 std::vector<CoreFoot> feet_by_id(const ShellPoints& points, const std::vector<CoreFoot>& feet);

@@ -19,8 +19,8 @@ const std::vector<std::string>& tet_file_extensions();
 
 /// What .vtu has of each point besides; each list may be empty.
 struct PointExtras {
-    std::vector<CoreFoot> feet;       ///< feet_of_tet_points
-    std::vector<openvdb::Vec3s> rest; ///< rest_of_tet_points
+    std::vector<CoreFoot> feet;                 ///< feet_of_tet_points
+    std::vector<openvdb::Vec3s> rest, velocity; ///< vectors_of_tet_points
 };
 
 /// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name
@@ -29,9 +29,9 @@ struct PointExtras {
 /// the file of the surface has them. Data beside them, where the format has a
 /// place (docs/file_format.md): per point source vertex and layer, per tet its prism and, where
 /// `certified` is given, its flag (Overlaps::certified; .vtu only); per point its foot on a core
-/// and where it was at rest, where `extras` have them (.vtu only). Files appear whole or not at
-/// all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown extension
-/// for flags that are not one a tet and extras that are not one a point, WriteError.
+/// where it was at rest and its velocity, where `extras` have them (.vtu only). Files appear whole
+/// or not at all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown
+/// extension for flags that are not one a tet and extras that are not one a point, WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {},
                 const PointExtras& extras = {}, OutputSet* with = nullptr);

@@ -28,6 +28,11 @@ inline constexpr int kLayeredSchema = 2; ///< the first that knows layers
 inline constexpr int kTaperedSchema = 3; ///< the first that knows pillars with a common end
 inline constexpr int kFilledSchema = 4;  ///< the first that knows tets of a core
 inline constexpr int kPosedSchema = 5;   ///< the first that knows where points were at rest
+/// The oldest schema that has words for the shell. Files of one layer below the surface say nothing
+/// of layers.
+int schema_for(const ShellCounts& counts);
+/// PrismSplit::ripples of all layers.
+std::size_t ripples_of(const ShellStack& stack);
 
 /// All that a shell's .vdb holds.
 struct ShellFile {
@@ -44,6 +49,7 @@ struct ShellFile {
     CoreTets core{};                   ///< empty where nothing fills the shell
     RestPoints rest{};                 ///< of a posed shell
     GridBasePtr rest_volume{};         ///< written if there is one; not read
+    GridBasePtr velocity_volume{};     ///< the same
     /// Digests of parts of the file that held when it was read; 0 where it has none.
     std::size_t digests = 0;
 };
@@ -89,6 +95,7 @@ struct ShellInfo {
 /// The shell of the file, or where it is posed that at rest.
 ShellStack rest_stack(const ShellFile& file);
 CoreTets rest_core(const ShellFile& file);
+RestPoints rest_points(const ShellFile& file);
 
 /// Float grid "depth" over the voxels whose centres lie in a tet: 0 on the outer surface, 1 on the
 /// inner one, linear in each tet (with n layers, k / n on surface k); where tets overlap, the one

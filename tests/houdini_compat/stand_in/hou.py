@@ -146,6 +146,7 @@ class Node:  # Node.html, OpNode.html, SopNode.html
         self._type, self._name = type_name, name
         self._parms = {parm: Parm("") for parm in self._OWN.get(type_name, ())}
         self._children, self._geometry, self._displayed = [], Geometry(), False
+        self._inputs = {}
 
     def geometry(self):
         return self._geometry
@@ -172,6 +173,9 @@ class Node:  # Node.html, OpNode.html, SopNode.html
         child = Node(node_type_name, node_name)
         self._children.append(child)
         return child
+
+    def setInput(self, input_index, item_to_become_input, output_index=0):
+        self._inputs[input_index] = item_to_become_input
 
     def layoutChildren(self):
         pass

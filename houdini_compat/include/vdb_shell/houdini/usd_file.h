@@ -3,6 +3,7 @@
 
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/write/vdb_file.h"
+#include "vdb_shell/write/view.h"
 
 #include <filesystem>
 #include <vector>
@@ -10,9 +11,6 @@
 namespace vdb_shell
 {
 class OutputSet;
-
-enum class UpAxis { y, z };
-const NameTable<UpAxis>& names(UpAxis);
 
 /// What the stage says of its coordinates; they themselves are written as they are.
 struct UsdOptions {

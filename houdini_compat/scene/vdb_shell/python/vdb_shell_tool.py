@@ -5,6 +5,8 @@ What is called `geometry` only has to have saveToFile, loadFromFile and merge, a
 The program is `vdb_shell` on the PATH, or what VDB_SHELL_COMMAND names.
 
     python vdb_shell_tool.py work-item --index 2 --count 5 --from 0.05 --to 0.4 MESH FOLDER
+    python vdb_shell_tool.py farm-item --index 2 JOB        a task of what `vdb_shell farm --engine tops` wrote
+    python vdb_shell_tool.py farm-item --join JOB           what all of them have left
 """
 
 import argparse
@@ -195,9 +197,40 @@ def work_item(arguments):
     print(f"{output}: thickness {thickness:.6g}, {summary(report)}")
 
 
+def farm_list(path):
+    """What `vdb_shell farm --engine tops` wrote."""
+    with open(path, encoding="utf-8") as file:
+        job = json.load(file)
+    if job.get("schema") != 1:
+        raise ValueError(f"{path}: schema is {job.get('schema')}, must be 1")
+    return job
+
+
+def farm_item(arguments):
+    """Runs the commands of a task, or those that join, and says as they say: the first status that is not 0."""
+    job = farm_list(arguments.job)
+    if not arguments.join and not 0 <= arguments.index < len(job["tasks"]):
+        raise ValueError(f"index {arguments.index} is not in 0 to {len(job['tasks']) - 1}")
+    os.makedirs(job["folder"], exist_ok=True)
+    first = 0
+    for name, *words in job["join"] if arguments.join else job["tasks"][arguments.index]:
+        status = subprocess.run([program() if name == "vdb_shell" else name, *words], cwd=job["home"]).returncode
+        first = first or status
+    # A signal is told as a shell tells it.
+    return 128 - first if first < 0 else first
+
+
 def main(words=None):
     parser = argparse.ArgumentParser(prog="vdb_shell_tool.py")
-    item = parser.add_subparsers(required=True).add_parser("work-item", help="one thickness of several")
+    commands = parser.add_subparsers(required=True)
+    farm = commands.add_parser("farm-item", help="a task of a farm")
+    which = farm.add_mutually_exclusive_group(required=True)
+    which.add_argument("--index", type=int)
+    which.add_argument("--join", action="store_true")
+    farm.add_argument("job")
+    farm.set_defaults(run=farm_item)
+    item = commands.add_parser("work-item", help="one thickness of several")
+    item.set_defaults(run=work_item)
     item.add_argument("--index", type=int, required=True)
     item.add_argument("--count", type=int, required=True)
     item.add_argument("--from", dest="low", type=float, required=True)
@@ -207,11 +240,11 @@ def main(words=None):
     item.add_argument("mesh")
     item.add_argument("folder")
     try:
-        work_item(parser.parse_args(words))
-    except (ShellError, ValueError) as error:
+        arguments = parser.parse_args(words)
+        return arguments.run(arguments) or 0
+    except (ShellError, ValueError, OSError) as error:
         print(error, file=sys.stderr)
         return getattr(error, "status", None) or 1
-    return 0
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A task network that builds the same mesh with several thicknesses, one work item each."""
+"""Task networks: one that builds the same mesh with several thicknesses, one work item each; and one that does what
+`vdb_shell farm --engine tops` wrote."""
 
 import os
 import shlex
@@ -24,6 +25,34 @@ def create(parent, mesh, folder, count, low, high):
     shells.parm("itemcount").set(count)
     shells.parm("pdg_command").set(command(mesh, folder, count, low, high))
     shells.setDisplayFlag(True)
+    network.layoutChildren()
+    return network
+
+
+def farm_command(job, *words):
+    """What each work item runs. Houdini would expand signs of its own in the name."""
+    if any(sign in job for sign in "`$\"'\n"):
+        raise ValueError(f"{job}: a name with ` $ or quotes would be expanded")
+    script = os.path.abspath(tool.__file__)
+    return " ".join(["__PDG_PYTHON__", shlex.quote(script), "farm-item", *words, shlex.quote(job)])
+
+
+def create_farm(parent, job):
+    """`job`: the list that `vdb_shell farm --engine tops` wrote. A work item for each task, and behind all of
+    them one that joins their manifests."""
+    job = os.path.abspath(job)
+    tasks = tool.farm_list(job)["tasks"]
+    network = parent.createNode("topnet", "vdb_shell_farm")
+    run = network.createNode("genericgenerator", "tasks")
+    run.parm("itemcount").set(len(tasks))
+    run.parm("pdg_command").set(farm_command(job, "--index", "`@pdg_index`"))
+    wait = network.createNode("waitforall", "all")
+    wait.setInput(0, run)
+    join = network.createNode("genericgenerator", "join")
+    join.setInput(0, wait)
+    join.parm("itemcount").set(1)
+    join.parm("pdg_command").set(farm_command(job, "--join"))
+    join.setDisplayFlag(True)
     network.layoutChildren()
     return network
 

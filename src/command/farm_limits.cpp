@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// From the model of `estimate` to what a scheduler is asked for. A task that is ended for want of
+// memory or time costs more than one that asked for too much, so the margins are wide.
+
+#include "command/farm_limits.h"
+
+#include "vdb_shell/core/error.h"
+
+#include "command/call.h"
+#include "command/cost_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+/// Seconds of a task: starting one takes some, and what a kill costs is what it had not noted yet.
+constexpr double kTaskSeconds = 600;
+// Time is missed by a factor of two where shapes are odd, and other machines are slower; memory by
+// a fifth (docs/farm.md).
+constexpr double kTimeMargin = 4, kLeastMinutes = 5, kMemoryMargin = 1.25, kMoreMemoryGib = 0.25;
+
+/// Empty where the model knows the call; else why not.
+std::string add_cost(const FarmCall& call, int cpus, StepCost& dearest)
+{
+    if (call.command != "build")
+        return "`" + call.command + "`";
+    if (!std::filesystem::exists(call.first_input))
+        return "a surface that is not there yet";
+    Call first;
+    first.parse(call.first_words);
+    first.plan();
+    try {
+        const BuildCost cost = estimate_build(first.build_arguments());
+        if (!cost.not_counted.empty())
+            return cost.not_counted.front();
+        dearest.seconds = std::max(dearest.seconds, cost.seconds(cpus));
+        dearest.memory = std::max(dearest.memory, cost.memory);
+        return "";
+    } catch (const Error& error) {
+        return error.what();
+    }
+}
+
+} // namespace
+
+std::optional<StepCost> dearest_step(const std::vector<FarmCall>& calls, int cpus,
+                                     const Context& context)
+{
+    StepCost dearest;
+    for (const FarmCall& call : calls)
+        if (const std::string unknown = add_cost(call, cpus, dearest); !unknown.empty()) {
+            context.say(LogLevel::warning, "warning: no estimate of " + unknown +
+                                               ": the job has no limits but those of --memory "
+                                               "and --minutes");
+            return std::nullopt;
+        }
+    return dearest;
+}
+
+std::size_t chunk_for(const StepCost& cost, std::size_t steps)
+{
+    const double fit = kTaskSeconds / std::max(cost.seconds, 1e-3);
+    return fit < double(steps) ? std::size_t(std::max(fit, 1.0)) : steps;
+}
+
+void set_limits(FarmJob& job, const StepCost& cost)
+{
+    constexpr double kSecondsPerMinute = 60, kGib = 1024.0 * 1024 * 1024;
+    std::size_t most = 0, at_once = 1;
+    for (const FarmTask& task : job.tasks) {
+        std::size_t steps = 0;
+        for (const FarmRun& run : task) {
+            steps += std::max<std::size_t>(run.frames.size(), 1);
+            // Small frames are worked on at the same time.
+            at_once = std::max(at_once, std::min(run.frames.size(), std::size_t(job.limits.cpus)));
+        }
+        most = std::max(most, steps);
+    }
+    if (!job.limits.minutes)
+        job.limits.minutes =
+            std::max(kLeastMinutes, kTimeMargin * double(most) * cost.seconds / kSecondsPerMinute);
+    if (!job.limits.memory_gib)
+        job.limits.memory_gib =
+            kMemoryMargin * double(at_once) * cost.memory / kGib + kMoreMemoryGib;
+}
+
+} // namespace vdb_shell::command

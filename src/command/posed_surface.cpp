@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes files of a surface in a pose, gives its points in the order of the shell's vertices. That
+// the triangles are the same, one for one, proves that the points are; where they are not, ids say
+// which point is which, whatever their order.
+
+#include "command/posed_surface.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/pose/bind_surface.h"
+
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+using openvdb::Vec3s;
+
+/// The mesh in the frame of the shell's.
+ReadResult read_placed(const std::filesystem::path& path, InputFormat format,
+                       const Placement& placement, bool weld)
+{
+    ReadOptions options;
+    options.weld = weld;
+    // Where the shell keeps digits of its own, so must the pose.
+    options.recentre = placement.moves();
+    ReadResult read = read_surface(path, options, format);
+    const Placement& own = read.report.placement;
+    if (own.moves() || placement.moves())
+        for (Vec3s& p : read.mesh.points)
+            p = Vec3s((own.in_file(p) - placement.origin) / placement.unit);
+    return read;
+}
+
+/// What a mesh has to have, and whose it is.
+struct Wanted {
+    std::size_t vertices;
+    const std::vector<openvdb::Vec3I>& triangles;
+    std::vector<std::int64_t> ids; ///< by vertex
+    std::string whose;
+};
+
+[[noreturn]] void refuse(const PosedSurface& posed, const TriangleMesh& mesh, const Wanted& wanted)
+{
+    throw InvalidOption(posed.mesh.string() + ": it has " + std::to_string(mesh.points.size()) +
+                        " vertices and " + std::to_string(mesh.triangles.size()) +
+                        " triangles that are not those of " + wanted.whose + ", which has " +
+                        std::to_string(wanted.vertices) + " and " +
+                        std::to_string(wanted.triangles.size()) +
+                        ", and its points have no ids; --rest-mesh gives the same surface at rest "
+                        "where the shell's was repaired, wrapped or remeshed");
+}
+
+/// Equal vertices of the file are merged or not, whichever gives the triangles that are wanted: in
+/// a pose other vertices can be equal than at rest. Standard input can be read only once.
+std::vector<Vec3s> read_points(const PosedSurface& posed, const Placement& placement,
+                               const Wanted& wanted)
+{
+    const auto fits = [&](const TriangleMesh& mesh) {
+        return mesh.points.size() == wanted.vertices && mesh.triangles == wanted.triangles;
+    };
+    ReadResult read = read_placed(posed.mesh, posed.format, placement, true);
+    if (fits(read.mesh))
+        return std::move(read.mesh.points);
+    if (posed.format == InputFormat::by_extension) {
+        read = read_placed(posed.mesh, posed.format, placement, false);
+        if (fits(read.mesh))
+            return std::move(read.mesh.points);
+    }
+    if (read.ids.empty() || wanted.ids.empty())
+        refuse(posed, read.mesh, wanted);
+    return in_order_of_ids(read.mesh.points, read.ids, wanted.ids, posed.mesh.string());
+}
+
+} // namespace
+
+std::vector<Vec3s> read_posed_skin(const PosedSurface& posed, const ShellStack& at_rest,
+                                   const Placement& placement, const std::filesystem::path& shell)
+{
+    const std::vector<Vec3s>& skin = at_rest.surface(at_rest.skin);
+    if (posed.rest_mesh.empty()) {
+        // A shell's vertices have the numbers of its mesh's points.
+        std::vector<std::int64_t> numbers(skin.size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        return read_points(posed, placement,
+                           {skin.size(), at_rest.triangles(), std::move(numbers),
+                            "the surface of " + shell.string()});
+    }
+    ReadResult rest = read_placed(posed.rest_mesh, InputFormat::by_extension, placement, true);
+    TriangleMesh moved = rest.mesh;
+    moved.points = read_points(posed, placement,
+                               {rest.mesh.points.size(), rest.mesh.triangles, std::move(rest.ids),
+                                posed.rest_mesh.string()});
+    return move_bound(bind_surface(skin, rest.mesh), moved);
+}
+
+} // namespace vdb_shell::command

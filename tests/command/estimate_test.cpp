@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_fixture.h"
+#include "support/shapes.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+
+// What a build would cost, held against a build (docs/farm.md has the model and its errors).
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+using command::ExitCode;
+using nlohmann::json;
+
+class Estimate : public Command
+{
+protected:
+    json estimate(const std::string& words)
+    {
+        const Outcome result = run("--threads 1 estimate " + words + " --report -");
+        EXPECT_EQ(result.status, ExitCode::success) << result.err;
+        return json::parse(result.out);
+    }
+
+    json of(const std::string& words) { return estimate(words).at("meshes").at(0); }
+};
+
+TEST_F(Estimate, ItIsNearWhatABuildTakes)
+{
+    const std::string sphere = mesh_file("s.obj", icosphere(1.0, 4));
+    const std::string options =
+        sphere + " --resolution 128 -o " + file("s.vdb") + " -o " + file("s.vtu") + " --layers 2";
+    const json guess = of(options);
+    EXPECT_FALSE(std::filesystem::exists(folder / "s.vdb"));
+    ASSERT_EQ(run("build " + options + " --report " + file("s.json")).status, ExitCode::success);
+    const json report = json::parse(read_bytes(folder / "s.json"));
+    EXPECT_EQ(guess.at("triangles"), report.at("mesh").at("triangles"));
+    EXPECT_DOUBLE_EQ(guess.at("voxel_size").get<double>(),
+                     report.at("field").at("voxel_size").get<double>());
+    double peak = 0;
+    for (const json& stage : report.at("stages"))
+        peak = std::max(peak, stage.at("peak_memory_bytes").get<double>());
+    EXPECT_LT(guess.at("memory_bytes").get<double>(), 2 * peak);
+    EXPECT_GT(guess.at("memory_bytes").get<double>(), peak / 2);
+    const double disk = double(std::filesystem::file_size(folder / "s.vdb")) +
+                        double(std::filesystem::file_size(folder / "s.vtu"));
+    EXPECT_LT(guess.at("disk_bytes").get<double>(), 3 * disk);
+    EXPECT_GT(guess.at("disk_bytes").get<double>(), disk / 3);
+}
+
+TEST_F(Estimate, MoreWorkCostsMore)
+{
+    const std::string sphere = mesh_file("s.obj", icosphere(1.0, 3));
+    const json base = of(sphere);
+    const auto seconds = [&](const std::string& more) {
+        return of(sphere + " " + more).at("seconds").get<double>();
+    };
+    const double plain = base.at("seconds").get<double>();
+    EXPECT_GT(seconds("--subdivide 1"), plain);
+    EXPECT_LT(seconds("--decimate-to 100"), plain);
+    EXPECT_GT(seconds("--resolution 512"), plain);
+    EXPECT_GT(seconds("--layers 4"), plain);
+    EXPECT_LT(json::parse(run("--threads 2 estimate " + sphere + " --report -").out)
+                  .at("seconds")
+                  .get<double>(),
+              plain);
+    EXPECT_EQ(base.at("disk_bytes"), 0) << "nothing would be written";
+    EXPECT_EQ(of(sphere + " --subdivide 2").at("triangles"), 20 * 64 * 16);
+    // Lengths of a surface in a unit of its own are in that of its file.
+    const std::string small = mesh_file("small.obj", icosphere(1e-3, 3));
+    EXPECT_NEAR(of(small + " --rescale").at("voxel_size").get<double>(),
+                1e-3 * base.at("voxel_size").get<double>(), 1e-9);
+}
+
+TEST_F(Estimate, WhatItDoesNotKnowIsSaid)
+{
+    const std::string sphere = mesh_file("s.obj", icosphere(1.0, 2));
+    EXPECT_EQ(of(sphere).at("not_counted"), json::array());
+    EXPECT_EQ(of(sphere + " --side both --taper").at("not_counted"), json({"--side", "--taper"}));
+    const Outcome text = run("estimate " + sphere + " " + sphere + " --wrap");
+    EXPECT_NE(text.out.find("s.obj: 320 triangles"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("not counted: --wrap"), std::string::npos) << text.out;
+    const json two = estimate(sphere + " " + sphere);
+    EXPECT_EQ(two.at("seconds").get<double>(),
+              2 * two.at("meshes").at(0).at("seconds").get<double>());
+    ASSERT_EQ(run("build " + sphere + kCoarse + "-q -o " + file("s.vdb")).status,
+              ExitCode::success);
+    expect_refusal("estimate " + file("s.vdb"), ExitCode::usage_error, {"s.vdb", "level set"});
+    expect_refusal("estimate " + file("none.obj"), ExitCode::read_error, {"none.obj"});
+    expect_refusal("estimate " + sphere + " --thickness -1", ExitCode::usage_error,
+                   {"--thickness"});
+}
+
+TEST_F(Estimate, AJobAsksForWhatItSays)
+{
+    mesh_file("s.1.obj", icosphere(1.0, 2));
+    mesh_file("s.2.obj", icosphere(1.0, 2));
+    const std::string call =
+        " -- build " + file("s.#.obj") + " --frames 1-2 --voxel-size 0.1 -o " + file("t.#.vdb");
+    const auto job = [&](const std::string& more, const std::string& behind) {
+        const Outcome result =
+            run("farm --engine slurm -o " + file("j") + " " + more + call + behind);
+        EXPECT_EQ(result.status, ExitCode::success) << result.err;
+        return read_bytes(folder / "j");
+    };
+    const std::string both = job("", "");
+    EXPECT_NE(both.find("#SBATCH --array=0-0\n"), std::string::npos) << "ten minutes hold both";
+    EXPECT_NE(both.find("#SBATCH --mem="), std::string::npos);
+    EXPECT_NE(both.find("#SBATCH --time=5\n"), std::string::npos);
+    const std::string given = job("--memory 1.5 --minutes 7 --chunk 1", "");
+    EXPECT_NE(given.find("#SBATCH --array=0-1\n"), std::string::npos);
+    EXPECT_NE(given.find("#SBATCH --mem=1536M\n#SBATCH --time=7\n"), std::string::npos) << given;
+    const std::string unknown = job("", " --taper");
+    EXPECT_EQ(unknown.find("#SBATCH --mem="), std::string::npos) << unknown;
+}
+
+} // namespace
+} // namespace vdb_shell::test

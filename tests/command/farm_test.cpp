@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_fixture.h"
+#include "support/shapes.h"
+
+#include "command/shell_words.h"
+#include "vdb_shell/core/error.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+// Jobs for a farm, and the manifests of their tasks (docs/farm.md). tests/command/farm_slurm.py has
+// a real Slurm run one.
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+using command::ExitCode;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+class Farm : public Command
+{
+protected:
+    void spheres(int first, int last)
+    {
+        for (int frame = first; frame <= last; ++frame)
+            mesh_file("s." + std::to_string(frame) + ".obj", icosphere(1.0 + 0.1 * frame, 2));
+    }
+
+    std::string farm(const std::string& more = "")
+    {
+        return "farm --engine slurm -o " + file("j.sbatch") + " --chunk 2 " + more + " -- ";
+    }
+
+    std::string build(const std::string& frames, const std::string& more = "")
+    {
+        return "build " + file("s.#.obj") + " -q --samples 0 --voxel-size 0.1 -o " +
+               file("t.#.vtu") + " --frames " + frames + " " + more;
+    }
+
+    /// The job's own shell, where no Slurm is.
+    Outcome job(const std::string& words)
+    {
+        const std::string line =
+            "bash " + file("j.sbatch") + " " + words + " >" + file("out") + " 2>" + file("err");
+        const int status = std::system(line.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(folder / "out"),
+                read_bytes(folder / "err")};
+    }
+
+    bool there(const std::string& name) { return fs::exists(folder / name); }
+};
+
+TEST_F(Farm, TasksDoWhatOneCallDoes)
+{
+    spheres(1, 5);
+    ASSERT_EQ(run(build("1-5")).status, ExitCode::success);
+    std::vector<std::string> bytes;
+    for (int frame = 1; frame <= 5; ++frame) {
+        const fs::path output = folder / ("t." + std::to_string(frame) + ".vtu");
+        bytes.push_back(read_bytes(output));
+        fs::remove(output);
+    }
+    const Outcome written =
+        run(farm() + build("1-5", "--keep-going --resume --manifest " + file("whole.json")));
+    ASSERT_EQ(written.status, ExitCode::success) << written.err;
+    EXPECT_NE(written.out.find("5 frames or runs in 3 tasks"), std::string::npos) << written.out;
+    EXPECT_FALSE(there("t.1.vtu")) << "the job is written and not run";
+    for (const char* task : {"task 2", "task 0"})
+        EXPECT_EQ(job(task).status, ExitCode::success) << task;
+    const Outcome early = job("join");
+    EXPECT_EQ(early.status, ExitCode::check_failed);
+    EXPECT_NE(early.out.find("3 of 5 frames done, not done: 3-4"), std::string::npos) << early.out;
+    EXPECT_EQ(job("task 1").status, ExitCode::success);
+    EXPECT_EQ(job("join").status, ExitCode::success);
+    EXPECT_EQ(job("task 3").status, ExitCode::usage_error);
+    for (int frame = 1; frame <= 5; ++frame)
+        EXPECT_EQ(read_bytes(folder / ("t." + std::to_string(frame) + ".vtu")),
+                  bytes[std::size_t(frame - 1)]);
+    const Outcome again = run(build("1-5", "--resume --manifest " + file("whole.json")));
+    EXPECT_NE(again.err.find("left out: 5"), std::string::npos) << again.err;
+}
+
+TEST_F(Farm, AJoinTellsWhatFailedAndWhatIsGone)
+{
+    spheres(1, 4);
+    write_bytes(folder / "s.2.obj", "v 0 0 zero\n");
+    ASSERT_EQ(run(farm() + build("1-4")).status, ExitCode::success);
+    EXPECT_EQ(job("join").status, ExitCode::read_error) << "no task has run";
+    EXPECT_EQ(job("task 0").status, ExitCode::read_error) << "a task passes the status on";
+    EXPECT_EQ(job("task 1").status, ExitCode::success);
+    fs::remove(folder / "t.3.vtu");
+    write_bytes(folder / "t.4.vtu", "short");
+    const Outcome joined = job("join");
+    EXPECT_EQ(joined.status, ExitCode::read_error);
+    for (const std::string& words :
+         {std::string("frame 2: status 3, "), file("s.2.obj"),
+          "frame 3: missing: " + file("t.3.vtu"), "frame 4: missing: " + file("t.4.vtu"),
+          std::string("1 of 4 frames done, not done: 2-4")})
+        EXPECT_NE(joined.out.find(words), std::string::npos) << words << '\n' << joined.out;
+    const json noted = json::parse(read_bytes(folder / "j.tasks" / "call-0.json"));
+    EXPECT_EQ(noted.at("steps").size(), 4u);
+    expect_refusal("join " + file("none.json") + " -o " + file("w.json"), ExitCode::read_error,
+                   {"none.json"});
+    expect_refusal("join " + file("s.2.obj") + " -o " + file("w.json"), ExitCode::read_error,
+                   {"s.2.obj", "no manifest"});
+    expect_refusal("join " + file("none.json") + " --expect 1-4y2 -o " + file("w.json"),
+                   ExitCode::usage_error, {"--expect", "character 4"});
+}
+
+TEST_F(Farm, AListOfCallsIsAJob)
+{
+    spheres(1, 4);
+    mesh_file("it's one.obj", icosphere(1.0, 2));
+    const std::string options = " -q --samples 0 --voxel-size 0.1 ";
+    write_bytes(
+        folder / "list.txt",
+        "# two assets and a sequence\n\nvdb_shell build '" + file("s.1.obj") + "'" + options +
+            "-o " + file("one.vtu") + "\n" +
+            json({"build", file("it's one.obj"), "-q", "--samples", "0", "-o", file("two.vtu")})
+                .dump() +
+            "\n" + build("2-4") + "\n");
+    const std::string list =
+        "farm --engine slurm -o " + file("j.sbatch") + " --chunk 2 --calls " + file("list.txt");
+    const Outcome written = run(list);
+    ASSERT_EQ(written.status, ExitCode::success) << written.err;
+    EXPECT_NE(written.out.find("5 frames or runs in 3 tasks"), std::string::npos) << written.out;
+    for (const char* task : {"task 0", "task 1", "task 2"})
+        EXPECT_EQ(job(task).status, ExitCode::success) << task;
+    for (const char* name : {"one.vtu", "two.vtu", "t.2.vtu", "t.3.vtu", "t.4.vtu"})
+        EXPECT_TRUE(there(name)) << name;
+    const Outcome joined = job("join");
+    EXPECT_EQ(joined.status, ExitCode::success) << joined.out;
+    EXPECT_NE(joined.out.find("3 of 3 calls are whole"), std::string::npos) << joined.out;
+
+    const auto refuse = [&](const std::string& text, int status,
+                            const std::vector<std::string>& words) {
+        write_bytes(folder / "list.txt", text);
+        expect_refusal(list, status, words);
+    };
+    const std::string one = "build " + file("s.1.obj") + " -o " + file("one.vtu") + "\n";
+    refuse(one + "build " + file("s.2.obj") + " -o " + file(".") + "/one.vtu\n",
+           ExitCode::usage_error, {"one.vtu", "by call 1 and by call 2"});
+    refuse(one + "convert " + file("one.vtu") + " -o " + file("t.ele") + "\n",
+           ExitCode::usage_error, {"one.vtu", "written by call 1 and read by call 2"});
+    refuse(one + "build 's.obj\n", ExitCode::usage_error, {"list.txt: line 2", "quote"});
+    refuse(one + "[\"build\", 3]\n", ExitCode::usage_error, {"list.txt: line 2", "JSON"});
+    refuse(one + "build " + file("s.1.obj") + " --thickness -1 -o " + file("t.vtu"),
+           ExitCode::usage_error, {"list.txt: line 2", "--thickness is -1"});
+    refuse("# nothing\n", ExitCode::usage_error, {"there is no call in it"});
+}
+
+TEST_F(Farm, WhatWouldFailOnTheFarmIsRefusedHere)
+{
+    spheres(1, 3);
+    const struct {
+        std::string words;
+        int status;
+        std::vector<std::string> says;
+    } kCases[] = {
+        {farm() + build("1-3", "--ouch"), ExitCode::usage_error, {"the call", "--ouch"}},
+        {farm() + build("1-3y"), ExitCode::usage_error, {"the call", "at character 4"}},
+        {farm() + build("1-3", "--threads 2"), ExitCode::usage_error, {"--cpus"}},
+        {farm() + build("1-3", "--no-clobber"), ExitCode::usage_error, {"--no-clobber"}},
+        {farm() + build("1-3", "-o " + file("a.vtu")), ExitCode::usage_error, {"a.vtu", "token"}},
+        {farm() + build("1-3", "-o " + file("no/a.#.vtu")), ExitCode::write_error, {"no/a.1.vtu"}},
+        {farm() + "build " + file("s.#.obj") + " -o " + file("a.#.vtu") + " --frames 1-3",
+         ExitCode::usage_error,
+         {"--voxel-size"}},
+        {farm() + "build " + file("s.1.obj") + " -o " + file("a.vtu"),
+         ExitCode::usage_error,
+         {"no --frames"}},
+        {farm() + "build - --input-format obj -o " + file("a.#.vtu") + " --frames 1",
+         ExitCode::usage_error,
+         {"standard input"}},
+        {farm() + "info x.vdb", ExitCode::usage_error, {"`info` is not for a farm"}},
+        {farm() + "build --help", ExitCode::usage_error, {"--help"}},
+        {farm() + build("1-3", "--core \"$(printf 'a\\nb')\""),
+         ExitCode::usage_error,
+         {"line break"}},
+        {farm("--name 'a b'") + build("1-3"), ExitCode::usage_error, {"\"a b\""}},
+        {"farm --engine pbs -o " + file("j") + " -- " + build("1-3"),
+         ExitCode::usage_error,
+         {"--engine is pbs", "slurm"}},
+        {"farm --engine slurm -o " + file("j"), ExitCode::usage_error, {"--calls"}},
+    };
+    for (const auto& [words, status, says] : kCases)
+        expect_refusal(words, status, says);
+    EXPECT_FALSE(there("j.sbatch"));
+    EXPECT_FALSE(there("j"));
+}
+
+TEST_F(Farm, AnotherJobMayMakeTheFramesFirst)
+{
+    spheres(1, 1);
+    spheres(3, 3);
+    const Outcome missing = run(farm("--no-clobber") + build("1-3"));
+    EXPECT_EQ(missing.status, ExitCode::success);
+    EXPECT_NE(missing.err.find("not there yet: 1 of 3, the first of them " + file("s.2.obj")),
+              std::string::npos)
+        << missing.err;
+    expect_refusal(farm("--no-clobber") + build("1-3"), ExitCode::write_error, {"j.sbatch"});
+}
+
+TEST_F(Farm, OtherEnginesAreWrittenTheSameCalls)
+{
+    spheres(1, 5);
+    const auto job = [&](const std::string& engine, const std::string& more = "") {
+        const Outcome result = run("farm --engine " + engine + " -o " + file("j.json") +
+                                   " --chunk 2 " + more + " -- " + build("1-5"));
+        EXPECT_EQ(result.status, ExitCode::success) << result.err;
+        return json::parse(read_bytes(folder / "j.json"));
+    };
+    const json list = job("tops");
+    ASSERT_EQ(list.at("tasks").size(), 3u);
+    const json words = list.at("tasks").at(1).at(0);
+    EXPECT_EQ(words.at(0), "vdb_shell");
+    EXPECT_NE(std::find(words.begin(), words.end(), "3-4"), words.end()) << words;
+    EXPECT_NE(std::find(words.begin(), words.end(), file("s.#.obj")), words.end()) << words;
+    const json steps = job("openjd").at("steps");
+    ASSERT_EQ(steps.size(), 2u);
+    const json space = steps.at(0).at("parameterSpace").at("taskParameterDefinitions").at(0);
+    EXPECT_EQ(space.at("range"), json({"1-2", "3-4", "5"}));
+    const json chunked = job("openjd", "--task-chunking");
+    EXPECT_EQ(chunked.at("extensions"), json::array({"TASK_CHUNKING"}));
+    const std::string openjd = "farm --engine openjd -o " + file("o.json");
+    expect_refusal(openjd + " --submit -- " + build("1-5"), ExitCode::usage_error,
+                   {"--submit needs --engine slurm"});
+    expect_refusal(farm("--task-chunking") + build("1-5"), ExitCode::usage_error,
+                   {"--task-chunking needs --engine openjd"});
+    expect_refusal(openjd + " -- " + build("1-5", "-o " + file("{{x}}.#.vtu")),
+                   ExitCode::usage_error, {"{{x}}", "Open Job Description"});
+    EXPECT_FALSE(there("o.json"));
+}
+
+TEST_F(Farm, WithoutSlurmNothingIsSubmitted)
+{
+    spheres(1, 3);
+    const std::string path = "env PATH=" + file("empty") + " ";
+    const std::string line = path + std::string(VDB_SHELL_COMMAND) + " " + farm("--submit") +
+                             build("1-3") + " 2>" + file("err");
+    const int status = std::system(line.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), ExitCode::program_failed);
+    EXPECT_NE(read_bytes(folder / "err").find("no Slurm there"), std::string::npos);
+    EXPECT_FALSE(there("j.sbatch"));
+}
+
+/// What a shell makes of the line.
+std::string printed(const std::string& line)
+{
+    std::string text;
+    if (std::FILE* pipe = ::popen(line.c_str(), "r")) {
+        for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe))
+            text += static_cast<char>(c);
+        ::pclose(pipe);
+    }
+    return text;
+}
+
+TEST(ShellWords, AShellReadsAWordAsItWas)
+{
+    for (const std::string word :
+         {"plain",    "",   "a b",  "it's",       "$HOME", "`id`",   "$(id)", "a\"b",
+          "a\\b",     "*",  "~",    "#a",         "a;b",   "{1..3}", "!x",    "-",
+          "\xc3\xa9", "''", "a\tb", "s.####.obj", "%04d",  "$F4"}) {
+        EXPECT_EQ(printed("printf %s " + command::quoted(word)), word);
+        EXPECT_EQ(printed("bash -c " + command::quoted("printf %s " + command::quoted(word))),
+                  word);
+        EXPECT_EQ(command::split_words("x " + command::quoted(word) + " y", "here"),
+                  (std::vector<std::string>{"x", word, "y"}));
+    }
+    EXPECT_EQ(command::split_words(R"( a\ b "c \" \d" 'e'f  )", "here"),
+              (std::vector<std::string>{"a b", R"(c " \d)", "ef"}));
+    EXPECT_THROW(command::split_words("a 'b", "here"), InvalidOption);
+}
+
+} // namespace
+} // namespace vdb_shell::test
