@@ -9,7 +9,7 @@
 #include "report/stage_clock.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/narrow_band.h"
-#include "vdb_shell/write/rest_volume.h"
+#include "vdb_shell/volume/rest_volume.h"
 
 #include <openvdb/openvdb.h>
 

@@ -5,7 +5,7 @@
 
 #include "vdb_shell/write/vdb_file.h"
 
-#include "write/tet_values_grid.h"
+#include "volume/tet_values_grid.h"
 
 #include <openvdb/openvdb.h>
 

@@ -11,7 +11,7 @@
 #include "support/shapes.h"
 #include "vdb_shell/pipeline.h"
 #include "vdb_shell/write/vdb_file.h"
-#include "write/depth_lines.h"
+#include "volume/depth_lines.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>

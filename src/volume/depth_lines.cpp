@@ -10,12 +10,12 @@
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "write/depth_lines.cpp"
+#define HWY_TARGET_INCLUDE "volume/depth_lines.cpp"
 #include <hwy/foreach_target.h>
 
 #include "core/dispatch.h"
 #include "core/simd-inl.h"
-#include "write/depth_lines.h"
+#include "volume/depth_lines.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vdb_shell

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "vdb_shell/write/rest_volume.h"
+#include "vdb_shell/volume/rest_volume.h"
 
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"

@@ -3,10 +3,10 @@
 // Takes posed tets and a vector for each of their points. Leaves one vector grid: three grids of
 // numbers, which have the same active voxels, put together leaf by leaf.
 
-#include "vdb_shell/write/rest_volume.h"
+#include "vdb_shell/volume/rest_volume.h"
 
 #include "core/parallel.h"
-#include "write/tet_values_grid.h"
+#include "volume/tet_values_grid.h"
 
 #include <openvdb/openvdb.h>
 

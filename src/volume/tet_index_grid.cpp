@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "volume/tet_index_grid.h"
+
+#include "volume/tet_columns.h"
+
+namespace vdb_shell
+{
+
+openvdb::Int32Grid::Ptr tet_index_grid(const TetMesh& tets, double voxel_size, const char* name,
+                                       const StageProgress& progress,
+                                       const std::vector<std::uint8_t>& wanted)
+{
+    const TetColumns columns = tet_columns(tets, {}, voxel_size, name, wanted);
+    auto grid = openvdb::Int32Grid::create(-1);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
+    fill_columns(
+        columns, grid->tree(), progress,
+        [](auto& column, const TetJob& job, const IndexTet&, const TetInColumn& part) {
+            for_rows(column, part,
+                     [&](std::int32_t* values, const TetInColumn::Line&, int, int begin, int end) {
+                         std::fill(values + begin, values + end, std::int32_t(job.tet));
+                     });
+        });
+    return grid;
+}
+
+} // namespace vdb_shell
