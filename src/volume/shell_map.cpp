@@ -178,6 +178,35 @@ ShellPlace ShellMap::place_in(std::uint32_t tet, const Vec3d& point) const
     return best;
 }
 
+std::vector<std::uint8_t>
+ShellMap::tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) const
+{
+    std::vector<std::uint8_t> prism(corners_.size()), tet(tets_.tets.size());
+    for_each_index(corners_.size(), [&](std::size_t p) {
+        openvdb::BBoxd box;
+        for (const Vec3s& corner : corners_[p])
+            box.expand(Vec3d(corner));
+        prism[p] = meets(box);
+    });
+    for_each_index(tet.size(), [&](std::size_t t) {
+        if (tets_.prism[t] == kCorePrism) {
+            openvdb::BBoxd box;
+            for (int i = 0; i < 4; ++i)
+                box.expand(Vec3d(tets_.points[tets_.tets[t][i]]));
+            tet[t] = meets(box);
+            return;
+        }
+        const std::size_t layer = tets_.prism_layer[t] * triangles_;
+        tet[t] = prism[layer + tets_.prism[t]];
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t beside = beyond_[tets_.prism[t]][i];
+            if (beside != ShellPlace::kNone && prism[layer + beside])
+                tet[t] = 1;
+        }
+    });
+    return tet;
+}
+
 Vec3d ShellMap::point_of(const ShellPlace& place) const
 {
     if (place.prism != ShellPlace::kNone)

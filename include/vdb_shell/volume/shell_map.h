@@ -4,11 +4,13 @@
 #include "vdb_shell/shell/shell_stack.h"
 
 #include <openvdb/Types.h>
+#include <openvdb/math/BBox.h>
 #include <openvdb/math/Mat3.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace vdb_shell
@@ -58,6 +60,12 @@ public:
     /// of the neighbour, to which the place then belongs; or, where that is linear in its tets,
     /// beyond the side of its own prism, with a negative weight.
     ShellPlace place_in(std::uint32_t tet, const openvdb::Vec3d& point) const;
+
+    /// By tet: whether a box around its prism, or around one of the prisms beside it, in which
+    /// places found by place_in(tet) may lie, passes `meets`, which is asked by several threads at
+    /// once. Of a tet of a core its own box.
+    std::vector<std::uint8_t>
+    tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) const;
 
     /// Of a place of this shell in any pose. Precondition: found().
     openvdb::Vec3d point_of(const ShellPlace& place) const;
