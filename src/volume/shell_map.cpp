@@ -132,6 +132,15 @@ Vec4d ShellMap::tet_weights(std::uint32_t tet, const Vec3d& point) const
     return {1.0 - weight[0] - weight[1] - weight[2], weight[0], weight[1], weight[2]};
 }
 
+bool ShellMap::holds(std::uint32_t tet, const Vec3d& point) const
+{
+    const Vec4d weight = tet_weights(tet, point);
+    for (int i = 0; i < 4; ++i)
+        if (!(weight[i] >= -kOnSide))
+            return false;
+    return true;
+}
+
 ShellPlace ShellMap::linear_place(std::uint32_t tet, const Vec4d& weight) const
 {
     ShellPlace place;

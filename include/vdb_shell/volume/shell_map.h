@@ -56,6 +56,9 @@ public:
     std::size_t prisms() const { return prisms_; }
     std::size_t linear_prisms() const { return linear_prisms_; }
 
+    /// Whether the tet holds the point, to a billionth of its size.
+    bool holds(std::uint32_t tet, const openvdb::Vec3d& point) const;
+
     /// The place of a point that the tet holds. A point beside a curved side may lie in the prism
     /// of the neighbour, to which the place then belongs; or, where that is linear in its tets,
     /// beyond the side of its own prism, with a negative weight.
