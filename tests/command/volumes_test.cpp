@@ -116,8 +116,8 @@ TEST_F(Volumes, RefuseBadInput)
     // The level set of the skin lies half outside.
     expect_refusal("deform " + rest + " --grid surface --posed " + posed + " -o " + out,
                    ExitCode::usage_error, {"surface", "outside the shell"});
-    expect_refusal("deform " + rest + " --grid tets --posed " + posed + " -o " + out,
-                   ExitCode::read_error, {"tets", "no volume"});
+    expect_refusal("deform " + rest + " --grid shell_tets --posed " + posed + " -o " + out,
+                   ExitCode::read_error, {"shell_tets", "no volume"});
     const std::string other = file("other.vdb");
     ASSERT_EQ(
         run("build " + mesh_file("other.obj", icosphere(1.0, 1)) + kCoarse + " -q -o " + other)
