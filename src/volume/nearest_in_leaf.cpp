@@ -172,21 +172,22 @@ void NearestInLeaf::list_nearest(const Coord& origin, const Mask& mask, const Li
     origin_ = origin;
     mask_ = mask;
     const Vec3d middle = origin.asVec3d() + Vec3d(kHalfLeaf);
-    double reach = 0;
-    if (known.empty()) {
-        const double nearest = std::sqrt(
-            surface_.tree().nearest(surface_.voxel_size() * middle, 0.0F, seed_).squared);
-        reach = nearest + 2 * radius_of(8);
-    } else {
-        // Half a leaf has a smaller radius, and its own bound.
+    // The tree's answer for the middle bounds them all; half a leaf has a smaller radius and its own
+    // bound by what is known, which is nearly always better where voxels are near their triangles.
+    const double to_middle = std::sqrt(
+        surface_.tree().nearest(surface_.voxel_size() * middle, 0.0F, seed_).squared);
+    double reach = to_middle + 2 * radius_of(8);
+    if (!known.empty()) {
         EightNearest nearest;
         nearest_of(surface_.prepared(), known.data(), known.size(), points_at(Coord(0), 4),
                    nullptr, nearest);
         const double to_block = 2 * std::sqrt(3.0);
+        double of_blocks = 0;
         for (std::size_t i = 0; i < kLanes; ++i)
             if (wanted(corner_of_block(Coord(0), 4, i), 4))
-                reach = std::max(reach, std::sqrt(double(nearest.squared[i])) +
-                                            2 * radius_of(4) + to_block);
+                of_blocks = std::max(of_blocks, std::sqrt(double(nearest.squared[i])) +
+                                                    2 * radius_of(4) + to_block);
+        reach = std::min(reach, of_blocks);
     }
     surface_.tree().list_within(surface_.voxel_size() * middle,
                                 surface_.voxel_size() * (reach + surface_.slack_voxels()), list);
