@@ -327,13 +327,13 @@ void TriangleTree::list_within(const openvdb::Vec3d& centre, double radius,
                                std::vector<std::uint32_t>& triangles) const
 {
     triangles.clear();
-    const Listener listener{&triangles, [](void* list, std::uint32_t triangle) {
-                                static_cast<std::vector<std::uint32_t>*>(list)->push_back(triangle);
+    const Listener listener{&triangles, [](void* to, std::uint32_t triangle) {
+                                auto& list = *static_cast<std::vector<std::uint32_t>*>(to);
+                                // A block with room to spare ends with copies of its last one.
+                                if (list.empty() || list.back() != triangle)
+                                    list.push_back(triangle);
                             }};
     VDB_SHELL_KERNEL(list_within)(arrays_, centre, radius, listener);
-    // A block with room to spare has its last triangle several times.
-    std::sort(triangles.begin(), triangles.end());
-    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
 }
 
 void TriangleTree::gather(const openvdb::Vec3d& centre, double radius, Nearby& nearby) const

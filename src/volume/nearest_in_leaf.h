@@ -68,7 +68,7 @@ public:
     void nearest_of_list(const openvdb::Coord& origin, const Mask& mask, const List& list,
                          Voxels& found);
 
-    /// Every triangle that can be nearest to a voxel of the mask, ascending. `known`: some
+    /// Every triangle that can be nearest to a voxel of the mask, each once. `known`: some
     /// triangles, whose distances bound those that are looked for; may be empty.
     void list_nearest(const openvdb::Coord& origin, const Mask& mask, const List& known,
                       List& list);
