@@ -11,9 +11,7 @@ tidy)
     # Without the precompiled headers, which are GCC's, so that each source proves to include what it needs.
     mkdir -p build/tidy
     sed -E 's# -Winvalid-pch -include [^ ]*cmake_pch.hxx##' build/dev/compile_commands.json >build/tidy/compile_commands.json
-    git ls-files 'src/*.cpp' 'houdini_compat/*.cpp' | xargs -P "$(nproc)" -n 2 clang-tidy -p build/tidy --quiet 2>&1 |
-        { grep -vE '^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter' || true; }
-    exit "${PIPESTATUS[0]}"
+    git ls-files 'src/*.cpp' 'houdini_compat/*.cpp' | xargs python3 .ci/tidy.py build/tidy/compile_commands.json build/tidy/groups
     ;;
 *) echo "usage: $0 format|tidy" >&2; exit 2 ;;
 esac

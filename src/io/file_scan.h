@@ -34,17 +34,38 @@ struct FileScan {
     std::vector<std::size_t> skipped_faces;   ///< faces of the file that are no polygon, ascending
 };
 
+/// Texture coordinates as a file has them.
+struct TextureScan {
+    static constexpr std::uint32_t kNone = ~std::uint32_t(0);
+
+    std::vector<openvdb::Vec2d> values;
+    // Of all faces of the file, those that are no polygon too, one face after the other.
+    std::vector<std::uint32_t> vertices;
+    std::vector<std::uint32_t> texture; ///< by corner: one of `values`, or kNone
+    std::vector<std::uint32_t> face_sizes;
+};
+
 // `coordinates` is given every coordinate of the file. Each throws ReadError as read_mesh documents
 // it; `name` is the file's, for messages.
 FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& coordinates);
 FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& coordinates);
 FileScan scan_off(const std::string& name, std::string_view bytes, Coordinates& coordinates);
 FileScan scan_stl(const std::string& name, std::string_view bytes, Coordinates& coordinates);
+// The same, with texture coordinates where the file has them; by corner none where it has none.
+FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& coordinates,
+                  TextureScan* texture);
+FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& coordinates,
+                  TextureScan* texture);
 using Scan = FileScan (*)(const std::string& name, std::string_view bytes, Coordinates&);
 
 /// What read_mesh makes of the bytes of a file.
 ReadResult mesh_of_bytes(const std::string& name, Scan scan, std::string bytes,
                          const ReadOptions& options);
+
+struct PolygonSoup;
+/// A soup as the scan of a file, with the tests of one.
+FileScan scan_of_polygons(const PolygonSoup& soup, const std::string& name,
+                          Coordinates& coordinates);
 
 /// Removes corners that repeat the corner before them. False when what is left is no polygon: fewer
 /// than three corners, or none that comes only once.

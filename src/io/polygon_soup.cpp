@@ -58,21 +58,28 @@ void add_polygons(const PolygonSoup& soup, const std::string& name, FileScan& sc
 
 } // namespace
 
-ReadResult mesh_of_polygons(const PolygonSoup& soup, const std::string& name,
-                            const ReadOptions& options)
+FileScan scan_of_polygons(const PolygonSoup& soup, const std::string& name,
+                          Coordinates& coordinates)
 {
     const std::size_t corners =
         std::accumulate(soup.polygon_sizes.begin(), soup.polygon_sizes.end(), std::size_t(0));
     if (corners != soup.corners.size())
         throw InvalidOption(name + ": the polygons' sizes add up to " + std::to_string(corners) +
                             ", but there are " + std::to_string(soup.corners.size()) + " corners");
-    Coordinates coordinates = placed_coordinates(soup, name, options);
     FileScan scan;
     scan.format = soup.format;
     scan.file_vertices = soup.points.size();
     scan.points = rounded_points(soup, name, coordinates);
     scan.ids = soup.ids;
     add_polygons(soup, name, scan);
+    return scan;
+}
+
+ReadResult mesh_of_polygons(const PolygonSoup& soup, const std::string& name,
+                            const ReadOptions& options)
+{
+    Coordinates coordinates = placed_coordinates(soup, name, options);
+    FileScan scan = scan_of_polygons(soup, name, coordinates);
     return mesh_of_scan(name, std::move(scan), coordinates, options);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Scans OBJ ("Object Files (.obj)", appendix B1 of the Advanced Visualizer manual). Only vertices
-// and faces are read. What else the format has is passed over, except what would be a part of the
+// and faces are read, and texture coordinates where they are asked for. What else the format has is passed over, except what would be a part of the
 // surface: that is refused, because a surface with a hole where a line was not understood would
 // look like a sound one. Faces may name vertices that come later, so indices above all vertices so
 // far are noted and tested at the end. Trap: negative indices count back from where the face stands
@@ -30,6 +30,8 @@ struct ObjScan {
     FileScan scan;
     std::vector<EarlyFace> early_faces;
     Polygon polygon; ///< of the current face; a member so that its memory is used again
+    TextureScan* texture = nullptr;
+    std::vector<EarlyFace> early_texture; ///< faces that name texture coordinates of later lines
 };
 
 /// What follows the third coordinate is passed over: a weight of rational curves, or a colour.
@@ -48,13 +50,51 @@ void read_vertex(ObjScan& obj, std::string_view rest, std::size_t line)
     obj.scan.points.push_back(point);
 }
 
-/// Corners are "vertex", "vertex/texture" or "vertex/texture/normal"; only the vertex is read.
-/// Negative indices count back from the last vertex so far.
+/// One to three numbers, of which the third belongs to volumes of texture.
+void read_texture(ObjScan& obj, std::string_view rest, std::size_t line)
+{
+    const Place place{"texture coordinate", obj.texture->values.size(), line};
+    openvdb::Vec2d value(0.0);
+    for (int axis = 0; axis < 2; ++axis) {
+        const std::string_view word = cut_word(rest);
+        if (!word.empty())
+            value[axis] = parse_coordinate(obj.name, place, word);
+        else if (axis == 0)
+            refuse(obj.name, place.text() + " has no number");
+    }
+    obj.texture->values.push_back(value);
+}
+
+/// What stands between the slashes of a corner; `latest` rises to the greatest number that is
+/// named, which may be one of a later line.
+void read_corner_texture(ObjScan& obj, const Place& face, std::string_view corner,
+                         std::uint32_t vertex, std::int64_t& latest)
+{
+    TextureScan& texture = *obj.texture;
+    texture.vertices.push_back(vertex);
+    texture.texture.push_back(TextureScan::kNone);
+    const std::size_t slash = corner.find('/');
+    if (slash == corner.npos)
+        return;
+    const std::string_view rest = corner.substr(slash + 1), word = rest.substr(0, rest.find('/'));
+    if (word.empty())
+        return;
+    const auto known = static_cast<std::int64_t>(texture.values.size());
+    const std::int64_t given = parse_integer(obj.name, face, word);
+    const std::int64_t index = given < 0 ? known + given : given - 1;
+    if (index < 0 || index >= INT32_MAX)
+        refuse(obj.name, face.text() + ": there is no texture coordinate " + std::to_string(given));
+    texture.texture.back() = static_cast<std::uint32_t>(index);
+    latest = std::max(latest, index);
+}
+
+/// Corners are "vertex", "vertex/texture" or "vertex/texture/normal"; only the vertex is read, and
+/// the texture where it is asked for. Negative indices count back from the last vertex so far.
 void read_face(ObjScan& obj, std::string_view rest, std::size_t line)
 {
     const Place face{"face", obj.scan.file_faces, line};
     const auto vertices = static_cast<std::int64_t>(obj.scan.file_vertices);
-    std::int64_t largest = -1;
+    std::int64_t largest = -1, latest_texture = -1;
     obj.polygon.clear();
     for (std::string_view word = cut_word(rest); !word.empty(); word = cut_word(rest)) {
         const std::string_view vertex = word.substr(0, word.find('/'));
@@ -67,12 +107,19 @@ void read_face(ObjScan& obj, std::string_view rest, std::size_t line)
             require_corner(obj.name, face, -1, obj.scan.file_vertices, std::to_string(given));
         obj.polygon.push_back(static_cast<std::uint32_t>(index));
         largest = std::max(largest, index);
+        if (obj.texture)
+            read_corner_texture(obj, face, word, obj.polygon.back(), latest_texture);
     }
     if (obj.polygon.size() < 3)
         refuse(obj.name, face.text() + " has " + std::to_string(obj.polygon.size()) +
                              " corners where at least 3 are needed");
     if (largest >= vertices)
         obj.early_faces.push_back({face, largest});
+    if (obj.texture) {
+        obj.texture->face_sizes.push_back(static_cast<std::uint32_t>(obj.polygon.size()));
+        if (latest_texture >= static_cast<std::int64_t>(obj.texture->values.size()))
+            obj.early_texture.push_back({face, latest_texture});
+    }
     add_face(obj.scan, obj.polygon);
 }
 
@@ -81,6 +128,10 @@ void require_known_corners(const ObjScan& obj)
     for (const EarlyFace& face : obj.early_faces)
         require_corner(obj.name, face.place, face.largest_index, obj.scan.file_vertices,
                        std::to_string(face.largest_index + 1));
+    for (const EarlyFace& face : obj.early_texture)
+        if (face.largest_index >= static_cast<std::int64_t>(obj.texture->values.size()))
+            refuse(obj.name, face.place.text() + ": there is no texture coordinate " +
+                                 std::to_string(face.largest_index + 1));
 }
 
 /// Most other statements say nothing about the surface and are passed over. Refuses those that do,
@@ -123,6 +174,8 @@ void read_statement(ObjScan& obj, std::string_view line, std::size_t number)
         read_vertex(obj, values, number);
     else if (keyword == "f" || keyword == "fo") // the form of version 2.11
         read_face(obj, values, number);
+    else if (keyword == "vt" && obj.texture)
+        read_texture(obj, values, number);
     else if (!keyword.empty() && keyword[0] != '#')
         refuse_lost_surface(obj, keyword, number);
 }
@@ -144,7 +197,13 @@ bool cut_continuation(std::string_view& line)
 
 FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
-    ObjScan obj{name, coordinates, {}, {}, {}};
+    return scan_obj(name, bytes, coordinates, nullptr);
+}
+
+FileScan scan_obj(const std::string& name, std::string_view bytes, Coordinates& coordinates,
+                  TextureScan* texture)
+{
+    ObjScan obj{name, coordinates, {}, {}, {}, texture, {}};
     obj.scan.format = "OBJ";
     Lines lines(without_byte_order_mark(bytes));
     std::string joined;

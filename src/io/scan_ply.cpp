@@ -29,6 +29,9 @@ struct PlyScan {
     FileScan scan;
     std::size_t strips = 0; ///< so far, counted over all restarts
     Polygon polygon;        ///< of the current face; a member so that its memory is used again
+    TextureScan* texture = nullptr;
+    std::vector<openvdb::Vec2d> of_vertex; ///< texture coordinates by vertex, or empty
+    std::vector<double> of_face;           ///< of the current face, two numbers a corner, or empty
 };
 
 /// Values that are not wanted are stepped over one by one: only then is it known where the next
@@ -67,8 +70,39 @@ std::int64_t whole_number(const PlyScan& ply, const PlyValue& value, const Place
     return static_cast<std::int64_t>(value.number);
 }
 
+/// 0 for the first texture coordinate, 1 for the second, by the names that programs write; 2 for
+/// what is none.
+std::size_t texture_axis(const PlyProperty& property)
+{
+    for (const std::string_view first : {"u", "s", "texture_u", "texture_s"})
+        if (!property.is_list && property.name == first)
+            return 0;
+    for (const std::string_view second : {"v", "t", "texture_v", "texture_t"})
+        if (!property.is_list && property.name == second)
+            return 1;
+    return 2;
+}
+
+double texture_number(PlyScan& ply, const PlyProperty& property, const Place& place)
+{
+    const PlyValue value = ply.values.next(property.type, place);
+    return ply.header.is_text()
+               ? parse_coordinate(ply.name, ply.values.here(place), value.word)
+               : checked_coordinate(ply.name, place, value.number);
+}
+
+/// Whether vertices have both texture coordinates, and they are wanted.
+bool has_vertex_texture(const PlyScan& ply, const PlyElement& element)
+{
+    bool has[3] = {};
+    for (const PlyProperty& property : element.properties)
+        has[texture_axis(property)] = true;
+    return ply.texture && has[0] && has[1];
+}
+
 void read_vertices(PlyScan& ply, const PlyElement& element)
 {
+    const bool textured = has_vertex_texture(ply, element);
     // Which coordinate each property is, found once instead of for every vertex.
     constexpr std::string_view kAxes = "xyz";
     std::vector<std::size_t> axes;
@@ -84,11 +118,17 @@ void read_vertices(PlyScan& ply, const PlyElement& element)
     for (std::size_t v = 0; v < element.count; ++v) {
         const Place place{"vertex", v, 0};
         openvdb::Vec3s point;
+        if (textured)
+            ply.of_vertex.emplace_back(0.0);
         for (std::size_t k = 0; k < axes.size(); ++k) {
             const PlyProperty& property = element.properties[k];
             if (&property == id) {
                 ply.scan.ids.push_back(
                     whole_number(ply, ply.values.next(id->type, place), ply.values.here(place)));
+                continue;
+            }
+            if (const std::size_t axis = textured ? texture_axis(property) : 2; axis < 2) {
+                ply.of_vertex.back()[static_cast<int>(axis)] = texture_number(ply, property, place);
                 continue;
             }
             if (axes[k] == kAxes.npos) {
@@ -128,6 +168,39 @@ void read_face(PlyScan& ply, const PlyProperty& list)
     }
 }
 
+/// Two numbers for each corner: a list "texcoord", as MeshLab writes it.
+void read_face_texture(PlyScan& ply, const PlyProperty& list)
+{
+    const Place place{"face", ply.scan.file_faces, 0};
+    ply.of_face.resize(ply.values.list_size(list, place));
+    for (double& number : ply.of_face)
+        number = texture_number(ply, list, place);
+}
+
+/// Of the face that is about to be added. A face's own coordinates come before those of vertices.
+void add_texture(PlyScan& ply)
+{
+    TextureScan& texture = *ply.texture;
+    texture.face_sizes.push_back(static_cast<std::uint32_t>(ply.polygon.size()));
+    const bool own = !ply.of_face.empty();
+    if (own && ply.of_face.size() != 2 * ply.polygon.size())
+        refuse(ply.name, Place{"face", ply.scan.file_faces, 0}.text() + " has " +
+                             std::to_string(ply.of_face.size()) +
+                             " numbers of texture coordinates for " +
+                             std::to_string(ply.polygon.size()) + " corners");
+    for (std::size_t k = 0; k < ply.polygon.size(); ++k) {
+        const std::uint32_t vertex = ply.polygon[k];
+        texture.vertices.push_back(vertex);
+        if (!own && vertex >= ply.of_vertex.size()) {
+            texture.texture.push_back(TextureScan::kNone);
+            continue;
+        }
+        texture.texture.push_back(static_cast<std::uint32_t>(texture.values.size()));
+        texture.values.push_back(own ? openvdb::Vec2d(ply.of_face[2 * k], ply.of_face[2 * k + 1])
+                                     : ply.of_vertex[vertex]);
+    }
+}
+
 /// Each corner from the third on makes a triangle with the two before it. Every other one of them
 /// runs the other way round, and is turned so that all are seen from the same side.
 void add_strip(PlyScan& ply, const std::vector<std::uint32_t>& strip, const Place& place)
@@ -138,6 +211,8 @@ void add_strip(PlyScan& ply, const std::vector<std::uint32_t>& strip, const Plac
     for (std::size_t k = 0; k + 2 < strip.size(); ++k) {
         const std::size_t turned = k % 2;
         ply.polygon = {strip[k + turned], strip[k + 1 - turned], strip[k + 2]};
+        if (ply.texture)
+            add_texture(ply);
         add_face(ply.scan, ply.polygon);
     }
     ++ply.strips;
@@ -170,8 +245,11 @@ void read_polygons(PlyScan& ply, const PlyElement& element)
     for (std::size_t i = 0; i < element.count; ++i) {
         const Place place{strips ? "triangle strip" : "face",
                           strips ? ply.strips : ply.scan.file_faces};
+        ply.of_face.clear();
         for (const PlyProperty& property : element.properties) {
-            if (!property.holds_corners())
+            if (ply.texture && !strips && property.is_list && property.name == "texcoord")
+                read_face_texture(ply, property);
+            else if (!property.holds_corners())
                 skip_property(ply, property, place);
             else if (strips)
                 read_strips(ply, property);
@@ -179,8 +257,11 @@ void read_polygons(PlyScan& ply, const PlyElement& element)
                 read_face(ply, property);
         }
         // The face is added only now, because other properties of it may follow its corners.
-        if (!strips)
-            add_face(ply.scan, ply.polygon);
+        if (strips)
+            continue;
+        if (ply.texture)
+            add_texture(ply);
+        add_face(ply.scan, ply.polygon);
     }
 }
 
@@ -218,9 +299,16 @@ void read_elements(PlyScan& ply)
 
 FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& coordinates)
 {
+    return scan_ply(name, bytes, coordinates, nullptr);
+}
+
+FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& coordinates,
+                  TextureScan* texture)
+{
     const std::string_view data = without_byte_order_mark(bytes);
     const PlyHeader header = parse_ply_header(name, data);
-    PlyScan ply{name, header, coordinates, PlyValues(name, header, data), {}, 0, {}};
+    PlyScan ply{name, header, coordinates, PlyValues(name, header, data), {}, 0, {},
+                texture, {}, {}};
     ply.scan.format = header.is_text() ? "PLY (ASCII)" : "PLY (binary)";
     // Faces may stand before the vertices that they name.
     for (const PlyElement& element : header.elements)

@@ -43,6 +43,12 @@ struct Places {
     std::size_t count = 0;
 };
 
+/// What is told of the triangles that are found, and whom.
+struct Listener {
+    void* list;
+    void (*add)(void* list, std::uint32_t triangle);
+};
+
 } // namespace
 } // namespace vdb_shell
 #endif
@@ -232,6 +238,30 @@ float squared_distance(const Arrays& tree, const Vec3d& at, Nearby& nearby)
     return search.found.squared;
 }
 
+void list_within(const Arrays& tree, const Vec3d& centre, double radius, Listener found)
+{
+    const FloatPoint point = everywhere(Vec3f((centre - tree.middle) / tree.unit));
+    const auto reach = static_cast<float>(radius / tree.unit);
+    const float most = reach * reach;
+    std::array<std::uint32_t, 12 * kLanes> stack; // as of Search
+    std::size_t top = 0;
+    stack[top++] = tree.root;
+    while (top > 0) {
+        const std::uint32_t id = stack[--top];
+        if (id & kLeafBit) {
+            const Block& block = tree.blocks[id & ~kLeafBit];
+            for (unsigned bits = bits_of(distances(block, point) <= most); bits != 0;
+                 bits &= bits - 1)
+                found.add(found.list, block.triangle[static_cast<std::size_t>(__builtin_ctz(bits))]);
+            continue;
+        }
+        const Node& node = tree.nodes[id];
+        for (unsigned bits = bits_of(box_distances(node, point) <= most); bits != 0;
+             bits &= bits - 1)
+            stack[top++] = node.first_child + static_cast<std::uint32_t>(__builtin_ctz(bits));
+    }
+}
+
 void gather(const Arrays& tree, const Vec3d& centre, double radius, Places& places, Nearby& nearby)
 {
     nearby.centre = centre;
@@ -279,6 +309,7 @@ namespace vdb_shell
 
 HWY_EXPORT(nearest);
 HWY_EXPORT(squared_distance);
+HWY_EXPORT(list_within);
 HWY_EXPORT(gather);
 
 TriangleTree::Found TriangleTree::nearest(const openvdb::Vec3d& at, float tolerance,
@@ -290,6 +321,19 @@ TriangleTree::Found TriangleTree::nearest(const openvdb::Vec3d& at, float tolera
 float TriangleTree::squared_distance(const openvdb::Vec3d& at, Nearby& nearby) const
 {
     return VDB_SHELL_KERNEL(squared_distance)(arrays_, at, nearby);
+}
+
+void TriangleTree::list_within(const openvdb::Vec3d& centre, double radius,
+                               std::vector<std::uint32_t>& triangles) const
+{
+    triangles.clear();
+    const Listener listener{&triangles, [](void* to, std::uint32_t triangle) {
+                                auto& list = *static_cast<std::vector<std::uint32_t>*>(to);
+                                // A block with room to spare ends with copies of its last one.
+                                if (list.empty() || list.back() != triangle)
+                                    list.push_back(triangle);
+                            }};
+    VDB_SHELL_KERNEL(list_within)(arrays_, centre, radius, listener);
 }
 
 void TriangleTree::gather(const openvdb::Vec3d& centre, double radius, Nearby& nearby) const

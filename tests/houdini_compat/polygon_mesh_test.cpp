@@ -149,5 +149,60 @@ TEST(PolygonMesh, RefusesWhatIsNoSurface)
     expect_refusal(nowhere, "no point attribute P");
 }
 
+/// The cube with (u, v) = (x, y) of each point, or by vertex the number of the quad and of the
+/// corner in it.
+ReadGeometry textured_cube(bool by_vertex)
+{
+    ReadGeometry read = parse_geometry(cube(kNewRun), "cube.geo");
+    std::vector<float> uv;
+    if (by_vertex)
+        for (int v = 0; v < 24; ++v)
+            uv.insert(uv.end(), {float(v / 4), float(v % 4), 0});
+    else
+        uv = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    (by_vertex ? read.geometry.vertex_attributes : read.geometry.point_attributes)
+        .push_back({"uv", 3, "", uv});
+    return read;
+}
+
+TEST(PolygonTexture, OfPointsIsThatOfTheCornersThere)
+{
+    const TextureCoordinates made = polygon_texture(textured_cube(false), "cube.geo");
+    ASSERT_EQ(made.corner.size(), 12U);
+    for (std::size_t t = 0; t < 12; ++t)
+        for (int k = 0; k < 3; ++k) {
+            const openvdb::Vec3s& p = made.mesh.points[made.mesh.triangles[t][k]];
+            EXPECT_EQ(made.corner[t][std::size_t(k)], openvdb::Vec2d(p[0], p[1]));
+        }
+}
+
+TEST(PolygonTexture, OfVerticesIsTurnedRoundWithThePolygons)
+{
+    // The indices of kCubeIndices, clockwise.
+    const int quads[6][4] = {{0, 1, 2, 3}, {7, 6, 5, 4}, {0, 4, 5, 1},
+                             {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    const ReadGeometry cube = textured_cube(true);
+    const TextureCoordinates made = polygon_texture(cube, "cube.geo");
+    EXPECT_EQ(made.mesh.triangles, polygon_mesh(cube, "cube.geo").mesh.triangles);
+    ASSERT_EQ(made.corner.size(), 12U);
+    for (std::size_t t = 0; t < 12; ++t)
+        for (int k = 0; k < 3; ++k) {
+            const openvdb::Vec2d& uv = made.corner[t][std::size_t(k)];
+            EXPECT_EQ(uv[0], double(t / 2));
+            EXPECT_EQ(quads[t / 2][std::size_t(uv[1])], int(made.mesh.triangles[t][k]));
+        }
+}
+
+TEST(PolygonTexture, IsRefusedWhereThereIsNone)
+{
+    const ReadGeometry plain = parse_geometry(cube(kNewRun), "cube.geo");
+    EXPECT_NE(test::complaint_of([&] { polygon_texture(plain, "cube.geo"); })
+                  .find("cube.geo: it has no texture coordinates"),
+              std::string::npos);
+    ReadGeometry narrow = plain;
+    narrow.geometry.point_attributes.push_back({"uv", 1, "", std::vector<float>(8, 0)});
+    EXPECT_THROW(polygon_texture(narrow, "cube.geo"), ReadError);
+}
+
 } // namespace
 } // namespace vdb_shell::houdini

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/io/read_mesh.h"
+#include "vdb_shell/io/texture_coordinates.h"
 
 #include <filesystem>
 
@@ -17,5 +18,15 @@ ReadResult read_polygon_mesh(const std::filesystem::path& path, const ReadOption
 /// The same for a geometry in memory; `name` opens the messages.
 ReadResult polygon_mesh(const ReadGeometry& read, const std::string& name,
                         const ReadOptions& options = {});
+
+/// Its texture coordinates: the vertex attribute `uv`, or else the point attribute, of two or three
+/// floats, of which the third is not read. Throws ReadError as read_polygon_mesh does, and for a
+/// geometry without one.
+TextureCoordinates read_polygon_texture(const std::filesystem::path& path,
+                                        const Placement& placement = {});
+
+/// The same for a geometry in memory; `name` opens the messages.
+TextureCoordinates polygon_texture(const ReadGeometry& read, const std::string& name,
+                                   const Placement& placement = {});
 
 } // namespace vdb_shell::houdini
