@@ -34,21 +34,24 @@ OptionSections describe(DeformArguments& a)
     output.required = true;
     Option posed = option("", a.posed, "--posed", "The shell in the pose, as pose writes it");
     posed.required = true;
-    return {{"", in_group(
-                     "Deform",
-                     {posed,
-                      option("", a.rest, "--rest",
-                             "The shell at rest; without it the points at rest that the posed "
-                             "shell has"),
-                      option("", a.grids, "--grid", "A grid to deform; all where none is named")})},
-            {"deform", vdb_shell::describe(a.deform)},
-            {"", in_group("Output",
-                          {output,
-                           option("", a.report, "--report",
-                                  "Write all figures as JSON; - is standard output, in "
-                                  "place of the text"),
-                           option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
-                           no_clobber_option(a.no_clobber)})}};
+    return {
+        {"",
+         in_group(
+             "Deform",
+             {posed,
+              option(
+                  "", a.rest, "--rest",
+                  "The shell where the volumes are; without it the points at rest that the posed "
+                  "shell has"),
+              option("", a.grids, "--grid", "A grid to deform; all where none is named")})},
+        {"deform", vdb_shell::describe(a.deform)},
+        {"",
+         in_group("Output", {output,
+                             option("", a.report, "--report",
+                                    "Write all figures as JSON; - is standard output, in "
+                                    "place of the text"),
+                             option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
+                             no_clobber_option(a.no_clobber)})}};
 }
 
 std::string text_of(const DeformFigures& f)
@@ -122,7 +125,7 @@ int run_deform(const DeformArguments& arguments, Context& context)
         throw InvalidOption(arguments.posed.string() +
                             ": it is at rest; give --posed a shell that pose wrote, or --rest");
     }
-    const ShellMap& from = rest ? rest->at_rest() : *posed.rest;
+    const ShellMap& from = rest ? *rest->map : *posed.rest;
     std::vector<GridBasePtr> made;
     nlohmann::json report = nlohmann::json::array();
     std::string text;

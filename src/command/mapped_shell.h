@@ -18,8 +18,6 @@ struct MappedShell {
     ShellFile file;
     std::unique_ptr<ShellMap> map;
     std::unique_ptr<ShellMap> rest; ///< null where the shell is at rest
-
-    const ShellMap& at_rest() const { return rest ? *rest : *map; }
 };
 
 /// Reads a .vdb or Houdini geometry; `plan` gets to know the file that its points stand in.
