@@ -164,7 +164,7 @@ def draw(path, shape, points, limits, found, shown):
             parts.append(f'<path d="{path_data}" stroke="{colour}" stroke-width="1.2" stroke-linecap="round"/>')
     y = 30 + 2 * (height + 44) - 16
     for x, words, colour in ((gap, "to the axis, within two voxels or a tenth", COLOURS["there"]), (gap + 260, "short of it", COLOURS["short"]),
-                             (gap + 345, "beyond it", COLOURS["beyond"]), (gap + 440, "dots: the exact medial axis", "#606878")):
+                             (gap + 345, "beyond it", COLOURS["beyond"]), (gap + 440, "dots: where exact lines end", "#606878")):
         parts.append(charts.text(x, y, words, colour=colour))
     charts.write_svg(path, round(2 * size + 3 * gap), round(y + 16), parts)
 
