@@ -8,6 +8,7 @@
 
 #include "command/build_command.h"
 #include "command/compare_command.h"
+#include "command/deform_command.h"
 #include "command/doctor_command.h"
 #include "command/estimate_command.h"
 #include "command/exit_code.h"
@@ -21,6 +22,7 @@
 #include "command/pose_command.h"
 #include "command/repair_command.h"
 #include "command/usd_command.h"
+#include "command/volumes_command.h"
 
 #include <CLI/CLI.hpp>
 
@@ -40,6 +42,8 @@ struct Arguments {
     InspectArguments inspect;
     RepairArguments repair;
     PoseArguments pose;
+    VolumesArguments volumes;
+    DeformArguments deform;
     PageArguments page;
     UsdArguments usd;
     FileArguments info, convert, check;
@@ -124,10 +128,24 @@ struct Call::Parts {
     }
 
     void add_commands();
+    void add_volume_commands();
     void add_farm_commands();
     std::vector<CommandEntry> entries() const;
     Subcommand& given();
 };
+
+/// From a shell to volumes.
+void Call::Parts::add_volume_commands()
+{
+    add(
+        "volumes", "Write volumes of a shell's coordinates", add_volumes_command, a.volumes,
+        [this] { return plan_volumes(a.volumes); },
+        [this](Context& context) { return run_volumes(a.volumes, context); });
+    add(
+        "deform", "Carry volumes in a shell to the shell in a pose", add_deform_command, a.deform,
+        [this] { return plan_deform(a.deform); },
+        [this](Context& context) { return run_deform(a.deform, context); });
+}
 
 /// What many builds need, beside builds.
 void Call::Parts::add_farm_commands()
@@ -165,6 +183,7 @@ void Call::Parts::add_commands()
         "pose", "Put a shell onto its surface in another pose", add_pose_command, a.pose,
         [this] { return plan_pose(a.pose); },
         [this](Context& context) { return run_pose(a.pose, context); });
+    add_volume_commands();
     add(
         "page", "Write a page that shows a shell, or its frames, in a browser", add_page_command,
         a.page, [this] { return plan_page(a.page); },

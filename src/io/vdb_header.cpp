@@ -31,6 +31,8 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kOldestVersion = 222, kNewestVersion = 224, kPointsVersion = 224;
 constexpr const char* kFloats = "Tree_float_5_4_3";
+constexpr const char* kVectors = "Tree_vec3s_5_4_3";
+constexpr const char* kWholeNumbers = "Tree_int32_5_4_3";
 constexpr const char* kPoints = "Tree_ptdataidx32_5_4_3";
 constexpr std::string_view kHalfMark = "_HalfFloat";
 
@@ -146,12 +148,17 @@ void walk_grid(VdbCursor& walk, const VdbGridPart& part, std::uint32_t version)
     const std::vector<VdbEntry> metadata = walk_metadata(walk);
     walk_transform(walk);
     const bool points = part.type == kPoints;
-    if (!part.parent.empty() || (!points && part.type != kFloats))
+    const bool known =
+        points || part.type == kFloats || part.type == kVectors || part.type == kWholeNumbers;
+    if (!part.parent.empty() || !known)
         return;
     if (points && version < kPointsVersion)
         walk.fail("its points are of .vdb format version " + std::to_string(version) +
                   ", those of version " + std::to_string(kPointsVersion) + " can be read");
-    coding.half = is_half(walk, part, metadata) && !points;
+    if (part.type == kVectors)
+        coding.value_bytes = 3 * sizeof(float);
+    // The mark changes how OpenVDB reads real numbers only.
+    coding.half = is_half(walk, part, metadata) && !points && part.type != kWholeNumbers;
     coding.points = points;
     const std::vector<std::uint16_t> leaves = walk_topology(walk, coding);
     walk.require(walk.at() == part.blocks, "the topology does not end where the voxels begin");

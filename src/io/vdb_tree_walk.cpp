@@ -22,7 +22,6 @@ using openvdb::io::COMPRESS_ACTIVE_MASK;
 using openvdb::io::COMPRESS_BLOSC;
 using openvdb::io::COMPRESS_ZIP;
 
-constexpr std::uint64_t kValue = 4; ///< bytes of a float and of an index
 /// Values of a node by its level: a leaf, and the two kinds of inner nodes.
 constexpr std::array<std::uint32_t, 3> kNodeValues{512, 4096, 32768};
 constexpr std::int32_t kRootChild = 4096; ///< voxels along an edge of a child of the root
@@ -76,9 +75,9 @@ void walk_values(VdbCursor& walk, const VdbCoding& coding, std::uint32_t count,
     walk.require(flag >= NO_MASK_OR_INACTIVE_VALS && flag <= NO_MASK_AND_ALL_VALS,
                  "an unknown kind of inactive values");
     if (flag == NO_MASK_AND_ONE_INACTIVE_VAL || flag == MASK_AND_ONE_INACTIVE_VAL)
-        walk.take(kValue, "an inactive value");
+        walk.take(coding.value_bytes, "an inactive value");
     if (flag == MASK_AND_TWO_INACTIVE_VALS)
-        walk.take(2 * kValue, "inactive values");
+        walk.take(2 * coding.value_bytes, "inactive values");
     if (flag == MASK_AND_NO_INACTIVE_VALS || flag == MASK_AND_ONE_INACTIVE_VAL ||
         flag == MASK_AND_TWO_INACTIVE_VALS)
         walk.take(count / 8, "a selection mask");
@@ -88,7 +87,7 @@ void walk_values(VdbCursor& walk, const VdbCoding& coding, std::uint32_t count,
     // Of half floats OpenVDB reads nothing at all where there are none, of floats an empty block.
     if (coding.half && stored == 0)
         return;
-    walk_data(walk, coding, stored * (coding.half ? kValue / 2 : kValue));
+    walk_data(walk, coding, stored * (coding.half ? coding.value_bytes / 2 : coding.value_bytes));
 }
 
 class Topology
@@ -100,7 +99,7 @@ public:
     {
         walk_.require(walk_.number<std::int32_t>("the number of buffers") == 1,
                       "a tree of several buffers");
-        const std::string_view background = walk_.take(kValue, "the background");
+        const std::string_view background = walk_.take(coding_.value_bytes, "the background");
         walk_.require(!coding_.points || background.find_first_not_of('\0') == background.npos,
                       "a background of points");
         const auto tiles = walk_.number<std::uint32_t>("the number of tiles");
@@ -111,7 +110,7 @@ public:
         std::vector<openvdb::Coord> tile_places;
         for (std::uint32_t i = 0; i < tiles; ++i) {
             tile_places.push_back(next_place(tile_places));
-            walk_.take(kValue, "a tile's value");
+            walk_.take(coding_.value_bytes, "a tile's value");
             walk_.require(walk_.number<std::uint8_t>("a tile's state") <= 1, "a tile's state");
         }
         std::vector<openvdb::Coord> child_places;

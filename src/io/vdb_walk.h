@@ -50,8 +50,9 @@ void walk_transform(VdbCursor& walk);
 /// A chunk of Blosc that stands for `bytes` bytes, by its own header.
 bool is_blosc_of(std::string_view chunk, std::uint64_t bytes);
 
-/// How a grid's numbers are stored. They are of four bytes each, float or index.
+/// How a grid's values are stored.
 struct VdbCoding {
+    std::uint64_t value_bytes = 4; ///< of a float, a whole number or an index; of vectors 12
     std::uint32_t compression = 0; ///< OpenVDB's flags
     bool half = false;             ///< floats as two bytes
     bool points = false;           ///< indices of points
@@ -61,7 +62,7 @@ struct VdbCoding {
 /// file, how many of its voxels are active.
 std::vector<std::uint16_t> walk_topology(VdbCursor& walk, const VdbCoding& coding);
 
-/// The voxels of a tree of floats.
+/// The voxels of a tree of floats, of vectors of floats, or of whole numbers.
 void walk_voxels(VdbCursor& walk, const VdbCoding& coding,
                  const std::vector<std::uint16_t>& leaves);
 

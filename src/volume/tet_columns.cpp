@@ -28,14 +28,15 @@ constexpr double kLargestCoordinate = double(1 << 30);
 
 /// Barycentric coordinates come from the cross products over the determinant (Cramer's rule). An
 /// inverted tet needs no case of its own: numerator and denominator change their signs together.
-IndexTet index_tet(const TetMesh& mesh, std::size_t t, double voxel_size,
+IndexTet index_tet(const TetMesh& mesh, std::size_t t, const VoxelLattice& lattice,
                    const std::vector<double>& value)
 {
     IndexTet tet;
     std::array<Vec3d, 4> corner;
     Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
     for (std::size_t i = 0; i < 4; ++i) {
-        corner[i] = Vec3d(mesh.points[mesh.tets[t][int(i)]]) / voxel_size;
+        corner[i] =
+            (Vec3d(mesh.points[mesh.tets[t][int(i)]]) - lattice.origin) / lattice.voxel_size;
         low = openvdb::math::minComponent(low, corner[i]);
         high = openvdb::math::maxComponent(high, corner[i]);
     }
@@ -134,14 +135,17 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<TetJob>& job
                 jobs.push_back({x, y, index});
 }
 
-void require_voxels_in_range(const TetMesh& mesh, double voxel_size, const std::string& name)
+void require_voxels_in_range(const TetMesh& mesh, const VoxelLattice& lattice,
+                             const std::string& name)
 {
+    const double voxel_size = lattice.voxel_size;
     if (!(voxel_size > 0.0) || !std::isfinite(voxel_size))
         throw InvalidOption(name + ": voxel size " + std::to_string(voxel_size) +
                             " is not positive and finite");
     for (std::size_t i = 0; i < mesh.points.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
-            if (!(std::abs(mesh.points[i][axis] / voxel_size) < kLargestCoordinate))
+            if (!(std::abs((mesh.points[i][axis] - lattice.origin[axis]) / voxel_size) <
+                  kLargestCoordinate))
                 throw InvalidOption(name + ": point " + std::to_string(i) + ", coordinate " +
                                     std::to_string(mesh.points[i][axis]) +
                                     ": too far from the origin for voxel size " +
@@ -150,7 +154,7 @@ void require_voxels_in_range(const TetMesh& mesh, double voxel_size, const std::
 
 /// The jobs of each part come in the same order whichever thread does which part.
 std::vector<std::vector<TetJob>> list_jobs(const TetMesh& mesh, const std::vector<double>& value,
-                                           double voxel_size,
+                                           const VoxelLattice& lattice,
                                            const std::vector<std::uint8_t>& wanted,
                                            std::vector<std::vector<IndexTet>>& tets)
 {
@@ -160,7 +164,7 @@ std::vector<std::vector<TetJob>> list_jobs(const TetMesh& mesh, const std::vecto
         [&](std::size_t i) {
             const std::size_t end = std::min((i + 1) * kTetsInPart, mesh.tets.size());
             for (std::size_t t = i * kTetsInPart; t < end; ++t) {
-                tets[i].push_back(index_tet(mesh, t, voxel_size, value));
+                tets[i].push_back(index_tet(mesh, t, lattice, value));
                 if (wanted.empty() || wanted[t])
                     add_jobs(tets[i].back(), std::uint32_t(t), jobs[i]);
             }
@@ -208,10 +212,11 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
     }
 }
 
-TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value, double voxel_size,
-                       const char* name, const std::vector<std::uint8_t>& wanted)
+TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value,
+                       const VoxelLattice& lattice, const char* name,
+                       const std::vector<std::uint8_t>& wanted)
 {
-    require_voxels_in_range(mesh, voxel_size, name);
+    require_voxels_in_range(mesh, lattice, name);
     TetColumns columns;
     columns.tets.resize((mesh.tets.size() + kTetsInPart - 1) / kTetsInPart);
     if (!value.empty()) {
@@ -219,7 +224,7 @@ TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value, do
         columns.range = {*ends.first, *ends.second};
     }
     columns.jobs = bucket_sort_by_column<TetJob>(
-        list_jobs(mesh, value, voxel_size, wanted, columns.tets),
+        list_jobs(mesh, value, lattice, wanted, columns.tets),
         [](const TetJob& job) {
             return std::array<std::int64_t, 2>{job.x, job.y};
         },

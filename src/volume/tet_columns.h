@@ -26,6 +26,25 @@
 namespace vdb_shell
 {
 
+/// Where voxels are: their size, and the centre of voxel (0, 0, 0).
+struct VoxelLattice {
+    // Not explicit: most lattices begin at the origin.
+    VoxelLattice(double size, const openvdb::Vec3d& centre = openvdb::Vec3d(0.0))
+        : voxel_size(size), origin(centre)
+    {
+    }
+    double voxel_size;
+    openvdb::Vec3d origin;
+};
+
+inline openvdb::math::Transform::Ptr transform_of(const VoxelLattice& lattice)
+{
+    auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel_size);
+    if (lattice.origin != openvdb::Vec3d(0.0))
+        transform->postTranslate(lattice.origin);
+    return transform;
+}
+
 /// An affine function of index space, value at the tet's first corner and slope.
 struct Affine {
     double value = 0;
@@ -85,8 +104,9 @@ struct TetColumns {
 
 /// `value`: by point, or empty. `wanted`: by tet, whether it counts; empty: all do. Throws
 /// InvalidOption, as shell_depth_grid does, its message opened by `name`.
-TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value, double voxel_size,
-                       const char* name, const std::vector<std::uint8_t>& wanted = {});
+TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value,
+                       const VoxelLattice& lattice, const char* name,
+                       const std::vector<std::uint8_t>& wanted = {});
 
 /// The lines of a column of leaves that run through the tet.
 void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part);

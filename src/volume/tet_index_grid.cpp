@@ -2,18 +2,16 @@
 
 #include "volume/tet_index_grid.h"
 
-#include "volume/tet_columns.h"
-
 namespace vdb_shell
 {
 
-openvdb::Int32Grid::Ptr tet_index_grid(const TetMesh& tets, double voxel_size, const char* name,
-                                       const StageProgress& progress,
+openvdb::Int32Grid::Ptr tet_index_grid(const TetMesh& tets, const VoxelLattice& lattice,
+                                       const char* name, const StageProgress& progress,
                                        const std::vector<std::uint8_t>& wanted)
 {
-    const TetColumns columns = tet_columns(tets, {}, voxel_size, name, wanted);
+    const TetColumns columns = tet_columns(tets, {}, lattice, name, wanted);
     auto grid = openvdb::Int32Grid::create(-1);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
+    grid->setTransform(transform_of(lattice));
     fill_columns(
         columns, grid->tree(), progress,
         [](auto& column, const TetJob& job, const IndexTet&, const TetInColumn& part) {

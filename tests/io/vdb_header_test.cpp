@@ -31,33 +31,47 @@ using openvdb::GridBase;
 using openvdb::GridPtrVec;
 using namespace openvdb::io;
 
-FloatGrid::Ptr named(const FloatGrid::Ptr& grid, const std::string& name)
+template <typename Pointer> Pointer named(const Pointer& grid, const std::string& name)
 {
     grid->setName(name);
     return grid;
 }
 
 /// Leaves with all kinds of inactive values, tiles on all levels, several branches.
-FloatGrid::Ptr odd_grid()
+template <typename Grid = FloatGrid> typename Grid::Ptr odd_grid()
 {
-    auto grid = named(FloatGrid::create(2.5f), "odd");
-    const float inactive[][3] = {{2.5f, 2.5f, 2.5f}, {-2.5f, -2.5f, -2.5f}, {7.0f, 7.0f, 7.0f},
-                                 {2.5f, 7.0f, 2.5f}, {7.0f, 9.0f, 7.0f},    {7.0f, 8.0f, 9.0f}};
+    using Value = typename Grid::ValueType;
+    const auto value = [](double x) { return Value(static_cast<float>(x)); };
+    auto grid = named(Grid::create(value(2.5)), "odd");
+    const double inactive[][3] = {{2.5, 2.5, 2.5}, {-2.5, -2.5, -2.5}, {7.0, 7.0, 7.0},
+                                  {2.5, 7.0, 2.5}, {7.0, 9.0, 7.0},    {7.0, 8.0, 9.0}};
     int x = -64;
     for (const auto& values : inactive) {
         auto* leaf = grid->tree().touchLeaf(Coord(x, 0, 5000));
         for (openvdb::Index i = 0; i < 512; ++i)
-            leaf->setValueOff(i, values[i % 3]);
+            leaf->setValueOff(i, value(values[i % 3]));
         for (openvdb::Index i = 0; i < 512; i += 5)
-            leaf->setValueOn(i, float(i) * 0.37f);
+            leaf->setValueOn(i, value(i * 0.37));
         x += 8;
     }
     grid->tree().touchLeaf(Coord(x, 0, 0));
-    grid->tree().touchLeaf(Coord(x + 8, 0, 0))->fill(1.0f, true);
-    grid->tree().addTile(3, Coord(0, -90000, 0), 4.0f, true);
-    grid->tree().addTile(2, Coord(0, 9000, 0), 3.0f, true);
-    grid->tree().addTile(1, Coord(-4096, 0, 0), -3.0f, false);
+    grid->tree().touchLeaf(Coord(x + 8, 0, 0))->fill(value(1.0), true);
+    grid->tree().addTile(3, Coord(0, -90000, 0), value(4.0), true);
+    grid->tree().addTile(2, Coord(0, 9000, 0), value(3.0), true);
+    grid->tree().addTile(1, Coord(-4096, 0, 0), value(-3.0), false);
     return grid;
+}
+
+/// Vectors, with half floats too, and whole numbers, which the mark of half floats does not change.
+GridPtrVec grids_of_other_values()
+{
+    GridPtrVec grids{named(odd_grid<openvdb::Vec3SGrid>(), "vectors"),
+                     named(odd_grid<openvdb::Vec3SGrid>(), "half vectors"),
+                     named(odd_grid<openvdb::Int32Grid>(), "numbers"),
+                     named(odd_grid<openvdb::Int32Grid>(), "numbers marked as half")};
+    grids[1]->setSaveFloatAsHalf(true);
+    grids[3]->setSaveFloatAsHalf(true);
+    return grids;
 }
 
 GridPtrVec points_and_floats()
@@ -65,7 +79,11 @@ GridPtrVec points_and_floats()
     const auto made = test::hand_made_shell(test::icosphere(1.0, 1), 0.4, {3, 7});
     const ShellFile file = test::hand_made_file(made, 0.3);
     const PointGrids points = make_point_grids(file.stack, file.tets);
-    return {odd_grid(), named(file.surface, "surface"), points.points, points.prisms, points.tets};
+    GridPtrVec grids{odd_grid(), named(file.surface, "surface"), points.points, points.prisms,
+                     points.tets};
+    for (const GridBase::Ptr& grid : grids_of_other_values())
+        grids.push_back(grid);
+    return grids;
 }
 
 std::string bytes_by_openvdb(const GridPtrVec& grids, std::uint32_t compression)
@@ -89,7 +107,7 @@ std::string complaint(const std::string& bytes)
     return {};
 }
 
-/// Decodes the grids of floats and points, as the readers do.
+/// Decodes the grids of all types that are walked whole.
 void decode(const std::string& bytes)
 {
     const test::TemporaryFolder folder;
@@ -99,7 +117,7 @@ void decode(const std::string& bytes)
     const openvdb::GridPtrVecPtr all = file.readAllGridMetadata();
     for (auto name = file.beginName(); name != file.endName(); ++name) {
         const std::string type = file.readGridMetadata(*name)->type();
-        if (type != FloatGrid::gridType() && type != openvdb::points::PointDataGrid::gridType())
+        if (type == openvdb::BoolGrid::gridType())
             continue;
         const GridBase::Ptr grid = file.readGrid(*name);
         // Goes over all nodes.

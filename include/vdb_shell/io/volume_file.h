@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdb_shell/core/grid_types.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace vdb_shell
+{
+class OutputSet;
+
+/// The volumes of a .vdb in the order of the file: grids of floats (half floats too), of vectors of
+/// three floats and of 32-bit whole numbers. `names`: only these, in this order; empty: all that
+/// the file has, leaving out grids of other types. Nothing is decoded before require_whole_vdb has
+/// passed the file. Throws ReadError, with the grids that the file has, for a name that is not
+/// there or of another type, and where there is no volume at all.
+std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
+                                      const std::vector<std::string>& names = {});
+
+/// Writes grids with their names, types and transforms. Same bytes for the same grids: where
+/// OpenVDB draws a random UUID stands a digest of the file. Throws InvalidOption for two grids of
+/// one name, WriteError. Precondition: no grid is null, and none is without a name.
+void write_volumes(const std::filesystem::path& path, const std::vector<GridBasePtr>& grids,
+                   OutputSet* with = nullptr);
+
+} // namespace vdb_shell

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The command `deform`: volumes inside a shell at rest, and the shell in a pose, in; the volumes in
+// the pose out. Several grids are done one after the other, each on all threads.
+
+#include "command/deform_command.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/core/output_set.h"
+#include "vdb_shell/core/words.h"
+#include "vdb_shell/io/volume_file.h"
+
+#include "command/exit_code.h"
+#include "command/mapped_shell.h"
+#include "command/signals.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <openvdb/openvdb.h>
+
+#include <cstdio>
+#include <optional>
+#include <ostream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+OptionSections describe(DeformArguments& a)
+{
+    Option output =
+        option("", a.output, "--output", "The volumes in the pose: .vdb").with_names({"-o"});
+    output.required = true;
+    Option posed = option("", a.posed, "--posed", "The shell in the pose, as pose writes it");
+    posed.required = true;
+    return {{"", in_group(
+                     "Deform",
+                     {posed,
+                      option("", a.rest, "--rest",
+                             "The shell at rest; without it the points at rest that the posed "
+                             "shell has"),
+                      option("", a.grids, "--grid", "A grid to deform; all where none is named")})},
+            {"deform", vdb_shell::describe(a.deform)},
+            {"", in_group("Output",
+                          {output,
+                           option("", a.report, "--report",
+                                  "Write all figures as JSON; - is standard output, in "
+                                  "place of the text"),
+                           option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
+                           no_clobber_option(a.no_clobber)})}};
+}
+
+std::string text_of(const DeformFigures& f)
+{
+    char line[256];
+    std::snprintf(line, sizeof line, "%s: %zu voxels, %zu before", f.grid.c_str(), f.active_after,
+                  f.active_before);
+    std::string text = line;
+    if (f.mass_before != 0) {
+        std::snprintf(line, sizeof line, "; mass %.6g, %.6g before (%+.3f %%)", f.mass_after,
+                      f.mass_before, 100 * (f.mass_after / f.mass_before - 1));
+        text += line;
+    }
+    if (f.outside > 0) {
+        std::snprintf(line, sizeof line, "; %.3f %% outside the shell left out", 100 * f.outside);
+        text += line;
+    }
+    if (f.limited_density + f.limited_samples > 0)
+        text += "; " + std::to_string(f.limited_density) + " voxels at the bound of densities, " +
+                std::to_string(f.limited_samples) + " with too few samples";
+    return text + '\n';
+}
+
+nlohmann::json json_of(const DeformFigures& f)
+{
+    return {{"grid", f.grid},
+            {"active_before", f.active_before},
+            {"active_after", f.active_after},
+            {"mass_before", f.mass_before},
+            {"mass_after", f.mass_after},
+            {"outside", f.outside},
+            {"limited_density", f.limited_density},
+            {"limited_samples", f.limited_samples}};
+}
+
+} // namespace
+
+BoundOptions add_deform_command(CLI::App& app, DeformArguments& arguments)
+{
+    app.add_option("volume", arguments.volume,
+                   "Volumes in the shell at rest: a .vdb with grids of floats, vectors or whole "
+                   "numbers")
+        ->required();
+    return bind(app, describe(arguments));
+}
+
+FilePlan plan_deform(const DeformArguments& arguments)
+{
+    if (lower_case_extension(arguments.output) != ".vdb")
+        throw InvalidOption(arguments.output.string() + ": the extension is not .vdb");
+    FilePlan plan(existing_files(arguments.no_clobber));
+    plan.add_input(arguments.volume);
+    plan.add_input(arguments.posed);
+    plan.add_input(arguments.rest);
+    plan.add_output(arguments.output);
+    if (!arguments.report.empty() && !is_standard_output(arguments.report))
+        plan.add_output(arguments.report);
+    return plan;
+}
+
+int run_deform(const DeformArguments& arguments, Context& context)
+{
+    FilePlan plan = plan_deform(arguments);
+    SignalInterrupter interrupter(context);
+    const MappedShell posed = map_shell(arguments.posed, plan);
+    std::optional<MappedShell> rest;
+    if (!arguments.rest.empty()) {
+        rest.emplace(map_shell(arguments.rest, plan));
+        require_same_tets(*rest, posed);
+    } else if (!posed.rest) {
+        throw InvalidOption(arguments.posed.string() +
+                            ": it is at rest; give --posed a shell that pose wrote, or --rest");
+    }
+    const ShellMap& from = rest ? rest->at_rest() : *posed.rest;
+    std::vector<GridBasePtr> made;
+    nlohmann::json report = nlohmann::json::array();
+    std::string text;
+    for (const GridBasePtr& grid : read_volumes(arguments.volume, arguments.grids)) {
+        DeformFigures figures;
+        made.push_back(deform_volume(*grid, from, *posed.map, posed.file.placement.shift(),
+                                     arguments.deform, figures, &interrupter));
+        report.push_back(json_of(figures));
+        text += text_of(figures);
+    }
+    OutputSet files(existing_files(arguments.no_clobber));
+    write_volumes(arguments.output, made, &files);
+    const std::string json = nlohmann::json{{"grids", report}}.dump(2) + '\n';
+    const bool to_output = is_standard_output(arguments.report);
+    if (!arguments.report.empty() && !to_output)
+        files.write_stream(arguments.report, [&](std::ostream& out) { out << json; });
+    files.commit();
+    if (to_output || !arguments.quiet)
+        context.out << (to_output ? json : text);
+    return success;
+}
+
+} // namespace vdb_shell::command

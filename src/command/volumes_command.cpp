@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The command `volumes`: a shell's file in, grids of its coordinates out.
+
+#include "command/volumes_command.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/core/output_set.h"
+#include "vdb_shell/core/words.h"
+#include "vdb_shell/io/volume_file.h"
+
+#include "command/exit_code.h"
+#include "command/mapped_shell.h"
+#include "command/signals.h"
+
+#include <CLI/CLI.hpp>
+#include <openvdb/openvdb.h>
+
+#include <ostream>
+
+namespace vdb_shell::command
+{
+namespace
+{
+
+OptionSections describe(VolumesArguments& a)
+{
+    Option output = option("", a.output, "--output", "The volumes: .vdb").with_names({"-o"});
+    output.required = true;
+    const Option half = option("", a.half, "--half", "Save floats and vectors as half floats");
+    return {{"", in_group("Output", {output, half, no_clobber_option(a.no_clobber)})},
+            {"volumes", vdb_shell::describe(a.coordinates)}};
+}
+
+} // namespace
+
+BoundOptions add_volumes_command(CLI::App& app, VolumesArguments& arguments)
+{
+    app.add_option("shell", arguments.shell,
+                   "The shell, at rest or posed: a .vdb, .geo, .bgeo or .bgeo.sc that vdb_shell "
+                   "wrote")
+        ->required();
+    return bind(app, describe(arguments));
+}
+
+FilePlan plan_volumes(const VolumesArguments& arguments)
+{
+    if (lower_case_extension(arguments.output) != ".vdb")
+        throw InvalidOption(arguments.output.string() + ": the extension is not .vdb");
+    coordinates_of(arguments.coordinates);
+    FilePlan plan(existing_files(arguments.no_clobber));
+    plan.add_input(arguments.shell);
+    plan.add_output(arguments.output);
+    return plan;
+}
+
+int run_volumes(const VolumesArguments& arguments, Context& context)
+{
+    FilePlan plan = plan_volumes(arguments);
+    SignalInterrupter interrupter(context);
+    const MappedShell shell = map_shell(arguments.shell, plan);
+    CoordinateOptions options = arguments.coordinates;
+    if (options.voxel_size == 0) {
+        if (!shell.file.surface)
+            throw InvalidOption(arguments.shell.string() +
+                                ": it has no level set, whose voxels these would have; give "
+                                "--voxel-size");
+        options.voxel_size = shell.file.surface->voxelSize()[0];
+    }
+    CoordinateInputs inputs;
+    inputs.map = shell.map.get();
+    inputs.stack = &shell.file.stack;
+    inputs.rest = shell.rest.get();
+    const std::vector<GridBasePtr> grids = coordinate_grids(inputs, options, &interrupter);
+    // Values stay in the mesh's own frame, as those of "rest" in a posed shell's .vdb do.
+    const openvdb::Vec3d shift = shell.file.placement.shift();
+    for (const GridBasePtr& grid : grids) {
+        if (shift != openvdb::Vec3d(0.0))
+            grid->transform().postTranslate(shift);
+        grid->setSaveFloatAsHalf(arguments.half);
+    }
+    OutputSet files(existing_files(arguments.no_clobber));
+    write_volumes(arguments.output, grids, &files);
+    files.commit();
+    if (shell.map->linear_prisms() > 0)
+        context.say(LogLevel::info,
+                    std::to_string(shell.map->linear_prisms()) + " of " +
+                        std::to_string(shell.map->prisms()) +
+                        " prisms are linear in their tets: their own map would turn back");
+    return success;
+}
+
+} // namespace vdb_shell::command

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Volumes of any origin. A shell's own .vdb goes through write/vdb_file.h, which knows what has to
+// be in it.
+
+#include "vdb_shell/io/volume_file.h"
+
+#include "io/vdb_archive.h"
+#include "io/vdb_seal.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/core/output_set.h"
+#include "vdb_shell/io/read_file.h"
+#include "vdb_shell/io/vdb_header.h"
+
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include <new>
+#include <set>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::GridBase;
+
+/// The types that require_whole_vdb walks to the end, but for points.
+bool is_volume(const GridBase& grid)
+{
+    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::Vec3SGrid>() ||
+           grid.isType<openvdb::Int32Grid>();
+}
+
+std::string list_of(const openvdb::GridPtrVec& grids)
+{
+    std::string list;
+    for (const GridBase::Ptr& grid : grids)
+        list += (list.empty() ? "" : ", ") + vdb_shell::quoted(grid->getName()) + " (" +
+                grid->valueType() + ")";
+    return list.empty() ? "no grids" : list;
+}
+
+std::vector<GridBasePtr> read_opened(openvdb::io::File& file, const std::string& path,
+                                     std::vector<std::string> names)
+{
+    const openvdb::GridPtrVecPtr all = file.readAllGridMetadata();
+    const auto metadata_of = [&](const std::string& name) {
+        for (const GridBase::Ptr& grid : *all)
+            if (grid->getName() == name)
+                return grid;
+        throw ReadError(path + ": has no grid " + vdb_shell::quoted(name) + "; it has " +
+                        list_of(*all));
+    };
+    if (names.empty())
+        for (const GridBase::Ptr& grid : *all)
+            if (is_volume(*grid))
+                names.push_back(grid->getName());
+    if (names.empty())
+        throw ReadError(path + ": has no volume of floats, vectors or whole numbers; it has " +
+                        list_of(*all));
+    std::vector<GridBasePtr> grids;
+    for (const std::string& name : names) {
+        if (!is_volume(*metadata_of(name)))
+            throw ReadError(path + ": grid " + vdb_shell::quoted(name) +
+                            " is no volume of floats, vectors or whole numbers; the file has " +
+                            list_of(*all));
+        grids.push_back(file.readGrid(name));
+    }
+    return grids;
+}
+
+} // namespace
+
+std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
+                                      const std::vector<std::string>& names)
+{
+    openvdb::initialize();
+    try {
+        require_whole_vdb(path);
+        openvdb::io::File file(path.string());
+        // Delayed loading would find damage at the first access to a voxel, outside of this.
+        file.open(/*delayLoad=*/false);
+        return read_opened(file, path.string(), names);
+    } catch (const Error&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw ReadError(path.string() + ": cannot be read: " + error.what());
+    }
+}
+
+void write_volumes(const std::filesystem::path& path, const std::vector<GridBasePtr>& grids,
+                   OutputSet* with)
+{
+    std::set<std::string> names;
+    for (const GridBasePtr& grid : grids)
+        if (!names.insert(grid->getName()).second)
+            throw InvalidOption(path.string() + ": two grids of the name " +
+                                vdb_shell::quoted(grid->getName()));
+    openvdb::initialize();
+    write_together(with, [&](OutputSet& set) {
+        set.write(path, [&](const std::filesystem::path& temporary) {
+            write_vdb_archive(temporary, {grids.begin(), grids.end()}, {});
+            seal_vdb(temporary);
+        });
+    });
+}
+
+} // namespace vdb_shell

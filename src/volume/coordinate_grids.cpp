@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes the map of a shell, gives for each voxel in it what it is asked for. The tet that holds a
+// voxel's centre comes from the grid of tets; from there the map finds the place in the prism.
+
+#include "vdb_shell/volume/coordinate_grids.h"
+
+#include "core/parallel.h"
+#include "mesh/nearest_on_triangle.h"
+#include "mesh/triangle_corners.h"
+#include "obstacles/nearest_core.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
+#include "volume/ramp.h"
+#include "volume/tet_index_grid.h"
+#include "volume/voxel_leaves.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::FloatGrid;
+using openvdb::Int32Grid;
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+using openvdb::Vec3SGrid;
+
+/// The grids under construction; those that nobody wants have no leaves.
+struct Grids {
+    VoxelLeaves<Vec3SGrid> rest, uvw, prism_weights, nearest_weights;
+    VoxelLeaves<FloatGrid> depth, thickness, density;
+    VoxelLeaves<Int32Grid> prism, nearest, layer;
+    std::vector<VoxelLeaves<FloatGrid>> masks;
+
+    template <typename Visit> void for_each(const Visit& visit)
+    {
+        visit(rest), visit(depth), visit(thickness), visit(uvw), visit(prism), visit(prism_weights);
+        visit(nearest), visit(nearest_weights), visit(layer), visit(density);
+    }
+};
+
+Grids wanted_grids(const std::vector<Coordinate>& wanted, std::size_t leaves, std::size_t layers)
+{
+    Grids grids;
+    for (const Coordinate coordinate : wanted)
+        switch (coordinate) {
+        case Coordinate::rest:
+            grids.rest = {"rest", Vec3s(0), leaves};
+            break;
+        case Coordinate::depth:
+            grids.depth = {"depth", 0.0f, leaves};
+            break;
+        case Coordinate::thickness:
+            grids.thickness = {"thickness", 0.0f, leaves};
+            break;
+        case Coordinate::uvw:
+            grids.uvw = {"uvw", Vec3s(0), leaves};
+            break;
+        case Coordinate::prism:
+            grids.prism = {"prism", -1, leaves};
+            grids.prism_weights = {"prism_weights", Vec3s(0), leaves};
+            break;
+        case Coordinate::nearest:
+            grids.nearest = {"nearest", -1, leaves};
+            grids.nearest_weights = {"nearest_weights", Vec3s(0), leaves};
+            break;
+        case Coordinate::layer:
+            grids.layer = {"layer", -1, leaves};
+            for (std::size_t k = 0; k < layers; ++k)
+                grids.masks.emplace_back("layer_" + std::to_string(k), 0.0f, leaves);
+            break;
+        case Coordinate::density:
+            grids.density = {"density", 0.0f, leaves};
+            break;
+        }
+    return grids;
+}
+
+/// What is the same for all voxels.
+class Coordinates
+{
+public:
+    Coordinates(const CoordinateInputs& inputs, Ramp ramp, bool nearest)
+        : in_(inputs), skin_{inputs.stack->surface(inputs.stack->skin), inputs.stack->triangles()},
+          ramp_(std::move(ramp))
+    {
+        if (nearest)
+            nearest_.emplace(skin_);
+        for (std::size_t v = 0; v < skin_.points.size(); ++v) {
+            double sum = 0;
+            for (const PrismShell& layer : in_.stack->layers)
+                sum += layer.length(v);
+            thickness_.push_back(sum);
+        }
+    }
+
+    void fill(std::size_t i, const TetIndexLeaf& leaf, const openvdb::math::Transform& transform,
+              Grids& grids) const
+    {
+        grids.for_each([&](auto& grid) { grid.begin(i, leaf); });
+        for (auto& mask : grids.masks)
+            mask.begin(i, leaf, false);
+        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
+            fill_voxel(i, voxel.pos(), std::uint32_t(*voxel),
+                       transform.indexToWorld(voxel.getCoord()), grids);
+    }
+
+private:
+    void fill_voxel(std::size_t i, openvdb::Index voxel, std::uint32_t tet, const Vec3d& point,
+                    Grids& grids) const
+    {
+        const ShellPlace place = in_.map->place_in(tet, point);
+        const SurfacePlace on = in_.map->on_surface(place);
+        const bool in_core = on.triangle == ShellPlace::kNone;
+        const double depth = in_core ? 1.0 : (on.layer + on.share) / double(in_.map->layers());
+        grids.rest.set(i, voxel, Vec3s(in_.rest ? in_.rest->point_of(place) : point));
+        grids.depth.set(i, voxel, float(depth));
+        grids.density.set(i, voxel, float(ramp_.at(depth)));
+        if (grids.nearest.wanted())
+            set_nearest(i, voxel, point, grids);
+        if (in_core)
+            return;
+        const openvdb::Vec3I& corner = in_.stack->triangles()[on.triangle];
+        double thickness = 0;
+        for (int k = 0; k < 3; ++k)
+            thickness += on.weight[k] * thickness_[corner[k]];
+        grids.thickness.set(i, voxel, float(thickness));
+        grids.prism.set(i, voxel, std::int32_t(on.triangle));
+        grids.prism_weights.set(i, voxel, Vec3s(on.weight));
+        grids.layer.set(i, voxel, std::int32_t(on.layer));
+        if (!grids.masks.empty())
+            grids.masks[on.layer].set_on(i, voxel, 1.0f);
+        if (grids.uvw.wanted()) {
+            openvdb::Vec2d uv(0.0);
+            for (int k = 0; k < 3; ++k)
+                uv += on.weight[k] * (*in_.texture)[on.triangle][std::size_t(k)];
+            grids.uvw.set(i, voxel, Vec3s(float(uv[0]), float(uv[1]), float(depth)));
+        }
+    }
+
+    void set_nearest(std::size_t i, openvdb::Index voxel, const Vec3d& point, Grids& grids) const
+    {
+        const std::uint32_t triangle = nearest_->nearest(point).triangle;
+        const std::array<double, 3> weight =
+            nearest_weights(triangle_corners(skin_, triangle), point);
+        grids.nearest.set(i, voxel, std::int32_t(triangle));
+        grids.nearest_weights.set(i, voxel,
+                                  Vec3s(float(weight[0]), float(weight[1]), float(weight[2])));
+    }
+
+    CoordinateInputs in_;
+    TriangleMesh skin_;
+    Ramp ramp_;
+    std::vector<double> thickness_; ///< by vertex
+    std::optional<NearestOnMesh> nearest_;
+};
+
+std::string list_of(const NameTable<Coordinate>& table)
+{
+    std::string list;
+    for (const auto& entry : table)
+        list += (list.empty() ? "" : ", ") + entry.first;
+    return list;
+}
+
+bool has(const std::vector<Coordinate>& list, Coordinate one)
+{
+    return std::find(list.begin(), list.end(), one) != list.end();
+}
+
+} // namespace
+
+const NameTable<Coordinate>& names(Coordinate)
+{
+    static const NameTable<Coordinate> table{
+        {"rest", Coordinate::rest},           {"depth", Coordinate::depth},
+        {"thickness", Coordinate::thickness}, {"uvw", Coordinate::uvw},
+        {"prism", Coordinate::prism},         {"nearest", Coordinate::nearest},
+        {"layer", Coordinate::layer},         {"density", Coordinate::density}};
+    return table;
+}
+
+OptionList describe(CoordinateOptions& o)
+{
+    return in_group(
+        "Volumes",
+        {option("volumes", o.volumes, "--volumes",
+                "What voxels are told, with commas: rest (where they are in the shell at rest), "
+                "depth, thickness, uvw (texture coordinates and depth), prism (triangle and "
+                "weights), nearest (the same of the nearest triangle), layer, density"),
+         option("voxel_size", o.voxel_size, "--voxel-size", "0: as in the shell's level set")
+             .in(Unit::world_length)
+             .within(at_least(0)),
+         option("density_ramp", o.density_ramp, "--density-ramp",
+                "density by depth, as depth:density with commas; linear between")});
+}
+
+std::vector<Coordinate> coordinates_of(const CoordinateOptions& options)
+{
+    std::vector<Coordinate> list;
+    for (const std::string& word : split_at(',', options.volumes)) {
+        const auto& table = names(Coordinate{});
+        const auto found = std::find_if(table.begin(), table.end(),
+                                        [&](const auto& entry) { return entry.first == word; });
+        if (found == table.end())
+            throw InvalidOption("--volumes: \"" + word + "\" is none of " + list_of(table));
+        if (has(list, found->second))
+            throw InvalidOption("--volumes: \"" + word + "\" comes twice");
+        list.push_back(found->second);
+    }
+    return list;
+}
+
+std::vector<GridBasePtr> coordinate_grids(const CoordinateInputs& inputs,
+                                          const CoordinateOptions& options,
+                                          Interrupter* interrupter)
+{
+    const std::vector<Coordinate> wanted = coordinates_of(options);
+    if (has(wanted, Coordinate::uvw) && !inputs.texture)
+        throw InvalidOption("--volumes uvw: there are no texture coordinates");
+    const StageProgress progress(interrupter, "Shell coordinates");
+    const Int32Grid::Ptr tets =
+        tet_index_grid(inputs.map->tets(), options.voxel_size, "volumes", progress);
+    Grids grids = wanted_grids(wanted, tets->tree().leafCount(), inputs.map->layers());
+    const Coordinates coordinates(inputs, ramp_of(options.density_ramp, "--density-ramp"),
+                                  has(wanted, Coordinate::nearest));
+    for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
+        coordinates.fill(i, leaf, tets->transform(), grids);
+    });
+    std::vector<GridBasePtr> made;
+    const auto add = [&](auto& grid) {
+        if (grid.wanted())
+            made.push_back(grid.grid(tets->transform()));
+    };
+    grids.for_each(add);
+    for (auto& mask : grids.masks)
+        add(mask);
+    for (const GridBasePtr& grid : made)
+        if (grid->isType<FloatGrid>() && grid->getName() != "thickness")
+            grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    return made;
+}
+
+} // namespace vdb_shell

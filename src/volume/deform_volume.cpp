@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes a volume, and the maps of a shell at rest and in a pose. Gives the volume in the pose. The
+// voxels of the posed shell are found by its tets; the place of each in the shell says where it was
+// at rest, and the derivatives of the two maps how much of the source it covers.
+
+#include "vdb_shell/volume/deform_volume.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
+#include "volume/extend_volume.h"
+#include "volume/sample_volume.h"
+#include "volume/tet_index_grid.h"
+#include "volume/volume_content.h"
+#include "volume/voxel_leaves.h"
+
+#include <openvdb/math/Mat3.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <type_traits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::FloatGrid;
+using openvdb::GridBase;
+using openvdb::Int32Grid;
+using openvdb::Mat3d;
+using openvdb::Vec3d;
+using openvdb::Vec3SGrid;
+
+/// How a voxel's place and surroundings in the pose go back to rest.
+struct Pullback {
+    Vec3d rest{0.0};         ///< world units of the shell
+    Mat3d by_pose;           ///< d rest / d pose
+    double volume_ratio = 1; ///< of rest over pose
+};
+
+Pullback pull_back(const ShellMap& rest, const ShellMap& posed, std::uint32_t tet,
+                   const Vec3d& point)
+{
+    const ShellPlace place = posed.place_in(tet, point);
+    Pullback back;
+    back.rest = rest.point_of(place);
+    const Mat3d at_rest = rest.jacobian_of(place), at_pose = posed.jacobian_of(place);
+    // On a pinned pillar the share inwards says nothing, and there is nothing to be undone.
+    const double det = at_pose.det();
+    back.by_pose = det == 0.0 ? Mat3d::identity() : at_rest * at_pose.inverse(0.0);
+    back.volume_ratio = std::abs(back.by_pose.det());
+    return back;
+}
+
+enum class VectorMap { keep, forward, normal, rotate };
+
+VectorMap vector_map(const GridBase& grid, VectorRule rule)
+{
+    switch (rule) {
+    case VectorRule::keep:
+        return VectorMap::keep;
+    case VectorRule::transform:
+        return VectorMap::forward;
+    case VectorRule::rotate:
+        return VectorMap::rotate;
+    case VectorRule::by_type:
+        break;
+    }
+    switch (grid.getVectorType()) {
+    case openvdb::VEC_INVARIANT:
+        return VectorMap::keep;
+    case openvdb::VEC_COVARIANT:
+    case openvdb::VEC_COVARIANT_NORMALIZE:
+        return VectorMap::normal;
+    case openvdb::VEC_CONTRAVARIANT_RELATIVE:
+        return VectorMap::forward;
+    case openvdb::VEC_CONTRAVARIANT_ABSOLUTE:
+        break;
+    }
+    throw InvalidOption("grid \"" + grid.getName() +
+                        "\": its vectors are absolute places (contravariant absolute), which a "
+                        "deformed volume cannot carry; say what to do with --vectors");
+}
+
+/// What else happens to a value than to be moved; nothing to whole numbers.
+class ValueMap
+{
+public:
+    ValueMap(const GridBase& grid, const DeformOptions& options) : options_(options)
+    {
+        if (grid.isType<Vec3SGrid>()) {
+            vectors_ = vector_map(grid, options.vectors);
+            normalize_ = grid.getVectorType() == openvdb::VEC_COVARIANT_NORMALIZE;
+        }
+        keeps_mass_ = keeps_mass(grid, options.mass);
+    }
+
+    float operator()(float value, const Pullback& back, std::size_t& limited) const
+    {
+        if (!keeps_mass_)
+            return value;
+        const double most = options_.most_density;
+        const double factor = std::clamp(back.volume_ratio, 1.0 / most, most);
+        limited += factor != back.volume_ratio;
+        return float(value * factor);
+    }
+    std::int32_t operator()(std::int32_t value, const Pullback&, std::size_t&) const
+    {
+        return value;
+    }
+    openvdb::Vec3s operator()(const openvdb::Vec3s& value, const Pullback& back, std::size_t&) const
+    {
+        const Vec3d v(value);
+        switch (vectors_) {
+        case VectorMap::keep:
+            return value;
+        case VectorMap::forward:
+            return openvdb::Vec3s(inverse(back.by_pose) * v);
+        case VectorMap::normal: {
+            Vec3d n = back.by_pose.transpose() * v;
+            if (normalize_)
+                n.normalize(0.0);
+            return openvdb::Vec3s(n);
+        }
+        case VectorMap::rotate: {
+            Mat3d turn, stretch;
+            const bool found =
+                openvdb::math::polarDecomposition(inverse(back.by_pose), turn, stretch);
+            return found ? openvdb::Vec3s(turn * v) : value;
+        }
+        }
+        return value;
+    }
+
+private:
+    static bool keeps_mass(const GridBase& grid, MassRule rule)
+    {
+        if (!grid.isType<FloatGrid>() || grid.getGridClass() == openvdb::GRID_LEVEL_SET)
+            return false;
+        const bool fog =
+            grid.getGridClass() == openvdb::GRID_FOG_VOLUME || grid.getName() == "density";
+        return rule == MassRule::all || (rule == MassRule::fog && fog);
+    }
+    static Mat3d inverse(const Mat3d& matrix)
+    {
+        return matrix.det() == 0.0 ? Mat3d::identity() : matrix.inverse(0.0);
+    }
+
+    const DeformOptions& options_;
+    VectorMap vectors_ = VectorMap::keep;
+    bool normalize_ = false, keeps_mass_ = false;
+};
+
+VoxelLattice lattice_of(const GridBase& grid, const Vec3d& shift)
+{
+    const openvdb::math::Transform& transform = grid.transform();
+    const Vec3d origin = transform.indexToWorld(Vec3d(0.0));
+    const double size = transform.voxelSize()[0];
+    bool plain = transform.isLinear() && size > 0.0;
+    for (int axis = 0; plain && axis < 3; ++axis) {
+        Vec3d unit(0.0), along(0.0);
+        unit[axis] = 1.0;
+        along[axis] = size;
+        // A hundred-thousandth of a voxel over a voxel: what float matrices of other programs lose.
+        constexpr double kExact = 1e-5;
+        plain = (transform.indexToWorld(unit) - origin - along).length() <= kExact * size;
+    }
+    if (!plain)
+        throw InvalidOption(
+            "grid \"" + grid.getName() + "\": its transform is a " + transform.mapType() +
+            " that does more than scale all axes alike and move; resample it first");
+    return {size, origin - shift};
+}
+
+/// The tets of the posed shell below which there may be something.
+template <typename Grid>
+std::vector<std::uint8_t> tets_with_content(const Grid& source, const ShellMap& rest,
+                                            const VoxelLattice& lattice)
+{
+    return rest.tets_that([&](const openvdb::BBoxd& box) {
+        // A voxel more, as trilinear samples and the prism's slight excess at curved sides ask.
+        const Vec3d low = (box.min() - lattice.origin) / lattice.voxel_size - Vec3d(1.0);
+        const Vec3d high = (box.max() - lattice.origin) / lattice.voxel_size + Vec3d(1.0);
+        return any_active(source, {openvdb::Coord::floor(low), openvdb::Coord::ceil(high)});
+    });
+}
+
+void make_distances_again(FloatGrid::Ptr& grid, const FloatGrid& source)
+{
+    openvdb::tools::signedFloodFill(grid->tree());
+    const float half_width = std::max(2.0f, source.background() / float(source.voxelSize()[0]));
+    const FloatGrid::Ptr made = openvdb::tools::levelSetRebuild(*grid, 0.0f, half_width);
+    grid->setTree(made->treePtr());
+}
+
+template <typename Grid>
+typename Grid::Ptr deform(const Grid& source, const ShellMap& rest, const ShellMap& posed,
+                          const VoxelLattice& lattice, const DeformOptions& options,
+                          DeformFigures& figures, const StageProgress& progress)
+{
+    const ValueMap map(source, options);
+    const Int32Grid::Ptr tets = tet_index_grid(posed.tets(), lattice, "deform", progress,
+                                               tets_with_content(source, rest, lattice));
+    VoxelLeaves<Grid> leaves(source.getName(), source.background(), tets->tree().leafCount());
+    std::atomic<std::size_t> limited_density{0}, limited_samples{0};
+    for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
+        VolumeSampler<Grid> sampler(source, options.most_samples);
+        std::size_t limited = 0;
+        leaves.begin(i, leaf, false);
+        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+            const Vec3d point = lattice.origin + lattice.voxel_size * voxel.getCoord().asVec3d();
+            const Pullback back = pull_back(rest, posed, std::uint32_t(*voxel), point);
+            const Vec3d at = (back.rest - lattice.origin) / lattice.voxel_size;
+            typename Grid::ValueType value;
+            if (sampler.mean(at, back.by_pose, value))
+                leaves.set_on(i, voxel.pos(), map(value, back, limited));
+        }
+        limited_density += limited;
+        limited_samples += sampler.limited();
+    });
+    figures.limited_density = limited_density;
+    figures.limited_samples = limited_samples;
+    return leaves.grid(source.transform());
+}
+
+template <typename Grid>
+GridBasePtr deform_grid(const Grid& source, const ShellMap& rest, const ShellMap& posed,
+                        const Vec3d& shift, const DeformOptions& options, DeformFigures& figures,
+                        const StageProgress& progress)
+{
+    const VoxelLattice lattice = lattice_of(source, shift);
+    figures.active_before = source.activeVoxelCount();
+    if (figures.active_before == 0)
+        throw InvalidOption("grid \"" + source.getName() + "\" has no active voxels");
+    const Int32Grid::Ptr at_rest = tet_index_grid(rest.tets(), lattice, "deform", progress);
+    const Content before = content_of(source, *at_rest);
+    figures.outside = before.outside_share();
+    if (figures.outside > options.most_outside)
+        throw InvalidOption("grid \"" + source.getName() +
+                            "\": " + std::to_string(100 * figures.outside) +
+                            " % of it lies outside the shell at rest, more than the " +
+                            std::to_string(100 * options.most_outside) +
+                            " % of --most-outside; make the shell thicker, fill its core, or build "
+                            "it on both sides");
+    const bool level_set = source.getGridClass() == openvdb::GRID_LEVEL_SET;
+    typename Grid::Ptr made;
+    if constexpr (std::is_integral_v<typename Grid::ValueType>) {
+        made = deform(source, rest, posed, lattice, options, figures, progress);
+    } else {
+        const typename Grid::ConstPtr extended =
+            level_set ? nullptr : extended_beyond(source, *at_rest);
+        made =
+            deform(extended ? *extended : source, rest, posed, lattice, options, figures, progress);
+    }
+    if constexpr (std::is_same_v<Grid, FloatGrid>) {
+        if (level_set)
+            make_distances_again(made, source);
+        else {
+            const double voxel = std::pow(lattice.voxel_size, 3);
+            figures.mass_before = before.sum * voxel;
+            figures.mass_after = sum_of_values(*made) * voxel;
+        }
+    }
+    made->insertMeta(source);
+    made->setTransform(source.transform().copy());
+    figures.active_after = made->activeVoxelCount();
+    return made;
+}
+
+} // namespace
+
+const NameTable<MassRule>& names(MassRule)
+{
+    static const NameTable<MassRule> table{
+        {"fog", MassRule::fog}, {"all", MassRule::all}, {"none", MassRule::none}};
+    return table;
+}
+
+const NameTable<VectorRule>& names(VectorRule)
+{
+    static const NameTable<VectorRule> table{{"by-type", VectorRule::by_type},
+                                             {"transform", VectorRule::transform},
+                                             {"rotate", VectorRule::rotate},
+                                             {"keep", VectorRule::keep}};
+    return table;
+}
+
+OptionList describe(DeformOptions& o)
+{
+    return in_group(
+        "Deform",
+        {option("mass", o.mass, "--mass",
+                "Grids whose sum of values times volume is kept: fog volumes and \"density\", all "
+                "of floats, or none"),
+         option("most_density", o.most_density, "--most-density",
+                "Bound of the factor by which a density grows, and of its inverse")
+             .within(at_least(1)),
+         option("vectors", o.vectors, "--vectors",
+                "What becomes of vectors: by the grid's vector type, turned and stretched, turned, "
+                "or as they are"),
+         option("most_samples", o.most_samples, "--most-samples",
+                "Samples along each axis of a voxel, at most, where the map shrinks")
+             .in(Unit::count)
+             .within(at_least(1)),
+         option("most_outside", o.most_outside, "--most-outside",
+                "Share of a volume that may lie outside the shell, and is left out")
+             .in(Unit::share)
+             .within(at_least(0).at_most(1))});
+}
+
+GridBasePtr deform_volume(const GridBase& source, const ShellMap& rest, const ShellMap& posed,
+                          const Vec3d& shift, const DeformOptions& options, DeformFigures& figures,
+                          Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "Deform volume");
+    figures = {};
+    figures.grid = source.getName();
+    const auto deformed = [&](const auto& grid) {
+        return deform_grid(grid, rest, posed, shift, options, figures, progress);
+    };
+    if (source.isType<FloatGrid>())
+        return deformed(static_cast<const FloatGrid&>(source));
+    if (source.isType<Vec3SGrid>())
+        return deformed(static_cast<const Vec3SGrid&>(source));
+    if (source.isType<Int32Grid>())
+        return deformed(static_cast<const Int32Grid&>(source));
+    throw InvalidOption("grid \"" + source.getName() + "\" has values of type " +
+                        source.valueType() + "; floats, vectors and whole numbers can be deformed");
+}
+
+} // namespace vdb_shell

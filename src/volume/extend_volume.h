@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Morphology.h>
+
+#include <type_traits>
+#include <vector>
+
+namespace vdb_shell
+{
+
+/// A copy whose inactive voxels next to what is `inside` have the mean of their neighbours there,
+/// so that samples just inside do not mix with the emptiness outside: a volume that reaches the
+/// skin would lose half a voxel of it all around. Voxels stay inactive.
+template <typename Grid>
+typename Grid::Ptr extended_beyond(const Grid& source, const openvdb::Int32Grid& inside)
+{
+    using Value = typename Grid::ValueType;
+    using Sum = std::conditional_t<std::is_same_v<Value, float>, double, openvdb::Vec3d>;
+    typename Grid::Ptr extended = source.deepCopy();
+    openvdb::MaskTree rim(inside.tree(), false, true, openvdb::TopologyCopy());
+    openvdb::tools::dilateActiveValues(rim, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::IGNORE_TILES);
+    rim.topologyDifference(inside.tree());
+    auto is_inside = inside.getConstAccessor();
+    auto value_of = source.getConstAccessor();
+    auto made = extended->getAccessor();
+    for (auto voxel = rim.cbeginValueOn(); voxel; ++voxel) {
+        const openvdb::Coord place = voxel.getCoord();
+        if (value_of.isValueOn(place))
+            continue;
+        Sum sum(0.0);
+        int count = 0;
+        for (const openvdb::Coord& beside :
+             openvdb::CoordBBox(place.offsetBy(-1), place.offsetBy(1)))
+            if (is_inside.isValueOn(beside)) {
+                sum += Sum(value_of.getValue(beside));
+                ++count;
+            }
+        if (count > 0 && sum != Sum(0.0))
+            made.setValueOff(place, Value(sum * (1.0 / count)));
+    }
+    return extended;
+}
+
+} // namespace vdb_shell

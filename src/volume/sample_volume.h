@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/math/Mat3.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/Interpolation.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+
+namespace vdb_shell
+{
+
+/// A place in index space, moved onto a voxel's centre where it is as near as rounding: what is
+/// there already then stays bit for bit.
+inline openvdb::Vec3d on_lattice(openvdb::Vec3d place)
+{
+    constexpr double kNear = 1e-6; // voxels
+    for (int axis = 0; axis < 3; ++axis) {
+        const double whole = std::round(place[axis]);
+        if (std::abs(place[axis] - whole) < kNear)
+            place[axis] = whole;
+    }
+    return place;
+}
+
+/// Means of a grid over small parallelepipeds. One for each thread.
+template <typename Grid> class VolumeSampler
+{
+public:
+    using Value = typename Grid::ValueType;
+
+    VolumeSampler(const Grid& grid, std::size_t most_samples)
+        : values_(grid.getConstAccessor()), background_(grid.background()),
+          level_set_(grid.getGridClass() == openvdb::GRID_LEVEL_SET), most_(int(most_samples))
+    {
+    }
+
+    /// Of the samples at `place` + `across` * x, all in index space, x in the cube of side 1 about
+    /// 0, no farther apart than 1 along any column of `across`. False where there is nothing:
+    /// the background everywhere, and no active voxel is nearest to a sample.
+    bool mean(const openvdb::Vec3d& place, const openvdb::Mat3d& across, Value& value)
+    {
+        std::array<int, 3> count;
+        bool limited = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            // A millionth more than a voxel is a voxel.
+            constexpr double kRounding = 1e-6;
+            const double wanted = std::ceil(across.col(axis).length() - kRounding);
+            limited = limited || wanted > most_;
+            count[std::size_t(axis)] = int(std::clamp(wanted, 1.0, double(most_)));
+        }
+        limited_ += limited;
+        if constexpr (std::is_integral_v<Value>)
+            return sample(on_lattice(place), value);
+        else
+            return count[0] * count[1] * count[2] == 1 ? sample(on_lattice(place), value)
+                                                       : sum(place, across, count, value);
+    }
+
+    /// How often there were fewer samples than wanted.
+    std::size_t limited() const { return limited_; }
+
+private:
+    bool sample(const openvdb::Vec3d& at, Value& value)
+    {
+        if constexpr (std::is_integral_v<Value>)
+            return openvdb::tools::PointSampler::sample(values_, at, value);
+        else
+            openvdb::tools::BoxSampler::sample(values_, at, value);
+        // A level set's inside is no background, and not active either.
+        return (!level_set_ && value != background_) ||
+               values_.isValueOn(openvdb::Coord::round(at));
+    }
+
+    bool sum(const openvdb::Vec3d& place, const openvdb::Mat3d& across,
+             const std::array<int, 3>& count, Value& value)
+    {
+        const auto offset = [&](int i, std::size_t axis) { return (i + 0.5) / count[axis] - 0.5; };
+        using Sum = std::conditional_t<std::is_same_v<Value, float>, double, openvdb::Vec3d>;
+        Sum total(0.0);
+        bool any = false;
+        for (int x = 0; x < count[0]; ++x)
+            for (int y = 0; y < count[1]; ++y)
+                for (int z = 0; z < count[2]; ++z) {
+                    const openvdb::Vec3d in_cube(offset(x, 0), offset(y, 1), offset(z, 2));
+                    Value one;
+                    any |= sample(place + across * in_cube, one);
+                    total += Sum(one);
+                }
+        value = Value(total * (1.0 / (count[0] * count[1] * count[2])));
+        return any;
+    }
+
+    typename Grid::ConstAccessor values_;
+    Value background_;
+    bool level_set_;
+    int most_;
+    std::size_t limited_ = 0;
+};
+
+} // namespace vdb_shell

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_shell/volume/shell_map.h"
+
+#include "core/parallel.h"
+#include "mesh/topology.h"
+#include "vdb_shell/shell/core_tets.h"
+#include "volume/wedge.h"
+
+#include <openvdb/math/Math.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+using openvdb::Vec3I;
+using openvdb::Vec3s;
+using openvdb::Vec4d;
+
+std::vector<Vec3I> triangles_beyond(const std::vector<Vec3I>& triangles)
+{
+    std::vector<Vec3I> beyond(triangles.size(), Vec3I(ShellPlace::kNone));
+    const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
+    for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
+        const EdgeUse &a = uses[i], &b = uses[i + 1];
+        if (a.edge != b.edge)
+            continue;
+        // Side i runs from corner i to the next, so it is opposite the one after that.
+        beyond[a.triangle][(a.side + 2) % 3] = b.triangle;
+        beyond[b.triangle][(b.side + 2) % 3] = a.triangle;
+    }
+    return beyond;
+}
+
+template <typename Corners> Wedge wedge_of(const Corners& corners)
+{
+    Wedge wedge;
+    for (std::size_t i = 0; i < 3; ++i) {
+        wedge.outer[i] = Vec3d(corners[i]);
+        wedge.inner[i] = Vec3d(corners[i + 3]);
+    }
+    return wedge;
+}
+
+WedgePlace wedge_place(const Vec4d& weight)
+{
+    return {weight[1], weight[2], weight[3]};
+}
+
+/// Weights that add up to one in spite of rounding.
+Vec4d weights_of(const WedgePlace& place)
+{
+    return {1.0 - place[0] - place[1], place[0], place[1], place[2]};
+}
+
+/// Mean of the prism's coordinates over the corners that are one point. Where outer and inner ones
+/// are, the point is on the outer surface.
+WedgePlace corner_place(std::uint8_t bits)
+{
+    WedgePlace sum(0.0);
+    int count = 0;
+    const bool outer = (bits & 7) != 0;
+    for (int k = 0; k < 6; ++k)
+        if ((bits >> k & 1) != 0 && (k < 3) == outer) {
+            sum += WedgePlace(k % 3 == 1, k % 3 == 2, k / 3);
+            ++count;
+        }
+    return count == 0 ? sum : sum / count;
+}
+
+WedgePlace place_of_weights(const std::array<std::uint8_t, 4>& bits, const Vec4d& weight)
+{
+    WedgePlace place(0.0);
+    for (std::size_t i = 0; i < 4; ++i)
+        place += weight[int(i)] * corner_place(bits[i]);
+    return place;
+}
+
+/// Points on sides are both prisms'. The unit is that of the weights.
+constexpr double kOnSide = 1e-9;
+
+} // namespace
+
+ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
+    : tets_(std::move(tets)), triangles_(stack.triangles().size()),
+      beyond_(triangles_beyond(stack.triangles()))
+{
+    corners_.resize(stack.layers.size() * triangles_);
+    curved_.assign(corners_.size(), 0);
+    std::vector<std::uint8_t> has_tets(corners_.size(), 0);
+    for_each_index(corners_.size(), [&](std::size_t p) {
+        const PrismShell& layer = stack.layers[p / triangles_];
+        const Vec3I& triangle = stack.triangles()[p % triangles_];
+        for (std::size_t i = 0; i < 3; ++i) {
+            corners_[p][i] = layer.outer[triangle[int(i)]];
+            corners_[p][i + 3] = layer.inner[triangle[int(i)]];
+        }
+        curved_[p] = has_positive_jacobian(wedge_of(corners_[p]));
+    });
+    corner_bits_.resize(tets_.tets.size());
+    for (std::size_t t = 0; t < tets_.tets.size(); ++t) {
+        if (tets_.prism[t] == kCorePrism)
+            continue;
+        const std::size_t p = tets_.prism_layer[t] * triangles_ + tets_.prism[t];
+        has_tets[p] = 1;
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t k = 0; k < 6; ++k)
+                if (corners_[p][k] == tets_.points[tets_.tets[t][int(i)]])
+                    corner_bits_[t][i] = std::uint8_t(corner_bits_[t][i] | 1u << k);
+    }
+    for (std::size_t p = 0; p < corners_.size(); ++p) {
+        prisms_ += has_tets[p];
+        linear_prisms_ += has_tets[p] && !curved_[p];
+    }
+}
+
+Vec4d ShellMap::tet_weights(std::uint32_t tet, const Vec3d& point) const
+{
+    const openvdb::Vec4I& corner = tets_.tets[tet];
+    const Vec3d a(tets_.points[corner[0]]);
+    const Vec3d b = Vec3d(tets_.points[corner[1]]) - a, c = Vec3d(tets_.points[corner[2]]) - a,
+                d = Vec3d(tets_.points[corner[3]]) - a, p = point - a;
+    const Vec3d cd = c.cross(d);
+    const double det = b.dot(cd);
+    const Vec3d weight(p.dot(cd) / det, p.dot(d.cross(b)) / det, p.dot(b.cross(c)) / det);
+    return {1.0 - weight[0] - weight[1] - weight[2], weight[0], weight[1], weight[2]};
+}
+
+bool ShellMap::holds(std::uint32_t tet, const Vec3d& point) const
+{
+    const Vec4d weight = tet_weights(tet, point);
+    for (int i = 0; i < 4; ++i)
+        if (!(weight[i] >= -kOnSide))
+            return false;
+    return true;
+}
+
+ShellPlace ShellMap::linear_place(std::uint32_t tet, const Vec4d& weight) const
+{
+    ShellPlace place;
+    place.tet = tet;
+    place.weight = weight;
+    return place;
+}
+
+ShellPlace ShellMap::place_in(std::uint32_t tet, const Vec3d& point) const
+{
+    const Vec4d weight = tet_weights(tet, point);
+    if (tets_.prism[tet] == kCorePrism)
+        return linear_place(tet, weight);
+    const std::size_t layer = tets_.prism_layer[tet] * triangles_;
+    std::uint32_t triangle = tets_.prism[tet];
+    if (!curved_[layer + triangle])
+        return linear_place(tet, weight);
+    WedgePlace guess = place_of_weights(corner_bits_[tet], weight);
+    ShellPlace best = linear_place(tet, weight);
+    double best_outside = 1.0;
+    // A curved side is crossed once, or twice near a corner.
+    constexpr int kMostPrisms = 4;
+    for (int i = 0; i < kMostPrisms; ++i) {
+        const auto prism = std::uint32_t(layer + triangle);
+        const std::optional<WedgePlace> found =
+            vdb_shell::place_of(wedge_of(corners_[prism]), point, guess);
+        if (!found)
+            break;
+        const Vec4d at = weights_of(*found);
+        const double outside = outside_of(*found);
+        if (outside < best_outside) {
+            best.prism = prism;
+            best.weight = at;
+            best_outside = outside;
+        }
+        const int least = int(openvdb::math::MinIndex(Vec3d(at[0], at[1], at[2])));
+        if (at[least] >= -kOnSide)
+            break;
+        triangle = beyond_[triangle][least];
+        if (triangle == ShellPlace::kNone || !curved_[layer + triangle])
+            break;
+        guess = {1.0 / 3, 1.0 / 3, std::clamp(at[3], 0.0, 1.0)};
+    }
+    return best;
+}
+
+std::vector<std::uint8_t>
+ShellMap::tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) const
+{
+    std::vector<std::uint8_t> prism(corners_.size()), tet(tets_.tets.size());
+    for_each_index(corners_.size(), [&](std::size_t p) {
+        openvdb::BBoxd box;
+        for (const Vec3s& corner : corners_[p])
+            box.expand(Vec3d(corner));
+        prism[p] = meets(box);
+    });
+    for_each_index(tet.size(), [&](std::size_t t) {
+        if (tets_.prism[t] == kCorePrism) {
+            openvdb::BBoxd box;
+            for (int i = 0; i < 4; ++i)
+                box.expand(Vec3d(tets_.points[tets_.tets[t][i]]));
+            tet[t] = meets(box);
+            return;
+        }
+        const std::size_t layer = tets_.prism_layer[t] * triangles_;
+        tet[t] = prism[layer + tets_.prism[t]];
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t beside = beyond_[tets_.prism[t]][i];
+            if (beside != ShellPlace::kNone && prism[layer + beside])
+                tet[t] = 1;
+        }
+    });
+    return tet;
+}
+
+Vec3d ShellMap::point_of(const ShellPlace& place) const
+{
+    if (place.prism != ShellPlace::kNone)
+        return vdb_shell::point_of(wedge_of(corners_[place.prism]), wedge_place(place.weight));
+    Vec3d point(0.0);
+    for (int i = 0; i < 4; ++i)
+        point += place.weight[i] * Vec3d(tets_.points[tets_.tets[place.tet][i]]);
+    return point;
+}
+
+openvdb::Mat3d ShellMap::jacobian_of(const ShellPlace& place) const
+{
+    if (place.prism != ShellPlace::kNone)
+        return vdb_shell::jacobian_of(wedge_of(corners_[place.prism]), wedge_place(place.weight));
+    const openvdb::Vec4I& corner = tets_.tets[place.tet];
+    const Vec3d a(tets_.points[corner[0]]);
+    return {Vec3d(tets_.points[corner[1]]) - a, Vec3d(tets_.points[corner[2]]) - a,
+            Vec3d(tets_.points[corner[3]]) - a, false};
+}
+
+SurfacePlace ShellMap::on_surface(const ShellPlace& place) const
+{
+    SurfacePlace on;
+    if (place.prism == ShellPlace::kNone && tets_.prism[place.tet] == kCorePrism)
+        return on;
+    WedgePlace at = wedge_place(place.weight);
+    if (place.prism != ShellPlace::kNone) {
+        on.triangle = std::uint32_t(place.prism % triangles_);
+        on.layer = std::uint32_t(place.prism / triangles_);
+    } else {
+        on.triangle = tets_.prism[place.tet];
+        on.layer = tets_.prism_layer[place.tet];
+        at = place_of_weights(corner_bits_[place.tet], place.weight);
+    }
+    on.weight = {1.0 - at[0] - at[1], at[0], at[1]};
+    on.share = std::clamp(at[2], 0.0, 1.0);
+    return on;
+}
+
+} // namespace vdb_shell

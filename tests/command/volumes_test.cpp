@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "command_fixture.h"
+
+#include "support/files.h"
+#include "support/shapes.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+
+// `volumes` and `deform`.
+
+namespace vdb_shell::test
+{
+namespace
+{
+
+using command::ExitCode;
+
+/// Names and numbers of active voxels, by OpenVDB's own reader.
+std::map<std::string, std::size_t> grids_in(const std::string& path)
+{
+    openvdb::initialize();
+    openvdb::io::File file(path);
+    file.open(false);
+    std::map<std::string, std::size_t> grids;
+    const openvdb::GridPtrVecPtr all = file.getGrids();
+    for (const openvdb::GridBase::Ptr& grid : *all)
+        grids[grid->getName()] = grid->activeVoxelCount();
+    return grids;
+}
+
+class Volumes : public Command
+{
+protected:
+    Volumes()
+    {
+        TriangleMesh mesh = icosphere(1.0, 2);
+        const std::string at_rest = mesh_file("ball.obj", mesh);
+        for (openvdb::Vec3s& p : mesh.points)
+            p[0] = 1.5f * p[0];
+        const std::string in_pose = mesh_file("long.obj", mesh);
+        EXPECT_EQ(run("build " + at_rest + kCoarse + " -q -o " + rest).status, ExitCode::success);
+        EXPECT_EQ(run("pose " + rest + " " + in_pose + " -q -o " + posed).status,
+                  ExitCode::success);
+    }
+
+    const std::string rest = file("rest.vdb"), posed = file("posed.vdb"), fog = file("fog.vdb"),
+                      out = file("out.vdb");
+};
+
+TEST_F(Volumes, AreWrittenAndCarriedToThePose)
+{
+    const Outcome made = run("volumes " + rest + " --volumes density,rest,prism -o " + fog);
+    ASSERT_EQ(made.status, ExitCode::success) << made.err;
+    const auto grids = grids_in(fog);
+    ASSERT_EQ(grids.size(), 4u);
+    EXPECT_GT(grids.at("density"), 1000u);
+    EXPECT_EQ(grids.at("density"), grids.at("prism_weights"));
+
+    const Outcome all = run("deform " + fog + " --posed " + posed + " --report - -o " + out);
+    ASSERT_EQ(all.status, ExitCode::success) << all.err;
+    EXPECT_EQ(grids_in(out).size(), 4u);
+    const auto figures = nlohmann::json::parse(all.out)["grids"];
+    ASSERT_EQ(figures.size(), 4u);
+    for (const auto& grid : figures)
+        if (grid["grid"] == "density") {
+            EXPECT_NEAR(double(grid["mass_after"]) / double(grid["mass_before"]), 1, 0.02);
+        }
+
+    EXPECT_EQ(run("deform " + fog + " --rest " + rest + " --posed " + posed +
+                  " --grid density -q -o " + out)
+                  .status,
+              ExitCode::success);
+    EXPECT_EQ(grids_in(out).size(), 1u);
+}
+
+TEST_F(Volumes, AreTheSameForAnyNumberOfThreads)
+{
+    std::set<std::string> seen;
+    for (const std::string threads : {"1", "2", "3"}) {
+        ASSERT_EQ(run("volumes " + rest + " --threads " + threads + " -o " + fog).status,
+                  ExitCode::success);
+        ASSERT_EQ(
+            run("deform " + fog + " --posed " + posed + " -q --threads " + threads + " -o " + out)
+                .status,
+            ExitCode::success);
+        seen.insert(read_bytes(fog) + read_bytes(out));
+    }
+    EXPECT_EQ(seen.size(), 1u);
+}
+
+TEST_F(Volumes, RefuseBadInput)
+{
+    ASSERT_EQ(run("volumes " + rest + " -o " + fog).status, ExitCode::success);
+    const std::string kept = read_bytes(fog);
+    expect_refusal("volumes " + rest + " --volumes uvw -o " + fog, ExitCode::usage_error,
+                   {"texture coordinates"});
+    expect_refusal("volumes " + rest + " --volumes colour -o " + fog, ExitCode::usage_error,
+                   {"colour", "density"});
+    expect_refusal("volumes " + rest + " --density-ramp 1:0,0:1 --volumes density -o " + fog,
+                   ExitCode::usage_error, {"--density-ramp"});
+    expect_refusal("volumes " + rest + " -o " + file("a.vtu"), ExitCode::usage_error, {".vdb"});
+    expect_refusal("volumes " + rest + " -o " + rest, ExitCode::usage_error, {"rest.vdb"});
+    EXPECT_EQ(read_bytes(fog), kept);
+
+    expect_refusal("deform " + fog + " --posed " + rest + " -o " + out, ExitCode::usage_error,
+                   {"rest.vdb", "at rest"});
+    expect_refusal("deform " + fog + " --posed " + posed + " --grid smoke -o " + out,
+                   ExitCode::read_error, {"smoke", "depth"});
+    // The level set of the skin lies half outside.
+    expect_refusal("deform " + rest + " --grid surface --posed " + posed + " -o " + out,
+                   ExitCode::usage_error, {"surface", "outside the shell"});
+    expect_refusal("deform " + rest + " --grid tets --posed " + posed + " -o " + out,
+                   ExitCode::read_error, {"tets", "no volume"});
+    const std::string other = file("other.vdb");
+    ASSERT_EQ(
+        run("build " + mesh_file("other.obj", icosphere(1.0, 1)) + kCoarse + " -q -o " + other)
+            .status,
+        ExitCode::success);
+    expect_refusal("deform " + fog + " --rest " + other + " --posed " + posed + " -o " + out,
+                   ExitCode::usage_error, {"posed.vdb", "other.vdb", "not one shell"});
+    EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+} // namespace
+} // namespace vdb_shell::test
