@@ -7,7 +7,10 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/output_set.h"
 #include "vdb_shell/core/words.h"
+#include "vdb_shell/houdini/polygon_mesh.h"
+#include "vdb_shell/io/texture_coordinates.h"
 #include "vdb_shell/io/volume_file.h"
+#include "vdb_shell/volume/surface_coordinates.h"
 
 #include "command/exit_code.h"
 #include "command/mapped_shell.h"
@@ -16,7 +19,7 @@
 #include <CLI/CLI.hpp>
 #include <openvdb/openvdb.h>
 
-#include <ostream>
+#include <algorithm>
 
 namespace vdb_shell::command
 {
@@ -28,8 +31,19 @@ OptionSections describe(VolumesArguments& a)
     Option output = option("", a.output, "--output", "The volumes: .vdb").with_names({"-o"});
     output.required = true;
     const Option half = option("", a.half, "--half", "Save floats and vectors as half floats");
-    return {{"", in_group("Output", {output, half, no_clobber_option(a.no_clobber)})},
+    const Option texture =
+        option("", a.texture, "--texture-from",
+               "The shell's surface at rest with texture coordinates, for uvw: .obj, .ply, "
+               ".geo, .bgeo, .bgeo.sc");
+    return {{"", in_group("Volumes", {texture})},
+            {"", in_group("Output", {output, half, no_clobber_option(a.no_clobber)})},
             {"volumes", vdb_shell::describe(a.coordinates)}};
+}
+
+TextureCoordinates texture_of(const std::filesystem::path& path, const Placement& placement)
+{
+    return houdini::has_geometry_extension(path) ? houdini::read_polygon_texture(path, placement)
+                                                 : read_texture_coordinates(path, placement);
 }
 
 } // namespace
@@ -47,9 +61,15 @@ FilePlan plan_volumes(const VolumesArguments& arguments)
 {
     if (lower_case_extension(arguments.output) != ".vdb")
         throw InvalidOption(arguments.output.string() + ": the extension is not .vdb");
-    coordinates_of(arguments.coordinates);
+    const std::vector<Coordinate> wanted = coordinates_of(arguments.coordinates);
+    const bool uvw = std::find(wanted.begin(), wanted.end(), Coordinate::uvw) != wanted.end();
+    if (uvw == arguments.texture.empty())
+        throw InvalidOption(uvw ? "--volumes uvw: there are no texture coordinates; --texture-from "
+                                  "names the surface that has them"
+                                : "--texture-from is of use with --volumes uvw only");
     FilePlan plan(existing_files(arguments.no_clobber));
     plan.add_input(arguments.shell);
+    plan.add_input(arguments.texture);
     plan.add_output(arguments.output);
     return plan;
 }
@@ -71,6 +91,13 @@ int run_volumes(const VolumesArguments& arguments, Context& context)
     inputs.map = shell.map.get();
     inputs.stack = &shell.file.stack;
     inputs.rest = shell.rest.get();
+    SurfaceCoordinates texture;
+    if (!arguments.texture.empty()) {
+        const ShellStack rest = rest_stack(shell.file);
+        texture = surface_coordinates(texture_of(arguments.texture, shell.file.placement),
+                                      {rest.surface(rest.skin), rest.triangles()});
+        inputs.texture = &texture.corner;
+    }
     const std::vector<GridBasePtr> grids = coordinate_grids(inputs, options, &interrupter);
     // Values stay in the mesh's own frame, as those of "rest" in a posed shell's .vdb do.
     const openvdb::Vec3d shift = shell.file.placement.shift();

@@ -19,6 +19,7 @@ namespace vdb_shell::command
 
 struct VolumesArguments {
     std::filesystem::path shell, output;
+    std::filesystem::path texture; ///< the surface with texture coordinates, for uvw
     CoordinateOptions coordinates;
     bool half = false, no_clobber = false;
 };

@@ -95,6 +95,54 @@ TEST_F(Volumes, AreTheSameForAnyNumberOfThreads)
     EXPECT_EQ(seen.size(), 1u);
 }
 
+TEST_F(Volumes, TextureCoordinatesComeFromTheSurface)
+{
+    // u and v are x and y over 2, plus one half.
+    const TriangleMesh mesh = icosphere(1.0, 2);
+    std::string text;
+    for (const openvdb::Vec3s& p : mesh.points) {
+        text += "v " + std::to_string(p[0]) + ' ' + std::to_string(p[1]) + ' ' +
+                std::to_string(p[2]) + "\nvt " + std::to_string(p[0] / 2 + 0.5) + ' ' +
+                std::to_string(p[1] / 2 + 0.5) + '\n';
+    }
+    for (const openvdb::Vec3I& t : mesh.triangles) {
+        text += "f";
+        for (int k = 0; k < 3; ++k)
+            text.append(" ")
+                .append(std::to_string(t[k] + 1))
+                .append("/")
+                .append(std::to_string(t[k] + 1));
+        text += '\n';
+    }
+    const std::string textured = file("textured.obj");
+    write_bytes(textured, text);
+    const Outcome made =
+        run("volumes " + rest + " --volumes uvw,depth --texture-from " + textured + " -o " + out);
+    ASSERT_EQ(made.status, ExitCode::success) << made.err;
+    openvdb::io::File opened(out);
+    opened.open(false);
+    const auto uvw = openvdb::gridPtrCast<openvdb::Vec3SGrid>(opened.readGrid("uvw"));
+    const auto depth = openvdb::gridPtrCast<openvdb::FloatGrid>(opened.readGrid("depth"));
+    std::size_t near_skin = 0;
+    for (auto voxel = uvw->cbeginValueOn(); voxel; ++voxel) {
+        const openvdb::Vec3s value = *voxel;
+        const float d = depth->tree().getValue(voxel.getCoord());
+        EXPECT_EQ(value[2], d);
+        if (d > 0.05f)
+            continue;
+        const openvdb::Vec3d p = uvw->transform().indexToWorld(voxel.getCoord());
+        EXPECT_NEAR(value[0], p[0] / 2 + 0.5, 0.05);
+        EXPECT_NEAR(value[1], p[1] / 2 + 0.5, 0.05);
+        ++near_skin;
+    }
+    EXPECT_GT(near_skin, 100u);
+    expect_refusal("volumes " + rest + " --volumes uvw --texture-from " + file("ball.obj") +
+                       " -o " + out,
+                   ExitCode::read_error, {"ball.obj", "texture coordinates"});
+    expect_refusal("volumes " + rest + " --texture-from " + textured + " -o " + out,
+                   ExitCode::usage_error, {"--texture-from", "uvw"});
+}
+
 TEST_F(Volumes, RefuseBadInput)
 {
     ASSERT_EQ(run("volumes " + rest + " -o " + fog).status, ExitCode::success);
