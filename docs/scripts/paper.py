@@ -31,7 +31,8 @@ PARTS = {"figure_1": figure_1,
          "figure_2": lambda a, scratch: paper_figure_2.make(a.command, scratch, a.folder),
          "figure_3": lambda a, scratch: paper_figure_3.make(a.command, scratch, a.folder),
          "figures_4_5": lambda a, scratch: paper_figures_4_5.make(a.command, a.meshes, a.folder),
-         "sentences": lambda a, scratch: paper_sentences.make(a.command, a.meshes)}
+         "sentences": lambda a, scratch: paper_sentences.make(a.command, a.meshes),
+         "cost": lambda a, scratch: paper_sentences.make_cost(a.command, a.meshes)}
 
 
 def main():
