@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # lint.sh format: every C++ file is as clang-format leaves it.
-# lint.sh tidy:   clang-tidy finds nothing in the library and the command (needs the dev build's compile commands).
+# lint.sh tidy:   clang-tidy finds nothing in the library and the command (needs the dev build's compile commands), several
+#                 sources as one. lint.sh tidy --alone takes each by itself, without precompiled headers: each then proves
+#                 to include what it needs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case "${1:-}" in
@@ -8,10 +10,10 @@ format)
     git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
     ;;
 tidy)
-    # Without the precompiled headers, which are GCC's, so that each source proves to include what it needs.
+    # Without the precompiled headers, which are GCC's.
     mkdir -p build/tidy
     sed -E 's# -Winvalid-pch -include [^ ]*cmake_pch.hxx##' build/dev/compile_commands.json >build/tidy/compile_commands.json
-    git ls-files 'src/*.cpp' 'houdini_compat/*.cpp' | xargs python3 .ci/tidy.py build/tidy/compile_commands.json build/tidy/groups
+    git ls-files 'src/*.cpp' 'houdini_compat/*.cpp' | xargs python3 .ci/tidy.py "${@:2}" build/tidy/compile_commands.json build/tidy/groups
     ;;
 *) echo "usage: $0 format|tidy" >&2; exit 2 ;;
 esac

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tidy.py COMPILE_COMMANDS SCRATCH SOURCE...  clang-tidy over the sources, several of a folder as one.
+"""tidy.py [--alone] COMPILE_COMMANDS SCRATCH SOURCE...  clang-tidy over the sources, several of a folder as one.
 
 Nine tenths of clang-tidy's time go to the templates of OpenVDB's and the standard library's headers, which it walks
 again for each source. So sources of one folder are included into one, unless two of them give the same name to
-different things: then the group is halved. Each source is parsed by itself as well, without precompiled headers, so that
-it proves to include what it needs. Exit status 1 where anything is found.
+different things: then the group is halved. --alone takes each by itself, which takes twice as long and proves that each includes
+what it needs. Exit status 1 where anything is found.
 """
 import collections
 import concurrent.futures
@@ -40,12 +40,6 @@ def clang(arguments):
     return done.returncode, done.stdout + done.stderr
 
 
-def parse(source, flags):
-    """What Clang says of one source alone."""
-    status, text = clang(["clang++", *flags, "-w", "-fsyntax-only", source])
-    return text if status else ""
-
-
 def check_group(sources, flags, scratch):
     """What clang-tidy finds in these sources."""
     name = "+".join(pathlib.Path(source).stem for source in sources)[:150]
@@ -65,7 +59,10 @@ def check_group(sources, flags, scratch):
 
 
 def main():
-    commands, scratch, sources = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
+    alone = sys.argv[1] == "--alone"
+    most = 1 if alone else GROUP
+    commands, scratch, *sources = sys.argv[2 if alone else 1:]
+    scratch = pathlib.Path(scratch)
     scratch.mkdir(parents=True, exist_ok=True)
     with open(commands, encoding="utf-8") as file:
         entries = {os.path.realpath(os.path.join(e["directory"], e["file"])): e for e in json.load(file)}
@@ -79,9 +76,8 @@ def main():
     jobs = []
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for (_, flags), members in folders.items():
-            count = -(-len(members) // GROUP)
+            count = -(-len(members) // most)
             jobs += [pool.submit(check_group, members[i::count], flags, scratch) for i in range(count)]
-        jobs += [pool.submit(parse, source, flags) for (_, flags), members in folders.items() for source in members]
         found = [text for text in (job.result() for job in jobs) if text]
     print("\n".join(found), end="\n" if found else "")
     sys.exit(1 if found else 0)

@@ -226,6 +226,11 @@ void write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
 
 } // namespace
 
+std::string creator_name()
+{
+    return std::string("vdb_shell ") + VDB_SHELL_VERSION;
+}
+
 void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
                        const openvdb::MetaMap& metadata)
 {

@@ -4,9 +4,13 @@
 #include <openvdb/openvdb.h>
 
 #include <filesystem>
+#include <string>
 
 namespace vdb_shell
 {
+
+/// "vdb_shell" and the version: what files and grids name as their creator.
+std::string creator_name();
 
 /// Writes what openvdb::io::File would write with Blosc and active masks, byte for byte but for the
 /// random UUID, on all threads: OpenVDB compresses leaf by leaf on one, and each leaf twice, the

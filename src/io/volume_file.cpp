@@ -100,9 +100,13 @@ void write_volumes(const std::filesystem::path& path, const std::vector<GridBase
             throw InvalidOption(path.string() + ": two grids of the name " +
                                 vdb_shell::quoted(grid->getName()));
     openvdb::initialize();
+    openvdb::MetaMap metadata;
+    metadata.insertMeta("creator", openvdb::StringMetadata(creator_name()));
+    for (const GridBasePtr& grid : grids)
+        grid->setCreator(creator_name());
     write_together(with, [&](OutputSet& set) {
         set.write(path, [&](const std::filesystem::path& temporary) {
-            write_vdb_archive(temporary, {grids.begin(), grids.end()}, {});
+            write_vdb_archive(temporary, {grids.begin(), grids.end()}, metadata);
             seal_vdb(temporary);
         });
     });

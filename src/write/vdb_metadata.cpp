@@ -9,6 +9,8 @@
 
 #include "write/vdb_metadata.h"
 
+#include "io/vdb_archive.h"
+
 #include "vdb_shell/core/error.h"
 
 #include "write/point_grids.h"
@@ -181,11 +183,6 @@ std::int32_t as_int32(std::size_t value)
 }
 
 } // namespace
-
-std::string creator_name()
-{
-    return std::string("vdb_shell ") + VDB_SHELL_VERSION;
-}
 
 int schema_for(const ShellCounts& counts)
 {

@@ -8,9 +8,6 @@
 namespace vdb_shell
 {
 
-/// "vdb_shell VERSION".
-std::string creator_name();
-
 /// The file's metadata: what read_shell_info reads.
 openvdb::MetaMap shell_metadata(const std::filesystem::path& path, const ShellFile& file,
                                 PointPlacement points);

@@ -19,9 +19,10 @@ class OutputSet;
 std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
                                       const std::vector<std::string>& names = {});
 
-/// Writes grids with their names, types and transforms. Same bytes for the same grids: where
-/// OpenVDB draws a random UUID stands a digest of the file. Throws InvalidOption for two grids of
-/// one name, WriteError. Precondition: no grid is null, and none is without a name.
+/// Writes grids with their names, types and transforms, and this program as their creator. Same
+/// bytes for the same grids: where OpenVDB draws a random UUID stands a digest of the file. Throws
+/// InvalidOption for two grids of one name, WriteError. Precondition: no grid is null, and none is
+/// without a name.
 void write_volumes(const std::filesystem::path& path, const std::vector<GridBasePtr>& grids,
                    OutputSet* with = nullptr);
 
