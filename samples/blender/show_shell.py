@@ -189,4 +189,5 @@ def main():
     render(options.picture, options.size, options.samples)
 
 
-main()
+if __name__ == "__main__":
+    main()
