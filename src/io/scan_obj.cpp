@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Scans OBJ ("Object Files (.obj)", appendix B1 of the Advanced Visualizer manual). Only vertices
-// and faces are read, and texture coordinates where they are asked for. What else the format has is passed over, except what would be a part of the
-// surface: that is refused, because a surface with a hole where a line was not understood would
-// look like a sound one. Faces may name vertices that come later, so indices above all vertices so
-// far are noted and tested at the end. Trap: negative indices count back from where the face stands
-// and can only name what came before.
+// and faces are read, and texture coordinates where they are asked for. What else the format has is
+// passed over, except what would be a part of the surface: that is refused, because a surface with
+// a hole where a line was not understood would look like a sound one. Faces may name vertices that
+// come later, so indices above all vertices so far are noted and tested at the end. Trap: negative
+// indices count back from where the face stands and can only name what came before.
 
 #include "io/file_scan.h"
 

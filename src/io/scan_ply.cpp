@@ -86,9 +86,8 @@ std::size_t texture_axis(const PlyProperty& property)
 double texture_number(PlyScan& ply, const PlyProperty& property, const Place& place)
 {
     const PlyValue value = ply.values.next(property.type, place);
-    return ply.header.is_text()
-               ? parse_coordinate(ply.name, ply.values.here(place), value.word)
-               : checked_coordinate(ply.name, place, value.number);
+    return ply.header.is_text() ? parse_coordinate(ply.name, ply.values.here(place), value.word)
+                                : checked_coordinate(ply.name, place, value.number);
 }
 
 /// Whether vertices have both texture coordinates, and they are wanted.
@@ -307,8 +306,8 @@ FileScan scan_ply(const std::string& name, std::string_view bytes, Coordinates& 
 {
     const std::string_view data = without_byte_order_mark(bytes);
     const PlyHeader header = parse_ply_header(name, data);
-    PlyScan ply{name, header, coordinates, PlyValues(name, header, data), {}, 0, {},
-                texture, {}, {}};
+    PlyScan ply{name,    header, coordinates, PlyValues(name, header, data), {}, 0, {},
+                texture, {},     {}};
     ply.scan.format = header.is_text() ? "PLY (ASCII)" : "PLY (binary)";
     // Faces may stand before the vertices that they name.
     for (const PlyElement& element : header.elements)

@@ -85,8 +85,8 @@ TextureCoordinates read_texture_coordinates(const std::filesystem::path& path,
 {
     const std::string extension = lower_case_extension(path), name = path.string();
     if (extension != ".obj" && extension != ".ply")
-        refuse(name, "texture coordinates are read from .obj and .ply, not from \"" + extension +
-                         "\"");
+        refuse(name,
+               "texture coordinates are read from .obj and .ply, not from \"" + extension + "\"");
     const std::string bytes = read_whole_file(path);
     Coordinates coordinates(placement);
     TextureScan texture;

@@ -63,9 +63,9 @@ public:
     /// function of mesh and point.
     float squared_distance(const openvdb::Vec3d& point, Nearby& nearby) const;
 
-    /// The triangles no farther from a place than `radius`, each once, in the order of the tree; both
-    /// in world units. What is farther by rounding may be among them: nothing that is within is left
-    /// out if the radius has 2e-6 of the mesh's diagonal to spare.
+    /// The triangles no farther from a place than `radius`, each once, in the order of the tree;
+    /// both in world units. What is farther by rounding may be among them: nothing that is within
+    /// is left out if the radius has 2e-6 of the mesh's diagonal to spare.
     void list_within(const openvdb::Vec3d& centre, double radius,
                      std::vector<std::uint32_t>& triangles) const;
 

@@ -252,7 +252,8 @@ void list_within(const Arrays& tree, const Vec3d& centre, double radius, Listene
             const Block& block = tree.blocks[id & ~kLeafBit];
             for (unsigned bits = bits_of(distances(block, point) <= most); bits != 0;
                  bits &= bits - 1)
-                found.add(found.list, block.triangle[static_cast<std::size_t>(__builtin_ctz(bits))]);
+                found.add(found.list,
+                          block.triangle[static_cast<std::size_t>(__builtin_ctz(bits))]);
             continue;
         }
         const Node& node = tree.nodes[id];

@@ -71,8 +71,7 @@ EightPoints NearestInLeaf::points_at(const Coord& corner, int side) const
     EightPoints points;
     for (std::size_t i = 0; i < kLanes; ++i) {
         const Coord least = origin_ + corner_of_block(corner, side, i);
-        const openvdb::Vec3f p =
-            surface_.about_middle(least.asVec3d() + Vec3d(0.5 * (side - 1)));
+        const openvdb::Vec3f p = surface_.about_middle(least.asVec3d() + Vec3d(0.5 * (side - 1)));
         points.x[i] = p[0], points.y[i] = p[1], points.z[i] = p[2];
     }
     return points;
@@ -101,8 +100,8 @@ void NearestInLeaf::take_nearest(const Coord& corner, const List& list, Voxels& 
 {
     EightNearest nearest;
     squared_.resize(list.size() * kLanes);
-    nearest_of(surface_.prepared(), list.data(), list.size(), points_at(corner, 1),
-               squared_.data(), nearest);
+    nearest_of(surface_.prepared(), list.data(), list.size(), points_at(corner, 1), squared_.data(),
+               nearest);
     std::array<float, kLanes> limit{};
     std::array<Coord, kLanes> voxel;
     std::array<std::size_t, kLanes> place{};
@@ -125,8 +124,7 @@ void NearestInLeaf::take_nearest(const Coord& corner, const List& list, Voxels& 
         }
 }
 
-void NearestInLeaf::descend(std::size_t level, const Coord& corner, const List& list,
-                            Voxels& found)
+void NearestInLeaf::descend(std::size_t level, const Coord& corner, const List& list, Voxels& found)
 {
     const int side = 4 >> level; // voxels a side
     if (side == 1) {
@@ -141,8 +139,8 @@ void NearestInLeaf::descend(std::size_t level, const Coord& corner, const List& 
     for (std::size_t i = 0; i < kLanes; ++i) {
         // A voxel of the block is at most the radius from its middle, so its nearest triangle is at
         // most twice that farther from the middle than the middle's own.
-        const float most = std::sqrt(nearest.squared[i]) +
-                           float(2 * radius_of(side) + surface_.slack_voxels());
+        const float most =
+            std::sqrt(nearest.squared[i]) + float(2 * radius_of(side) + surface_.slack_voxels());
         limit[i] = wanted(corner_of_block(corner, side, i), side) ? most * most : -1.0F;
     }
     thin_out(list, limit);
@@ -172,15 +170,16 @@ void NearestInLeaf::list_nearest(const Coord& origin, const Mask& mask, const Li
     origin_ = origin;
     mask_ = mask;
     const Vec3d middle = origin.asVec3d() + Vec3d(kHalfLeaf);
-    // The tree's answer for the middle bounds them all; half a leaf has a smaller radius and its own
-    // bound by what is known, which is nearly always better where voxels are near their triangles.
-    const double to_middle = std::sqrt(
-        surface_.tree().nearest(surface_.voxel_size() * middle, 0.0F, seed_).squared);
+    // The tree's answer for the middle bounds them all; half a leaf has a smaller radius and its
+    // own bound by what is known, which is nearly always better where voxels are near their
+    // triangles.
+    const double to_middle =
+        std::sqrt(surface_.tree().nearest(surface_.voxel_size() * middle, 0.0F, seed_).squared);
     double reach = to_middle + 2 * radius_of(8);
     if (!known.empty()) {
         EightNearest nearest;
-        nearest_of(surface_.prepared(), known.data(), known.size(), points_at(Coord(0), 4),
-                   nullptr, nearest);
+        nearest_of(surface_.prepared(), known.data(), known.size(), points_at(Coord(0), 4), nullptr,
+                   nearest);
         const double to_block = 2 * std::sqrt(3.0);
         double of_blocks = 0;
         for (std::size_t i = 0; i < kLanes; ++i)

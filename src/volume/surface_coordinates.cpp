@@ -58,8 +58,8 @@ class Charts
 {
 public:
     explicit Charts(const TextureCoordinates& textured)
-        : textured_(textured), around_(triangles_around_vertices(textured.mesh.points.size(),
-                                                                 textured.mesh.triangles)),
+        : textured_(textured),
+          around_(triangles_around_vertices(textured.mesh.points.size(), textured.mesh.triangles)),
           tree_(textured.mesh, std::max(diagonal_of(bounds_of(textured.mesh.points)) / 256,
                                         std::numeric_limits<double>::min()))
     {

@@ -122,9 +122,8 @@ private:
     std::uint32_t candidate_of(const Coord& voxel, std::size_t tet)
     {
         if (previous_) {
-            const Vec3d place =
-                carried(corners_of(tets_, tet), corners_of(previous_->tets, tet),
-                        surface_.voxel_size() * voxel.asVec3d());
+            const Vec3d place = carried(corners_of(tets_, tet), corners_of(previous_->tets, tet),
+                                        surface_.voxel_size() * voxel.asVec3d());
             const Vec3d before = previous_->nearest.worldToIndex(place);
             const std::int32_t triangle = accessor_->getValue(Coord::round(before));
             // Next to a face the nearest voxel centre may lie in no tet.
@@ -175,8 +174,8 @@ TetDistances scan(const ShellStack& stack, const TetMesh& tets, const TetDistanc
     const StageProgress progress(interrupter, "Distance by tets");
     const auto nearest = tet_index_grid(tets, options.voxel_size, "distance by tets", progress);
     nearest->setName("nearest_triangle");
-    auto distance = openvdb::FloatGrid::create(std::make_shared<openvdb::FloatTree>(
-        nearest->tree(), 0.0f, 0.0f, openvdb::TopologyCopy()));
+    auto distance = openvdb::FloatGrid::create(
+        std::make_shared<openvdb::FloatTree>(nearest->tree(), 0.0f, 0.0f, openvdb::TopologyCopy()));
     distance->setTransform(nearest->transform().copy());
     distance->setName("distance");
     std::vector<IndexLeaf*> from;
@@ -229,9 +228,8 @@ TetDistances next_tet_distances(const ShellStack& stack, const TetMesh& tets,
 {
     if (previous_tets.tets != tets.tets)
         throw InvalidOption("distance by tets: the last pose has " +
-                            std::to_string(previous_tets.tets.size()) +
-                            " tets that are not the " + std::to_string(tets.tets.size()) +
-                            " of this one");
+                            std::to_string(previous_tets.tets.size()) + " tets that are not the " +
+                            std::to_string(tets.tets.size()) + " of this one");
     const auto* grid = dynamic_cast<const openvdb::Int32Grid*>(&previous_nearest);
     if (!grid)
         throw InvalidOption("distance by tets: the nearest triangles of the last pose are a grid "

@@ -8,8 +8,8 @@
 // One JSON object. Each way is timed REPEATS times, the ways in turn; seconds are the medians of
 // CPU time and of wall time, memory is the greatest that a way took beyond what there was before
 // it. Errors are in voxels against the exact distances, which are themselves compared with all
-// triangles in doubles at five hundred voxels. The two poses that lie a frame apart are those of a twist
-// by half a turn in twenty frames. docs/scripts/distance_fields.py makes the tables of it.
+// triangles in doubles at five hundred voxels. The two poses that lie a frame apart are those of a
+// twist by half a turn in twenty frames. docs/scripts/distance_fields.py makes the tables of it.
 
 #include "core/parallel.h"
 #include "field/deep_field.h"
@@ -152,8 +152,8 @@ FloatGrid::Ptr deep_voxels(const TriangleMesh& mesh, const LevelSetOptions& opti
         TriangleTree::Nearby nearby;
         for (std::size_t n = begin; n < end; ++n)
             for (int cell = 0; cell < 64; ++cell) {
-                const Coord base = leaves[n]->origin().offsetBy(cell / 16 * 2, cell / 4 % 4 * 2,
-                                                                cell % 4 * 2);
+                const Coord base =
+                    leaves[n]->origin().offsetBy(cell / 16 * 2, cell / 4 % 4 * 2, cell % 4 * 2);
                 for (int i = 0; i < 8; ++i) {
                     const Coord at = base.offsetBy(i >> 2, i >> 1 & 1, i & 1);
                     const openvdb::Index place = leaves[n]->coordToOffset(at);
@@ -173,8 +173,9 @@ void print_ways(std::vector<Way>& ways, const FloatGrid& exact)
 {
     std::cout << "{";
     for (std::size_t i = 0; i < ways.size(); ++i) {
-        std::cout << (i ? ", " : "") << '"' << ways[i].name << "\": {\"cpu_seconds\": "
-                  << median(ways[i].cpu) << ", \"wall_seconds\": " << median(ways[i].wall)
+        std::cout << (i ? ", " : "") << '"' << ways[i].name
+                  << "\": {\"cpu_seconds\": " << median(ways[i].cpu)
+                  << ", \"wall_seconds\": " << median(ways[i].wall)
                   << ", \"peak_mib\": " << median(ways[i].peak);
         print_errors(exact, *ways[i].grid);
         std::cout << "}";
@@ -213,9 +214,8 @@ void probe_poses(const ShellStack& stack, double voxel, int repeats)
     const Pose before = pose_at(rest, 0.5), now = pose_at(rest, 0.55);
     const TetDistances known = tet_distances(before.stack, before.tets, {voxel});
     std::vector<Way> ways;
-    for (const TetDistanceMethod method : {TetDistanceMethod::own_prism,
-                                           TetDistanceMethod::near_prisms,
-                                           TetDistanceMethod::exact}) {
+    for (const TetDistanceMethod method :
+         {TetDistanceMethod::own_prism, TetDistanceMethod::near_prisms, TetDistanceMethod::exact}) {
         const std::string name = method == TetDistanceMethod::own_prism     ? "own_prism"
                                  : method == TetDistanceMethod::near_prisms ? "near_prisms"
                                                                             : "exact";
@@ -249,13 +249,19 @@ void probe(const std::string& path, int resolution, int repeats)
     const double voxel = resolve_voxel_size(mesh, level_set);
     const TetDistances exact = tet_distances(result.stack, result.tets, {voxel});
     std::vector<Way> ways;
-    ways.push_back(tet_way("own_prism", result.stack, result.tets, voxel,
-                           TetDistanceMethod::own_prism));
-    ways.push_back(tet_way("near_prisms", result.stack, result.tets, voxel,
-                           TetDistanceMethod::near_prisms));
+    ways.push_back(
+        tet_way("own_prism", result.stack, result.tets, voxel, TetDistanceMethod::own_prism));
+    ways.push_back(
+        tet_way("near_prisms", result.stack, result.tets, voxel, TetDistanceMethod::near_prisms));
     ways.push_back(tet_way("exact", result.stack, result.tets, voxel, TetDistanceMethod::exact));
-    ways.push_back({"mesh_to_volume", [&] { return mesh_to_level_set(mesh, level_set); }, {}, {}, {}, {}});
-    ways.push_back({"deep_field", [&] { return deep_voxels(mesh, level_set, *exact.distance); }, {}, {}, {}, {}});
+    ways.push_back(
+        {"mesh_to_volume", [&] { return mesh_to_level_set(mesh, level_set); }, {}, {}, {}, {}});
+    ways.push_back({"deep_field",
+                    [&] { return deep_voxels(mesh, level_set, *exact.distance); },
+                    {},
+                    {},
+                    {},
+                    {}});
     for (int i = 0; i < repeats; ++i)
         for (Way& way : ways)
             time(way);

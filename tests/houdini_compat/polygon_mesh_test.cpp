@@ -196,8 +196,9 @@ TEST(PolygonTexture, OfVerticesIsTurnedRoundWithThePolygons)
 TEST(PolygonTexture, IsRefusedWhereThereIsNone)
 {
     const ReadGeometry plain = parse_geometry(cube(kNewRun), "cube.geo");
-    EXPECT_NE(test::complaint_of([&] { polygon_texture(plain, "cube.geo"); })
-                  .find("cube.geo: it has no texture coordinates"),
+    EXPECT_NE(test::complaint_of([&] {
+                  polygon_texture(plain, "cube.geo");
+              }).find("cube.geo: it has no texture coordinates"),
               std::string::npos);
     ReadGeometry narrow = plain;
     narrow.geometry.point_attributes.push_back({"uv", 1, "", std::vector<float>(8, 0)});

@@ -59,8 +59,8 @@ std::string cube_obj(bool texture_last = false)
         for (int k = 0; k < 4; ++k) {
             const Vec2d uv = Cube::uv(f, Cube::kQuads[f][k]);
             texture += "vt " + std::to_string(uv[0]) + " " + std::to_string(uv[1]) + "\n";
-            faces += " " + std::to_string(Cube::kQuads[f][k]) + "/" + std::to_string(4 * f + k + 1) +
-                     (f % 2 ? "/1" : "");
+            faces += " " + std::to_string(Cube::kQuads[f][k]) + "/" +
+                     std::to_string(4 * f + k + 1) + (f % 2 ? "/1" : "");
         }
         faces += "\n";
     }
@@ -76,7 +76,8 @@ void expect_cube(const TextureCoordinates& cube)
         const int face = int(t / 2);
         for (int k = 0; k < 3; ++k) {
             const openvdb::Vec3s& p = cube.mesh.points[cube.mesh.triangles[t][k]];
-            const Vec2d expected(double(p[Cube::kAxes[face][0]]) + 10 * face, p[Cube::kAxes[face][1]]);
+            const Vec2d expected(double(p[Cube::kAxes[face][0]]) + 10 * face,
+                                 p[Cube::kAxes[face][1]]);
             EXPECT_EQ(cube.corner[t][std::size_t(k)], expected) << t << " " << k;
         }
     }

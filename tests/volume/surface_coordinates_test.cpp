@@ -58,9 +58,8 @@ TEST(SurfaceCoordinates, OfTheSameTrianglesAreTakenAsTheyAre)
     EXPECT_EQ(made.farthest, 0);
     for (std::size_t t = 0; t < mixed.triangles.size(); ++t)
         for (int k = 0; k < 3; ++k)
-            EXPECT_EQ(made.corner[t][std::size_t(k)],
-                      on_side(side_of(mixed, mixed.triangles[t]),
-                              mixed.points[mixed.triangles[t][k]]));
+            EXPECT_EQ(made.corner[t][std::size_t(k)], on_side(side_of(mixed, mixed.triangles[t]),
+                                                              mixed.points[mixed.triangles[t][k]]));
 }
 
 TEST(SurfaceCoordinates, OfOtherTrianglesStayOnTheirSideOfASeam)
@@ -72,11 +71,11 @@ TEST(SurfaceCoordinates, OfOtherTrianglesStayOnTheirSideOfASeam)
         EXPECT_LT(made.farthest, 1e-6);
         for (std::size_t t = 0; t < other.triangles.size(); ++t)
             for (int k = 0; k < 3; ++k)
-                EXPECT_LT((made.corner[t][std::size_t(k)] -
-                           on_side(side_of(other, other.triangles[t]),
-                                   other.points[other.triangles[t][k]]))
-                              .length(),
-                          1e-5);
+                EXPECT_LT(
+                    (made.corner[t][std::size_t(k)] - on_side(side_of(other, other.triangles[t]),
+                                                              other.points[other.triangles[t][k]]))
+                        .length(),
+                    1e-5);
     }
 }
 

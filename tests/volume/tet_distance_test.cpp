@@ -122,16 +122,16 @@ TEST(TetDistance, BoundsAreNeverBelowTheDistanceAndNearPrismsNeverAboveOwnPrism)
     const TetDistances exact = tet_distances(stack, tets, {kVoxel});
     const TetDistances own = tet_distances(stack, tets, {kVoxel, TetDistanceMethod::own_prism});
     const TetDistances near = tet_distances(stack, tets, {kVoxel, TetDistanceMethod::near_prisms});
-    const auto at_own = own.distance->getConstAccessor(), at_near = near.distance->getConstAccessor();
+    const auto at_own = own.distance->getConstAccessor(),
+               at_near = near.distance->getConstAccessor();
     const auto triangle = triangles_of(near).getConstAccessor();
     std::size_t too_far = 0;
     for (auto value = exact.distance->cbeginValueOn(); value; ++value) {
         const openvdb::Coord& at = value.getCoord();
         ASSERT_LE(at_near.getValue(at), *value) << at; // inside: more is less
         ASSERT_LE(at_own.getValue(at), at_near.getValue(at)) << at;
-        ASSERT_EQ(-at_near.getValue(at),
-                  float(to_triangle(skin, std::size_t(triangle.getValue(at)),
-                                    kVoxel * at.asVec3d())));
+        ASSERT_EQ(-at_near.getValue(at), float(to_triangle(skin, std::size_t(triangle.getValue(at)),
+                                                           kVoxel * at.asVec3d())));
         too_far += at_own.getValue(at) < *value;
     }
     // Otherwise there would be nothing to correct.

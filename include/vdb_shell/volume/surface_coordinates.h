@@ -16,8 +16,8 @@ namespace vdb_shell
 /// Texture coordinates of a surface that was made of a textured one.
 struct SurfaceCoordinates {
     std::vector<std::array<openvdb::Vec2d, 3>> corner; ///< by triangle
-    std::size_t same = 0;  ///< triangles that are triangles of the textured surface
-    double farthest = 0;   ///< of a middle of the others to that surface, world units
+    std::size_t same = 0; ///< triangles that are triangles of the textured surface
+    double farthest = 0;  ///< of a middle of the others to that surface, world units
 };
 
 /// A triangle with its three corners where a triangle of the textured surface has them takes its

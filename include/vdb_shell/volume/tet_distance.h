@@ -13,7 +13,8 @@ namespace vdb_shell
 /// and the triangle that it belongs to.
 enum class TetDistanceMethod {
     own_prism,   ///< the distance to the triangle of the prism that the voxel lies in
-    near_prisms, ///< the least of those to the prisms that voxels of the same leaf (8 x 8 x 8) lie in
+    near_prisms, ///< the least of those to the prisms that voxels of the same leaf (8 x 8 x 8) lie
+                 ///< in
     exact,       ///< the least of all: what can be nearer is looked for, bounded by near_prisms
 };
 const NameTable<TetDistanceMethod>& names(TetDistanceMethod);
