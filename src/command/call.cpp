@@ -17,6 +17,7 @@
 #include "command/help.h"
 #include "command/inspect_command.h"
 #include "command/join_command.h"
+#include "command/map_command.h"
 #include "command/options_command.h"
 #include "command/page_command.h"
 #include "command/pose_command.h"
@@ -44,6 +45,7 @@ struct Arguments {
     PoseArguments pose;
     VolumesArguments volumes;
     DeformArguments deform;
+    MapArguments map;
     PageArguments page;
     UsdArguments usd;
     FileArguments info, convert, check;
@@ -145,6 +147,10 @@ void Call::Parts::add_volume_commands()
         "deform", "Carry volumes in a shell to the shell in a pose", add_deform_command, a.deform,
         [this] { return plan_deform(a.deform); },
         [this](Context& context) { return run_deform(a.deform, context); });
+    add(
+        "map", "Push a texture volume into a shell, by texture coordinates", add_map_command, a.map,
+        [this] { return plan_map(a.map); },
+        [this](Context& context) { return run_map(a.map, context); });
 }
 
 /// What many builds need, beside builds.

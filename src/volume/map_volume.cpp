@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Based on: S. Porumbescu, B. Budge, L. Feng and K. Joy, "Shell Maps", 2005. There, tets of texture
+// space and of the shell are joined corner by corner; here the map within a prism is that of
+// ShellMap, so that no tets show. Takes a texture volume, the shell's map and texture coordinates;
+// goes from each voxel of the shell to the texture. Lengths in the texture are voxels of it until
+// its transform is asked.
+
+#include "vdb_shell/volume/map_volume.h"
+
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
+#include "volume/tet_index_grid.h"
+#include "volume/voxel_leaves.h"
+
+#include <openvdb/math/Mat3.h>
+#include <openvdb/tools/LevelSetRebuild.h>
+#include <openvdb/tools/SignedFloodFill.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+using openvdb::GridBase;
+using openvdb::Int32Grid;
+using openvdb::Mat3d;
+using openvdb::Vec2d;
+using openvdb::Vec3d;
+using openvdb::Vec3SGrid;
+
+/// Means of a tiled grid over small parallelepipeds. One for each thread.
+template <typename Grid> class TiledSampler
+{
+public:
+    using Value = typename Grid::ValueType;
+
+    TiledSampler(const Grid& grid, const openvdb::CoordBBox& tile, std::size_t most)
+        : values_(grid.getConstAccessor()), low_(tile.min()), size_(tile.dim()), most_(int(most))
+    {
+    }
+
+    /// `across` * x, for x in the cube of side 1 about 0, is what the voxel covers around `place`.
+    /// False where nothing of it is active.
+    bool mean(const Vec3d& place, const Mat3d& across, Value& value)
+    {
+        std::array<int, 3> count{1, 1, 1};
+        if constexpr (!std::is_integral_v<Value>) {
+            bool limited = false;
+            for (int axis = 0; axis < 3; ++axis) {
+                // A millionth more than a voxel is a voxel.
+                const double wanted = std::ceil(across.col(axis).length() - 1e-6);
+                limited = limited || wanted > most_;
+                count[std::size_t(axis)] = int(std::clamp(wanted, 1.0, double(most_)));
+            }
+            limited_ += limited;
+        }
+        Sum total(0);
+        bool any = false;
+        for (int x = 0; x < count[0]; ++x)
+            for (int y = 0; y < count[1]; ++y)
+                for (int z = 0; z < count[2]; ++z) {
+                    const Vec3d in_cube((x + 0.5) / count[0] - 0.5, (y + 0.5) / count[1] - 0.5,
+                                        (z + 0.5) / count[2] - 0.5);
+                    any |= add(place + across * in_cube, total);
+                }
+        if constexpr (std::is_integral_v<Value>)
+            value = total;
+        else
+            value = Value(total * (1.0 / (count[0] * count[1] * count[2])));
+        return any;
+    }
+    std::size_t limited() const { return limited_; }
+
+private:
+    using Sum = std::conditional_t<std::is_integral_v<Value>, Value,
+                                   std::conditional_t<std::is_same_v<Value, float>, double, Vec3d>>;
+
+    /// Of the tile of all, for the texture has no end.
+    bool probe(Coord at, Value& value)
+    {
+        for (int axis = 0; axis < 3; ++axis) {
+            const int beyond = (at[axis] - low_[axis]) % size_[axis];
+            at[axis] = low_[axis] + (beyond < 0 ? beyond + size_[axis] : beyond);
+        }
+        return values_.probeValue(at, value);
+    }
+
+    bool add(const Vec3d& place, Sum& total)
+    {
+        Value value;
+        if constexpr (std::is_integral_v<Value>) {
+            const bool any = probe(Coord::round(place), value);
+            total = value;
+            return any;
+        } else {
+            const Coord base = Coord::floor(place);
+            const Vec3d share = place - base.asVec3d();
+            bool any = false;
+            for (int i = 0; i < 8; ++i) {
+                const Coord step(i >> 2, i >> 1 & 1, i & 1);
+                double weight = 1;
+                for (int axis = 0; axis < 3; ++axis)
+                    weight *= step[axis] ? share[axis] : 1 - share[axis];
+                if (weight == 0)
+                    continue;
+                any |= probe(base + step, value);
+                total += weight * Sum(value);
+            }
+            return any;
+        }
+    }
+
+    typename Grid::ConstAccessor values_;
+    Coord low_, size_;
+    int most_;
+    std::size_t limited_ = 0;
+};
+
+/// Where a voxel is in the texture.
+struct TexturePlace {
+    Vec3d index{0.0};
+    Mat3d by_world; ///< d index / d shell
+};
+
+/// From places in the shell to the texture's index space.
+class ToTexture
+{
+public:
+    ToTexture(const ShellMap& map, const std::vector<std::array<Vec2d, 3>>& corner,
+              const openvdb::CoordBBox& tile, const MapOptions& options)
+        : map_(map), corner_(corner), low_(tile.min().asVec3d() - Vec3d(0.5)),
+          tiles_(options.repeat_u, options.repeat_v, options.repeat_depth),
+          size_(tile.dim().asVec3d()), from_(options.from_depth), to_(options.to_depth)
+    {
+    }
+
+    /// False in a core, outside of the range of depths, and where the map has no inverse
+    /// (`singular`).
+    bool find(std::uint32_t tet, const Vec3d& point, TexturePlace& found, bool& singular) const
+    {
+        const ShellPlace place = map_.place_in(tet, point);
+        const SurfacePlace on = map_.on_surface(place);
+        if (on.triangle == ShellPlace::kNone)
+            return false;
+        const double depth = depth_of(on);
+        if (depth < from_ || depth > to_)
+            return false;
+        found.index = index_of(on);
+        const Mat3d by_place = map_.jacobian_of(place), texture = derivatives(place, on);
+        singular = by_place.det() == 0 || texture.det() == 0;
+        if (singular)
+            return false;
+        found.by_world = texture * by_place.inverse(0.0);
+        return true;
+    }
+
+private:
+    double depth_of(const SurfacePlace& on) const
+    {
+        return (on.layer + on.share) / double(map_.layers());
+    }
+    Vec3d index_of(const SurfacePlace& on) const
+    {
+        Vec2d uv(0.0);
+        for (int k = 0; k < 3; ++k)
+            uv += on.weight[k] * corner_[on.triangle][std::size_t(k)];
+        const double up = (to_ - depth_of(on)) / (to_ - from_);
+        return low_ + Vec3d(uv[0], uv[1], up) * tiles_ * size_;
+    }
+    /// By the coordinates that ShellMap::jacobian_of derives by.
+    Mat3d derivatives(const ShellPlace& place, const SurfacePlace& on) const
+    {
+        Mat3d by;
+        if (place.prism == ShellPlace::kNone) {
+            // Affine in the tet, so the differences between its corners are the derivatives.
+            std::array<Vec3d, 4> at;
+            for (int k = 0; k < 4; ++k) {
+                ShellPlace end = place;
+                end.weight = openvdb::Vec4d(0.0);
+                end.weight[k] = 1;
+                at[std::size_t(k)] = index_of(map_.on_surface(end));
+            }
+            for (int k = 0; k < 3; ++k)
+                by.setCol(k, at[std::size_t(k) + 1] - at[0]);
+            return by;
+        }
+        const std::array<Vec2d, 3>& uv = corner_[on.triangle];
+        for (int k = 0; k < 2; ++k) {
+            const Vec2d along = uv[std::size_t(k) + 1] - uv[0];
+            by.setCol(k, Vec3d(along[0], along[1], 0) * tiles_ * size_);
+        }
+        by.setCol(2, Vec3d(0, 0, -tiles_[2] * size_[2] / (double(map_.layers()) * (to_ - from_))));
+        return by;
+    }
+
+    const ShellMap& map_;
+    const std::vector<std::array<Vec2d, 3>>& corner_;
+    Vec3d low_, tiles_, size_;
+    double from_, to_;
+};
+
+double squared_norm(const Mat3d& m)
+{
+    return m.col(0).lengthSqr() + m.col(1).lengthSqr() + m.col(2).lengthSqr();
+}
+
+/// Sums over a leaf; leaves are added up in their order.
+struct Sums {
+    double texture = 0, shell = 0, stretch = 0;
+    std::size_t limited = 0, mirrored = 0, singular = 0;
+};
+
+/// What else happens to a value than to be moved.
+template <typename Value>
+Value carried(const Value& value, const Mat3d& to_shell, const GridBase& texture, bool keep_mass)
+{
+    if constexpr (std::is_same_v<Value, float>) {
+        const double ratio = std::abs(to_shell.det());
+        if (texture.getGridClass() == openvdb::GRID_LEVEL_SET)
+            return float(value * std::cbrt(ratio));
+        return keep_mass ? float(value / ratio) : value;
+    } else if constexpr (std::is_integral_v<Value>) {
+        return value;
+    } else {
+        if (texture.getVectorType() == openvdb::VEC_INVARIANT)
+            return value;
+        return Value(to_shell * Vec3d(value));
+    }
+}
+
+template <typename Grid>
+GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
+                     const std::vector<std::array<Vec2d, 3>>& corner, const MapOptions& options,
+                     MapFigures& figures, const StageProgress& progress)
+{
+    const openvdb::CoordBBox tile = texture.evalActiveVoxelBoundingBox();
+    if (tile.empty() || texture.activeVoxelCount() == 0)
+        throw InvalidOption("grid \"" + texture.getName() + "\" has no active voxels");
+    const ToTexture to_texture(map, corner, tile, options);
+    // Axes of the texture's index space, in its world.
+    Mat3d axes;
+    for (int axis = 0; axis < 3; ++axis) {
+        Vec3d unit(0.0);
+        unit[axis] = 1;
+        axes.setCol(axis, texture.transform().indexToWorld(unit) -
+                              texture.transform().indexToWorld(Vec3d(0.0)));
+    }
+    const double voxel = options.voxel_size;
+    const Int32Grid::Ptr tets = tet_index_grid(map.tets(), voxel, "map", progress);
+    VoxelLeaves<Grid> leaves(texture.getName(), texture.background(), tets->tree().leafCount());
+    std::vector<Sums> sums(tets->tree().leafCount());
+    for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
+        TiledSampler<Grid> sampler(texture, tile, options.most_samples);
+        leaves.begin(i, leaf, false);
+        for (auto at = leaf.cbeginValueOn(); at; ++at) {
+            TexturePlace place;
+            bool singular = false;
+            if (!to_texture.find(std::uint32_t(*at), voxel * at.getCoord().asVec3d(), place,
+                                 singular)) {
+                sums[i].singular += singular;
+                continue;
+            }
+            const Mat3d to_world = axes * place.by_world;
+            const double share = std::abs(to_world.det());
+            const Mat3d to_shell = to_world.inverse(0.0);
+            sums[i].texture += share;
+            sums[i].shell += 1;
+            sums[i].stretch += share * squared_norm(to_shell) / 3;
+            sums[i].mirrored += to_world.det() < 0;
+            typename Grid::ValueType value;
+            if (sampler.mean(place.index, voxel * place.by_world, value))
+                leaves.set_on(i, at.pos(), carried(value, to_shell, texture, options.keep_mass));
+        }
+        sums[i].limited = sampler.limited();
+    });
+    Sums all;
+    for (const Sums& s : sums) {
+        all.texture += s.texture, all.shell += s.shell, all.stretch += s.stretch;
+        figures.limited_samples += s.limited;
+        figures.mirrored += s.mirrored;
+        figures.singular += s.singular;
+    }
+    if (all.texture > 0)
+        figures.stretch = std::sqrt(all.stretch / all.texture) / std::cbrt(all.shell / all.texture);
+    typename Grid::Ptr made = leaves.grid(tets->transform());
+    if constexpr (std::is_same_v<Grid, FloatGrid>) {
+        if (texture.getGridClass() == openvdb::GRID_LEVEL_SET && made->activeVoxelCount() > 0) {
+            openvdb::tools::signedFloodFill(made->tree());
+            made->setTree(openvdb::tools::levelSetRebuild(*made, 0.0f, 3.0f)->treePtr());
+        }
+    }
+    const openvdb::math::Transform::Ptr transform = made->transformPtr();
+    made->insertMeta(texture);
+    made->setTransform(transform);
+    figures.active = made->activeVoxelCount();
+    return made;
+}
+
+void require_sensible(const MapOptions& o)
+{
+    for (const double number : {o.repeat_u, o.repeat_v, o.repeat_depth, o.voxel_size})
+        if (!(number > 0) || !std::isfinite(number))
+            throw InvalidOption("map: " + std::to_string(number) +
+                                " is not positive and finite (tiles, voxel size)");
+    if (!(o.from_depth < o.to_depth) || !(o.from_depth >= 0) || !(o.to_depth <= 1))
+        throw InvalidOption("map: depths from " + std::to_string(o.from_depth) + " to " +
+                            std::to_string(o.to_depth) + " are no range within 0 and 1");
+    if (o.most_samples == 0)
+        throw InvalidOption("map: the most samples are 0, must be 1 or more");
+}
+
+} // namespace
+
+OptionList describe(MapOptions& o)
+{
+    return in_group(
+        "Map",
+        {option("repeat_u", o.repeat_u, "--repeat-u", "Tiles for one unit of u").within(above(0)),
+         option("repeat_v", o.repeat_v, "--repeat-v", "Tiles for one unit of v").within(above(0)),
+         option("repeat_depth", o.repeat_depth, "--repeat-depth", "Tiles over the range of depths")
+             .within(above(0)),
+         option("from_depth", o.from_depth, "--from-depth",
+                "Depth of the texture's top: 0 is the outermost surface, 1 the innermost")
+             .in(Unit::share)
+             .within(at_least(0).at_most(1)),
+         option("to_depth", o.to_depth, "--to-depth", "Depth of the texture's foot")
+             .in(Unit::share)
+             .within(at_least(0).at_most(1)),
+         option("keep_mass", o.keep_mass, "--keep-mass",
+                "Multiply floats by the ratio of volumes, so that their mass is kept"),
+         option("most_samples", o.most_samples, "--most-samples",
+                "Samples along each axis of a voxel, at most, where the map shrinks")
+             .in(Unit::count)
+             .within(at_least(1)),
+         option("voxel_size", o.voxel_size, "--voxel-size",
+                "Edge length of a voxel; 0: that of the shell's level set")
+             .in(Unit::world_length)
+             .within(at_least(0))});
+}
+
+GridBasePtr map_volume(const GridBase& texture, const ShellMap& map,
+                       const std::vector<std::array<Vec2d, 3>>& corner, const MapOptions& options,
+                       MapFigures& figures, Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "Map volume");
+    figures = {};
+    figures.grid = texture.getName();
+    require_sensible(options);
+    if (corner.size() != map.triangles())
+        throw InvalidOption("map: there are texture coordinates of " +
+                            std::to_string(corner.size()) + " triangles for a shell of " +
+                            std::to_string(map.triangles()));
+    if (!texture.transform().isLinear())
+        throw InvalidOption("grid \"" + texture.getName() + "\": its transform is a " +
+                            texture.transform().mapType() + ", which has no tiles; resample it");
+    const auto mapped = [&](const auto& grid) {
+        return map_grid(grid, map, corner, options, figures, progress);
+    };
+    if (texture.isType<FloatGrid>())
+        return mapped(static_cast<const FloatGrid&>(texture));
+    if (texture.isType<Vec3SGrid>())
+        return mapped(static_cast<const Vec3SGrid&>(texture));
+    if (texture.isType<Int32Grid>())
+        return mapped(static_cast<const Int32Grid&>(texture));
+    throw InvalidOption("grid \"" + texture.getName() + "\" has values of type " +
+                        texture.valueType() + "; floats, vectors and whole numbers can be mapped");
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/volume/map_volume.h"
+
+#include "support/shapes.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/shell/shell_stack.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::FloatGrid;
+using openvdb::Vec2d;
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+
+using Texture = std::vector<std::array<Vec2d, 3>>;
+
+/// A slab: the square [0, 2] x [0, 2] at height 1 over the same square at 0.5, of n x n quads. Open
+/// at the sides, which the map does not mind. u = x / 2, v = y / 2.
+struct Slab {
+    ShellStack stack;
+    Texture texture;
+
+    explicit Slab(int n = 3)
+    {
+        PrismShell shell;
+        for (int y = 0; y <= n; ++y)
+            for (int x = 0; x <= n; ++x) {
+                shell.outer.emplace_back(2.0f * float(x) / float(n), 2.0f * float(y) / float(n), 1);
+                shell.inner.emplace_back(shell.outer.back()[0], shell.outer.back()[1], 0.5f);
+                shell.stop.push_back(StopReason::thickness);
+            }
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x) {
+                const auto at = std::uint32_t(y * (n + 1) + x), up = at + std::uint32_t(n) + 1;
+                shell.triangles.emplace_back(at, at + 1, up + 1);
+                shell.triangles.emplace_back(at, up + 1, up);
+            }
+        for (const openvdb::Vec3I& t : shell.triangles) {
+            auto& corner = texture.emplace_back();
+            for (int k = 0; k < 3; ++k)
+                corner[std::size_t(k)] =
+                    Vec2d(shell.outer[t[k]][0] / 2.0, shell.outer[t[k]][1] / 2.0);
+        }
+        const PrismSplit split = split_prisms(shell, {});
+        stack = one_layer(shell, split);
+    }
+    ShellMap map() const { return {stack, make_tets(stack)}; }
+};
+
+/// 20 x 20 x 10 voxels of side 0.1, with values of f at the middle of each in shares of the tile.
+template <typename Function> FloatGrid::Ptr texture_of(const Function& f)
+{
+    const auto grid = FloatGrid::create(0.0f);
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
+    grid->setName("bricks");
+    for (int x = 0; x < 20; ++x)
+        for (int y = 0; y < 20; ++y)
+            for (int z = 0; z < 10; ++z)
+                grid->tree().setValue({x + 5, y - 3, z},
+                                      float(f((x + 0.5) / 20, (y + 0.5) / 20, (z + 0.5) / 10)));
+    return grid;
+}
+
+MapOptions voxels_of(double size)
+{
+    MapOptions options;
+    options.voxel_size = size;
+    return options;
+}
+
+const FloatGrid& floats(const GridBasePtr& grid)
+{
+    return dynamic_cast<const FloatGrid&>(*grid);
+}
+
+TEST(MapVolume, PutsEachVoxelWhereItsTextureCoordinatesSay)
+{
+    const Slab slab;
+    MapFigures figures;
+    const GridBasePtr made =
+        map_volume(*texture_of([](double u, double v, double w) { return 1 + u + 2 * v + 4 * w; }),
+                   slab.map(), slab.texture, voxels_of(0.07), figures);
+    EXPECT_EQ(made->getName(), "bricks");
+    EXPECT_EQ(figures.active, made->activeVoxelCount());
+    EXPECT_GT(figures.active, 5000U);
+    for (auto value = floats(made).cbeginValueOn(); value; ++value) {
+        const Vec3d p = made->indexToWorld(value.getCoord());
+        const double u = p[0] / 2, v = p[1] / 2, w = (p[2] - 0.5) / 0.5;
+        // Within half a voxel of the tile's border the next tile comes in.
+        if (std::min({u, v, 1 - u, 1 - v}) < 0.025 || std::min(w, 1 - w) < 0.05)
+            continue;
+        ASSERT_NEAR(*value, 1 + u + 2 * v + 4 * w, 1e-5) << p;
+    }
+}
+
+TEST(MapVolume, TilesWithoutASeam)
+{
+    const Slab slab;
+    MapOptions options = voxels_of(0.03);
+    options.repeat_u = 3;
+    MapFigures figures;
+    const auto wave = [](double u) { return 2 + std::sin(2 * M_PI * u); };
+    const GridBasePtr made =
+        map_volume(*texture_of([&](double u, double, double) { return wave(u); }), slab.map(),
+                   slab.texture, options, figures);
+    for (auto value = floats(made).cbeginValueOn(); value; ++value)
+        // A sine sampled twenty times a period: the chord's error is (pi / 20)^2 / 2.
+        ASSERT_NEAR(*value, wave(3 * made->indexToWorld(value.getCoord())[0] / 2), 0.0125);
+}
+
+TEST(MapVolume, LiesBetweenTheDepthsThatAreAskedFor)
+{
+    const Slab slab;
+    MapOptions options = voxels_of(0.02);
+    options.from_depth = 0.25, options.to_depth = 0.75;
+    MapFigures figures;
+    const GridBasePtr made = map_volume(*texture_of([](double, double, double w) { return 1 + w; }),
+                                        slab.map(), slab.texture, options, figures);
+    EXPECT_GT(figures.active, 0U);
+    for (auto value = floats(made).cbeginValueOn(); value; ++value) {
+        const double z = made->indexToWorld(value.getCoord())[2], w = (z - 0.625) / 0.25;
+        ASSERT_GE(w, -1e-6);
+        ASSERT_LE(w, 1 + 1e-6);
+        if (std::min(w, 1 - w) > 0.05) {
+            ASSERT_NEAR(*value, 1 + w, 1e-5);
+        }
+    }
+}
+
+TEST(MapVolume, AFineCheckerboardBecomesGreyAndNotNoise)
+{
+    const Slab slab;
+    MapOptions options = voxels_of(0.093);
+    options.repeat_u = options.repeat_v = 20;
+    MapFigures figures;
+    // About nineteen voxels of the texture on one: fields of two.
+    const auto texture = texture_of(
+        [](double u, double v, double) { return 1.0 + (int(u * 10) + int(v * 10)) % 2; });
+    const GridBasePtr made = map_volume(*texture, slab.map(), slab.texture, options, figures);
+    EXPECT_EQ(figures.limited_samples, figures.active);
+    options.most_samples = 20;
+    const GridBasePtr full = map_volume(*texture, slab.map(), slab.texture, options, figures);
+    EXPECT_EQ(figures.limited_samples, 0U);
+    for (auto value = floats(full).cbeginValueOn(); value; ++value)
+        // Of nineteen voxels a field may be left without its counterpart, along each axis.
+        ASSERT_NEAR(*value, 1.5, 0.01);
+    options.most_samples = 1;
+    const GridBasePtr point = map_volume(*texture, slab.map(), slab.texture, options, figures);
+    double farthest = 0;
+    for (auto value = floats(point).cbeginValueOn(); value; ++value)
+        farthest = std::max(farthest, std::abs(*value - 1.5));
+    EXPECT_GT(farthest, 0.4);
+}
+
+TEST(MapVolume, StretchIsOneOfASimilarityAndMoreOfAnother)
+{
+    // The texture is 2 x 2 x 1 long, as a copy of twice the slab's height.
+    const Slab slab;
+    MapFigures figures;
+    MapOptions options = voxels_of(0.07);
+    const auto texture = texture_of([](double, double, double) { return 1.0; });
+    map_volume(*texture, slab.map(), slab.texture, options, figures);
+    // Singular values 1, 1, 1/2 and the volumes' ratio 1/2.
+    EXPECT_NEAR(figures.stretch, std::sqrt(2.25 / 3) / std::cbrt(0.5), 1e-6);
+    options.repeat_depth = 0.5;
+    map_volume(*texture, slab.map(), slab.texture, options, figures);
+    EXPECT_NEAR(figures.stretch, 1, 1e-6);
+    EXPECT_EQ(figures.mirrored, 0U);
+}
+
+TEST(MapVolume, MassIsThatOfTheTilesWhereItIsKept)
+{
+    const Slab slab;
+    MapOptions options = voxels_of(0.02);
+    options.keep_mass = true;
+    MapFigures figures;
+    const GridBasePtr made = map_volume(*texture_of([](double, double, double) { return 3.0; }),
+                                        slab.map(), slab.texture, options, figures);
+    for (auto value = floats(made).cbeginValueOn(); value; ++value)
+        ASSERT_NEAR(*value, 6, 1e-4);
+}
+
+TEST(MapVolume, VectorsAreTurnedAndStretched)
+{
+    const Slab slab;
+    const auto texture = openvdb::Vec3SGrid::create();
+    texture->setTransform(openvdb::math::Transform::createLinearTransform(0.1));
+    texture->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    texture->fill({{0, 0, 0}, {19, 19, 9}}, Vec3s(1, 2, 4));
+    MapFigures figures;
+    const auto vectors = [&] {
+        const GridBasePtr made =
+            map_volume(*texture, slab.map(), slab.texture, voxels_of(0.07), figures);
+        return openvdb::gridPtrCast<openvdb::Vec3SGrid>(made);
+    };
+    const auto turned = vectors();
+    EXPECT_EQ(turned->getVectorType(), openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    for (auto value = turned->cbeginValueOn(); value; ++value)
+        ASSERT_LT((*value - Vec3s(1, 2, 2)).length(), 1e-4);
+    texture->setVectorType(openvdb::VEC_INVARIANT);
+    const auto kept = vectors();
+    for (auto value = kept->cbeginValueOn(); value; ++value)
+        ASSERT_LT((*value - Vec3s(1, 2, 4)).length(), 1e-5);
+}
+
+TEST(MapVolume, HasTheSameBitsOnAnyNumberOfThreads)
+{
+    const Slab slab;
+    MapFigures figures;
+    const auto on_threads = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return map_volume(*texture_of([](double u, double v, double w) { return u * v + w; }),
+                          slab.map(), slab.texture, voxels_of(0.03), figures);
+    };
+    const GridBasePtr one = on_threads(1);
+    const double stretch = figures.stretch;
+    const GridBasePtr four = on_threads(4);
+    EXPECT_EQ(stretch, figures.stretch);
+    EXPECT_EQ(one->activeVoxelCount(), four->activeVoxelCount());
+    const auto other = floats(four).getConstAccessor();
+    for (auto value = floats(one).cbeginValueOn(); value; ++value)
+        ASSERT_EQ(*value, other.getValue(value.getCoord()));
+}
+
+TEST(MapVolume, RefusesWhatHasNoTiles)
+{
+    const Slab slab;
+    const ShellMap map = slab.map();
+    MapFigures figures;
+    const auto texture = texture_of([](double, double, double) { return 1.0; });
+    const auto refused = [&](const openvdb::GridBase& grid, const MapOptions& options,
+                             const Texture& corner) {
+        EXPECT_THROW(map_volume(grid, map, corner, options, figures), InvalidOption);
+    };
+    refused(*texture, voxels_of(0), slab.texture);
+    refused(*texture, voxels_of(0.1), {});
+    refused(*FloatGrid::create(), voxels_of(0.1), slab.texture);
+    refused(*openvdb::BoolGrid::create(), voxels_of(0.1), slab.texture);
+    MapOptions options = voxels_of(0.1);
+    options.from_depth = 0.5, options.to_depth = 0.5;
+    refused(*texture, options, slab.texture);
+    options = voxels_of(0.1);
+    options.repeat_v = 0;
+    refused(*texture, options, slab.texture);
+    const auto frustum = openvdb::math::Transform::createFrustumTransform(
+        openvdb::BBoxd(Vec3d(0), Vec3d(100)), 0.5, 10);
+    texture->setTransform(frustum);
+    refused(*texture, voxels_of(0.1), slab.texture);
+}
+
+} // namespace
+} // namespace vdb_shell
