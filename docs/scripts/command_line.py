@@ -12,7 +12,7 @@ command, page = sys.argv[1], pathlib.Path(sys.argv[2])
 begin, end = "<!-- help: begin -->", "<!-- help: end -->"
 text = page.read_text()
 blocks = []
-for subcommand in ([], ["build"], ["inspect"], ["repair"], ["pose"], ["page"], ["usd"], ["info"], ["convert"], ["check"], ["compare"], ["estimate"], ["farm"], ["join"], ["doctor"], ["options"]):
+for subcommand in ([], ["build"], ["inspect"], ["repair"], ["pose"], ["volumes"], ["deform"], ["map"], ["page"], ["usd"], ["info"], ["convert"], ["check"], ["compare"], ["estimate"], ["farm"], ["join"], ["doctor"], ["options"]):
     out = subprocess.run([command, *subcommand, "--help"], capture_output=True, text=True, check=True).stdout
     blocks.append("## " + " ".join(["vdb_shell", *subcommand]) + "\n\n```\n" + out + "```\n")
 table = subprocess.run([command, "options"], capture_output=True, text=True, check=True).stdout

@@ -32,16 +32,16 @@ def arguments():
 
 
 def smoke(size):
-    """A way of a thirtieth of the object's size through density 1 takes two thirds of the light."""
+    """A way of a fourteenth of the size of the object through density 1 takes two thirds of the light."""
     material, nodes, links, output = new_material("smoke")
     attribute = nodes.new("ShaderNodeAttribute")
     attribute.attribute_name = "density"
     product = nodes.new("ShaderNodeMath")
     product.operation = "MULTIPLY"
-    product.inputs[1].default_value = 30.0 / size
+    product.inputs[1].default_value = 14.0 / size
     shader = nodes.new("ShaderNodeVolumePrincipled")
     shader.inputs["Density Attribute"].default_value = ""
-    shader.inputs["Color"].default_value = (0.9, 0.75, 0.6, 1)
+    shader.inputs["Color"].default_value = (1.0, 0.9, 0.8, 1)
     links.new(attribute.outputs["Fac"], product.inputs[0])
     links.new(product.outputs["Value"], shader.inputs["Density"])
     links.new(shader.outputs["Volume"], output.inputs["Volume"])
@@ -68,7 +68,7 @@ def main():
         thing.location = thing.location - middle + Vector(((i - (len(made) - 1) / 2) * step, 0, 0))
         thing.data.materials.append(smoke(max(size)))
     width, height = options.size
-    add_camera_and_light(Vector((0, 0, 0)), max(len(made) * step, size.z * width / height), size.z)
+    add_camera_and_light(Vector((0, 0, 0)), max(len(made) * step, 1.3 * size.z * width / height), size.z)
     render(picture, options.size, options.samples)
 
 
