@@ -32,7 +32,8 @@ def flags_of(entry):
             break
         elif word not in ("-MD", "-MMD"):
             kept.append(word)
-    return tuple(kept)
+    # In a group a name of one source may be shadowed in a header that another includes; GCC looks at each source alone.
+    return (*kept, "-Wno-shadow")
 
 
 def clang(arguments):

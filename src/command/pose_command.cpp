@@ -88,13 +88,9 @@ std::shared_ptr<const PreparedShell> prepare(const std::filesystem::path& path, 
 }
 
 /// The first frame of a shot has none before it, the last one none after it.
-std::vector<std::filesystem::path> neighbours_of(const PoseArguments& arguments)
+bool is_there(const std::filesystem::path& neighbour)
 {
-    std::vector<std::filesystem::path> there;
-    for (const std::filesystem::path& path : {arguments.before, arguments.after})
-        if (!path.empty() && std::filesystem::exists(path))
-            there.push_back(path);
-    return there;
+    return !neighbour.empty() && std::filesystem::exists(neighbour);
 }
 
 /// Frames of a call share what they pose; each pose is the same whoever makes it.
@@ -118,7 +114,7 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
     };
     const std::vector<Vec3s> skin = skin_of(arguments.mesh);
     const std::string name = arguments.mesh.filename().string();
-    if (neighbours_of(arguments).empty())
+    if (!is_there(arguments.before) && !is_there(arguments.after))
         return build_posed(prepared.rest, skin, arguments.pose, name, interrupter);
     const std::shared_ptr<PoseCache> cache = cache_of(context);
     const auto pose_of = [&](const std::filesystem::path& mesh) {
@@ -130,7 +126,7 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
     const PoseCache::Pose own = pose_of(arguments.mesh);
     int frames = 0;
     const auto neighbour = [&](const std::filesystem::path& mesh) {
-        const bool there = !mesh.empty() && std::filesystem::exists(mesh);
+        const bool there = is_there(mesh);
         frames += there;
         return there ? pose_of(mesh) : own;
     };
@@ -186,8 +182,9 @@ FilePlan plan_pose(const PoseArguments& arguments)
     plan.add_input(arguments.shell);
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.rest_mesh);
-    for (const std::filesystem::path& neighbour : neighbours_of(arguments))
-        plan.add_input(neighbour);
+    for (const std::filesystem::path& neighbour : {arguments.before, arguments.after})
+        if (is_there(neighbour))
+            plan.add_input(neighbour);
     plan.add_input(arguments.preset);
     add_outputs(plan, arguments.outputs);
     if (!arguments.report.empty() && !is_standard_output(arguments.report))

@@ -2,8 +2,8 @@
 
 // A call with --frames is as many calls as it has frames: its words with the frame's number in
 // place of each token. So commands need not know of frames. All of them are planned before the
-// first one runs: what is known to fail after an hour is told at once. One command is the
-// exception: a page has all frames, so it is one call whose input is as many files.
+// first one runs: what is known to fail after an hour is told at once. The commands
+// that gather frames, page and usd, are the exception: one call, whose input is as many files.
 
 #include "command/sequence.h"
 

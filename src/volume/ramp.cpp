@@ -54,7 +54,8 @@ Ramp ramp_of(const std::string& text, const std::string& name)
     for (const std::string& word : split_at(',', text)) {
         const std::vector<std::string> parts = split_at(':', word);
         if (parts.size() != 2)
-            throw InvalidOption(name + ": \"" + word + "\" is no place:value");
+            throw InvalidOption(
+                std::string(name).append(": \"").append(word).append("\" is no place:value"));
         ramp.knots.emplace_back(number_of(parts[0], name), number_of(parts[1], name));
         if (ramp.knots.size() > 1 &&
             !(ramp.knots[ramp.knots.size() - 2].first < ramp.knots.back().first))

@@ -68,7 +68,7 @@ WedgePlace corner_place(std::uint8_t bits)
     const bool outer = (bits & 7) != 0;
     for (int k = 0; k < 6; ++k)
         if ((bits >> k & 1) != 0 && (k < 3) == outer) {
-            sum += WedgePlace(k % 3 == 1, k % 3 == 2, k / 3);
+            sum += WedgePlace(k % 3 == 1, k % 3 == 2, k >= 3);
             ++count;
         }
     return count == 0 ? sum : sum / count;

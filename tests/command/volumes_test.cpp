@@ -119,6 +119,7 @@ TEST_F(Volumes, TextureCoordinatesComeFromTheSurface)
     const Outcome made =
         run("volumes " + rest + " --volumes uvw,depth --texture-from " + textured + " -o " + out);
     ASSERT_EQ(made.status, ExitCode::success) << made.err;
+    openvdb::initialize();
     openvdb::io::File opened(out);
     opened.open(false);
     const auto uvw = openvdb::gridPtrCast<openvdb::Vec3SGrid>(opened.readGrid("uvw"));
