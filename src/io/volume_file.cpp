@@ -7,6 +7,7 @@
 
 #include "io/vdb_archive.h"
 #include "io/vdb_seal.h"
+#include "io/volume_types.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/output_set.h"
 #include "vdb_shell/io/read_file.h"
@@ -25,11 +26,9 @@ namespace
 
 using openvdb::GridBase;
 
-/// The types that require_whole_vdb walks to the end, but for points.
 bool is_volume(const GridBase& grid)
 {
-    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::Vec3SGrid>() ||
-           grid.isType<openvdb::Int32Grid>();
+    return grid.apply<VolumeTypes>([](const auto&) {});
 }
 
 std::string list_of(const openvdb::GridPtrVec& grids)

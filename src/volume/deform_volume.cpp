@@ -6,17 +6,17 @@
 
 #include "vdb_shell/volume/deform_volume.h"
 
+#include "io/volume_types.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 #include "volume/extend_volume.h"
+#include "volume/level_set_again.h"
 #include "volume/sample_volume.h"
 #include "volume/tet_index_grid.h"
 #include "volume/volume_content.h"
 #include "volume/voxel_leaves.h"
 
 #include <openvdb/math/Mat3.h>
-#include <openvdb/tools/LevelSetRebuild.h>
-#include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
 #include <atomic>
@@ -189,14 +189,6 @@ std::vector<std::uint8_t> tets_with_content(const Grid& source, const ShellMap& 
     });
 }
 
-void make_distances_again(FloatGrid::Ptr& grid, const FloatGrid& source)
-{
-    openvdb::tools::signedFloodFill(grid->tree());
-    const float half_width = std::max(2.0f, source.background() / float(source.voxelSize()[0]));
-    const FloatGrid::Ptr made = openvdb::tools::levelSetRebuild(*grid, 0.0f, half_width);
-    grid->setTree(made->treePtr());
-}
-
 template <typename Grid>
 typename Grid::Ptr deform(const Grid& source, const ShellMap& rest, const ShellMap& posed,
                           const VoxelLattice& lattice, const DeformOptions& options,
@@ -258,7 +250,8 @@ GridBasePtr deform_grid(const Grid& source, const ShellMap& rest, const ShellMap
     }
     if constexpr (std::is_same_v<Grid, FloatGrid>) {
         if (level_set)
-            make_distances_again(made, source);
+            make_distances_again(
+                *made, std::max(2.0f, source.background() / float(source.voxelSize()[0])));
         else {
             const double voxel = std::pow(lattice.voxel_size, 3);
             figures.mass_before = before.sum * voxel;
@@ -319,17 +312,11 @@ GridBasePtr deform_volume(const GridBase& source, const ShellMap& rest, const Sh
     const StageProgress progress(interrupter, "Deform volume");
     figures = {};
     figures.grid = source.getName();
-    const auto deformed = [&](const auto& grid) {
-        return deform_grid(grid, rest, posed, shift, options, figures, progress);
-    };
-    if (source.isType<FloatGrid>())
-        return deformed(static_cast<const FloatGrid&>(source));
-    if (source.isType<Vec3SGrid>())
-        return deformed(static_cast<const Vec3SGrid&>(source));
-    if (source.isType<Int32Grid>())
-        return deformed(static_cast<const Int32Grid&>(source));
-    throw InvalidOption("grid \"" + source.getName() + "\" has values of type " +
-                        source.valueType() + "; floats, vectors and whole numbers can be deformed");
+    GridBasePtr made;
+    with_volume(source, "deformed", [&](const auto& grid) {
+        made = deform_grid(grid, rest, posed, shift, options, figures, progress);
+    });
+    return made;
 }
 
 } // namespace vdb_shell

@@ -8,14 +8,15 @@
 
 #include "vdb_shell/volume/map_volume.h"
 
+#include "io/volume_types.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
+#include "volume/level_set_again.h"
+#include "volume/sample_volume.h"
 #include "volume/tet_index_grid.h"
 #include "volume/voxel_leaves.h"
 
 #include <openvdb/math/Mat3.h>
-#include <openvdb/tools/LevelSetRebuild.h>
-#include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
 #include <array>
@@ -51,38 +52,21 @@ public:
     /// False where nothing of it is active.
     bool mean(const Vec3d& place, const Mat3d& across, Value& value)
     {
-        std::array<int, 3> count{1, 1, 1};
-        if constexpr (!std::is_integral_v<Value>) {
-            bool limited = false;
-            for (int axis = 0; axis < 3; ++axis) {
-                // A millionth more than a voxel is a voxel.
-                const double wanted = std::ceil(across.col(axis).length() - 1e-6);
-                limited = limited || wanted > most_;
-                count[std::size_t(axis)] = int(std::clamp(wanted, 1.0, double(most_)));
-            }
-            limited_ += limited;
+        if constexpr (std::is_integral_v<Value>) {
+            return probe(Coord::round(place), value);
+        } else {
+            const Samples samples(across, most_);
+            limited_ += samples.limited();
+            SumOf<Value> total(0.0);
+            bool any = false;
+            samples.for_each(place, [&](const Vec3d& at) { any |= add(at, total); });
+            value = Value(total * (1.0 / samples.count()));
+            return any;
         }
-        Sum total(0);
-        bool any = false;
-        for (int x = 0; x < count[0]; ++x)
-            for (int y = 0; y < count[1]; ++y)
-                for (int z = 0; z < count[2]; ++z) {
-                    const Vec3d in_cube((x + 0.5) / count[0] - 0.5, (y + 0.5) / count[1] - 0.5,
-                                        (z + 0.5) / count[2] - 0.5);
-                    any |= add(place + across * in_cube, total);
-                }
-        if constexpr (std::is_integral_v<Value>)
-            value = total;
-        else
-            value = Value(total * (1.0 / (count[0] * count[1] * count[2])));
-        return any;
     }
     std::size_t limited() const { return limited_; }
 
 private:
-    using Sum = std::conditional_t<std::is_integral_v<Value>, Value,
-                                   std::conditional_t<std::is_same_v<Value, float>, double, Vec3d>>;
-
     /// Of the tile of all, for the texture has no end.
     bool probe(Coord at, Value& value)
     {
@@ -93,29 +77,23 @@ private:
         return values_.probeValue(at, value);
     }
 
-    bool add(const Vec3d& place, Sum& total)
+    bool add(const Vec3d& place, SumOf<Value>& total)
     {
-        Value value;
-        if constexpr (std::is_integral_v<Value>) {
-            const bool any = probe(Coord::round(place), value);
-            total = value;
-            return any;
-        } else {
-            const Coord base = Coord::floor(place);
-            const Vec3d share = place - base.asVec3d();
-            bool any = false;
-            for (int i = 0; i < 8; ++i) {
-                const Coord step(i >> 2, i >> 1 & 1, i & 1);
-                double weight = 1;
-                for (int axis = 0; axis < 3; ++axis)
-                    weight *= step[axis] ? share[axis] : 1 - share[axis];
-                if (weight == 0)
-                    continue;
-                any |= probe(base + step, value);
-                total += weight * Sum(value);
-            }
-            return any;
+        const Coord base = Coord::floor(place);
+        const Vec3d share = place - base.asVec3d();
+        bool any = false;
+        for (int i = 0; i < 8; ++i) {
+            const Coord step(i >> 2, i >> 1 & 1, i & 1);
+            double weight = 1;
+            for (int axis = 0; axis < 3; ++axis)
+                weight *= step[axis] ? share[axis] : 1 - share[axis];
+            if (weight == 0)
+                continue;
+            Value value;
+            any |= probe(base + step, value);
+            total += weight * SumOf<Value>(value);
         }
+        return any;
     }
 
     typename Grid::ConstAccessor values_;
@@ -292,10 +270,8 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
         figures.stretch = std::sqrt(all.stretch / all.texture) / std::cbrt(all.shell / all.texture);
     typename Grid::Ptr made = leaves.grid(tets->transform());
     if constexpr (std::is_same_v<Grid, FloatGrid>) {
-        if (texture.getGridClass() == openvdb::GRID_LEVEL_SET && made->activeVoxelCount() > 0) {
-            openvdb::tools::signedFloodFill(made->tree());
-            made->setTree(openvdb::tools::levelSetRebuild(*made, 0.0f, 3.0f)->treePtr());
-        }
+        if (texture.getGridClass() == openvdb::GRID_LEVEL_SET && made->activeVoxelCount() > 0)
+            make_distances_again(*made, 3.0f);
     }
     const openvdb::math::Transform::Ptr transform = made->transformPtr();
     made->insertMeta(texture);
@@ -361,17 +337,11 @@ GridBasePtr map_volume(const GridBase& texture, const ShellMap& map,
     if (!texture.transform().isLinear())
         throw InvalidOption("grid \"" + texture.getName() + "\": its transform is a " +
                             texture.transform().mapType() + ", which has no tiles; resample it");
-    const auto mapped = [&](const auto& grid) {
-        return map_grid(grid, map, corner, options, figures, progress);
-    };
-    if (texture.isType<FloatGrid>())
-        return mapped(static_cast<const FloatGrid&>(texture));
-    if (texture.isType<Vec3SGrid>())
-        return mapped(static_cast<const Vec3SGrid&>(texture));
-    if (texture.isType<Int32Grid>())
-        return mapped(static_cast<const Int32Grid&>(texture));
-    throw InvalidOption("grid \"" + texture.getName() + "\" has values of type " +
-                        texture.valueType() + "; floats, vectors and whole numbers can be mapped");
+    GridBasePtr made;
+    with_volume(texture, "mapped", [&](const auto& grid) {
+        made = map_grid(grid, map, corner, options, figures, progress);
+    });
+    return made;
 }
 
 } // namespace vdb_shell

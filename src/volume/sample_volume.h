@@ -27,6 +27,46 @@ inline openvdb::Vec3d on_lattice(openvdb::Vec3d place)
     return place;
 }
 
+/// Samples of what a voxel covers: of `place` + `across` * x, x in the cube of side 1 about 0, so
+/// many along each column of `across` that they are no farther apart than 1, or `most`.
+class Samples
+{
+public:
+    Samples(const openvdb::Mat3d& across, int most) : across_(across)
+    {
+        for (int axis = 0; axis < 3; ++axis) {
+            // A millionth more than a voxel is a voxel.
+            constexpr double kRounding = 1e-6;
+            const double wanted = std::ceil(across.col(axis).length() - kRounding);
+            limited_ = limited_ || wanted > most;
+            count_[std::size_t(axis)] = int(std::clamp(wanted, 1.0, double(most)));
+        }
+    }
+
+    int count() const { return count_[0] * count_[1] * count_[2]; }
+    /// Whether more were wanted.
+    bool limited() const { return limited_; }
+
+    template <typename Visit> void for_each(const openvdb::Vec3d& place, const Visit& visit) const
+    {
+        const auto offset = [&](int i, std::size_t axis) { return (i + 0.5) / count_[axis] - 0.5; };
+        for (int x = 0; x < count_[0]; ++x)
+            for (int y = 0; y < count_[1]; ++y)
+                for (int z = 0; z < count_[2]; ++z)
+                    visit(place +
+                          across_ * openvdb::Vec3d(offset(x, 0), offset(y, 1), offset(z, 2)));
+    }
+
+private:
+    const openvdb::Mat3d& across_;
+    std::array<int, 3> count_;
+    bool limited_ = false;
+};
+
+/// What values of a grid are added up in.
+template <typename Value>
+using SumOf = std::conditional_t<std::is_same_v<Value, float>, double, openvdb::Vec3d>;
+
 /// Means of a grid over small parallelepipeds. One for each thread.
 template <typename Grid> class VolumeSampler
 {
@@ -44,21 +84,13 @@ public:
     /// the background everywhere, and no active voxel is nearest to a sample.
     bool mean(const openvdb::Vec3d& place, const openvdb::Mat3d& across, Value& value)
     {
-        std::array<int, 3> count;
-        bool limited = false;
-        for (int axis = 0; axis < 3; ++axis) {
-            // A millionth more than a voxel is a voxel.
-            constexpr double kRounding = 1e-6;
-            const double wanted = std::ceil(across.col(axis).length() - kRounding);
-            limited = limited || wanted > most_;
-            count[std::size_t(axis)] = int(std::clamp(wanted, 1.0, double(most_)));
-        }
-        limited_ += limited;
+        const Samples samples(across, most_);
+        limited_ += samples.limited();
         if constexpr (std::is_integral_v<Value>)
             return sample(on_lattice(place), value);
         else
-            return count[0] * count[1] * count[2] == 1 ? sample(on_lattice(place), value)
-                                                       : sum(place, across, count, value);
+            return samples.count() == 1 ? sample(on_lattice(place), value)
+                                        : sum(place, samples, value);
     }
 
     /// How often there were fewer samples than wanted.
@@ -76,22 +108,16 @@ private:
                values_.isValueOn(openvdb::Coord::round(at));
     }
 
-    bool sum(const openvdb::Vec3d& place, const openvdb::Mat3d& across,
-             const std::array<int, 3>& count, Value& value)
+    bool sum(const openvdb::Vec3d& place, const Samples& samples, Value& value)
     {
-        const auto offset = [&](int i, std::size_t axis) { return (i + 0.5) / count[axis] - 0.5; };
-        using Sum = std::conditional_t<std::is_same_v<Value, float>, double, openvdb::Vec3d>;
-        Sum total(0.0);
+        SumOf<Value> total(0.0);
         bool any = false;
-        for (int x = 0; x < count[0]; ++x)
-            for (int y = 0; y < count[1]; ++y)
-                for (int z = 0; z < count[2]; ++z) {
-                    const openvdb::Vec3d in_cube(offset(x, 0), offset(y, 1), offset(z, 2));
-                    Value one;
-                    any |= sample(place + across * in_cube, one);
-                    total += Sum(one);
-                }
-        value = Value(total * (1.0 / (count[0] * count[1] * count[2])));
+        samples.for_each(place, [&](const openvdb::Vec3d& at) {
+            Value one;
+            any |= sample(at, one);
+            total += SumOf<Value>(one);
+        });
+        value = Value(total * (1.0 / samples.count()));
         return any;
     }
 

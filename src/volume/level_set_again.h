@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+namespace vdb_shell
+{
+
+/// Makes a narrow band of values that are negative inside, whatever their slope, a level set of
+/// distances with as many voxels on either side of its surface.
+void make_distances_again(openvdb::FloatGrid& grid, float half_width_voxels);
+
+} // namespace vdb_shell
