@@ -6,8 +6,6 @@
 #include "command/deform_command.h"
 
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/core/output_set.h"
-#include "vdb_shell/core/words.h"
 #include "vdb_shell/io/volume_file.h"
 
 #include "command/exit_code.h"
@@ -19,8 +17,8 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdio>
-#include <optional>
-#include <ostream>
+#include <memory>
+#include <utility>
 
 namespace vdb_shell::command
 {
@@ -29,9 +27,6 @@ namespace
 
 OptionSections describe(DeformArguments& a)
 {
-    Option output =
-        option("", a.output, "--output", "The volumes in the pose: .vdb").with_names({"-o"});
-    output.required = true;
     Option posed = option("", a.posed, "--posed", "The shell in the pose, as pose writes it");
     posed.required = true;
     return {
@@ -43,15 +38,9 @@ OptionSections describe(DeformArguments& a)
                   "", a.rest, "--rest",
                   "The shell where the volumes are; without it the points at rest that the posed "
                   "shell has"),
-              option("", a.grids, "--grid", "A grid to deform; all where none is named")})},
+              option("", a.call.grids, "--grid", "A grid to deform; all where none is named")})},
         {"deform", vdb_shell::describe(a.deform)},
-        {"",
-         in_group("Output", {output,
-                             option("", a.report, "--report",
-                                    "Write all figures as JSON; - is standard output, in "
-                                    "place of the text"),
-                             option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
-                             no_clobber_option(a.no_clobber)})}};
+        output_options(a.call, "The volumes in the pose: .vdb")};
 }
 
 std::string text_of(const DeformFigures& f)
@@ -91,7 +80,7 @@ nlohmann::json json_of(const DeformFigures& f)
 
 BoundOptions add_deform_command(CLI::App& app, DeformArguments& arguments)
 {
-    app.add_option("volume", arguments.volume,
+    app.add_option("volume", arguments.call.volume,
                    "Volumes in the shell at rest: a .vdb with grids of floats, vectors or whole "
                    "numbers")
         ->required();
@@ -100,16 +89,7 @@ BoundOptions add_deform_command(CLI::App& app, DeformArguments& arguments)
 
 FilePlan plan_deform(const DeformArguments& arguments)
 {
-    if (lower_case_extension(arguments.output) != ".vdb")
-        throw InvalidOption(arguments.output.string() + ": the extension is not .vdb");
-    FilePlan plan(existing_files(arguments.no_clobber));
-    plan.add_input(arguments.volume);
-    plan.add_input(arguments.posed);
-    plan.add_input(arguments.rest);
-    plan.add_output(arguments.output);
-    if (!arguments.report.empty() && !is_standard_output(arguments.report))
-        plan.add_output(arguments.report);
-    return plan;
+    return plan_volume_call(arguments.call, {arguments.posed, arguments.rest});
 }
 
 int run_deform(const DeformArguments& arguments, Context& context)
@@ -117,34 +97,28 @@ int run_deform(const DeformArguments& arguments, Context& context)
     FilePlan plan = plan_deform(arguments);
     SignalInterrupter interrupter(context);
     const MappedShell posed = map_shell(arguments.posed, plan);
-    std::optional<MappedShell> rest;
+    std::unique_ptr<ShellMap> from;
     if (!arguments.rest.empty()) {
-        rest.emplace(map_shell(arguments.rest, plan));
-        require_same_tets(*rest, posed);
-    } else if (!posed.rest) {
+        MappedShell rest = map_shell(arguments.rest, plan);
+        require_same_tets(rest, posed);
+        from = std::move(rest.map);
+    } else {
+        from = map_at_rest(posed);
+    }
+    if (!from)
         throw InvalidOption(arguments.posed.string() +
                             ": it is at rest; give --posed a shell that pose wrote, or --rest");
-    }
-    const ShellMap& from = rest ? *rest->map : *posed.rest;
     std::vector<GridBasePtr> made;
     nlohmann::json report = nlohmann::json::array();
     std::string text;
-    for (const GridBasePtr& grid : read_volumes(arguments.volume, arguments.grids)) {
+    for (const GridBasePtr& grid : read_volumes(arguments.call.volume, arguments.call.grids)) {
         DeformFigures figures;
-        made.push_back(deform_volume(*grid, from, *posed.map, posed.file.placement.shift(),
+        made.push_back(deform_volume(*grid, *from, *posed.map, posed.file.placement.shift(),
                                      arguments.deform, figures, &interrupter));
         report.push_back(json_of(figures));
         text += text_of(figures);
     }
-    OutputSet files(existing_files(arguments.no_clobber));
-    write_volumes(arguments.output, made, &files);
-    const std::string json = nlohmann::json{{"grids", report}}.dump(2) + '\n';
-    const bool to_output = is_standard_output(arguments.report);
-    if (!arguments.report.empty() && !to_output)
-        files.write_stream(arguments.report, [&](std::ostream& out) { out << json; });
-    files.commit();
-    if (to_output || !arguments.quiet)
-        context.out << (to_output ? json : text);
+    write_results(arguments.call, made, {{"grids", report}}, text, context);
     return success;
 }
 

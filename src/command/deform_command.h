@@ -5,7 +5,7 @@
 
 #include "command/bound_options.h"
 #include "command/context.h"
-#include "command/file_plan.h"
+#include "command/volume_call.h"
 
 #include <filesystem>
 #include <string>
@@ -20,12 +20,9 @@ namespace vdb_shell::command
 {
 
 struct DeformArguments {
-    std::filesystem::path volume, output;
+    VolumeCall call;
     std::filesystem::path rest, posed; ///< rest empty: the posed shell's own points at rest
-    std::vector<std::string> grids;    ///< empty: all
-    std::filesystem::path report;
     DeformOptions deform;
-    bool quiet = false, no_clobber = false;
 };
 
 BoundOptions add_deform_command(CLI::App& app, DeformArguments& arguments);

@@ -8,6 +8,7 @@
 
 #include "core/output_target.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 
 #include <unistd.h>
 
@@ -110,6 +111,12 @@ void FilePlan::add_output(const fs::path& path)
 bool is_standard_input(const fs::path& path)
 {
     return path == "-";
+}
+
+void require_extension(const fs::path& path, const std::string& extension)
+{
+    if (lower_case_extension(path) != extension)
+        throw InvalidOption(path.string() + ": the extension is not " + extension);
 }
 
 bool is_standard_output(const fs::path& path)

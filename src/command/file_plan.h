@@ -60,6 +60,9 @@ private:
 /// Of a command that only reads.
 FilePlan plan_reading(const std::filesystem::path& file);
 
+/// Throws InvalidOption where the path has not this extension: ".vdb".
+void require_extension(const std::filesystem::path& path, const std::string& extension);
+
 /// "-", standard input in the place of a file.
 bool is_standard_input(const std::filesystem::path& path);
 

@@ -5,7 +5,6 @@
 #include "command/frame_files.h"
 
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/core/words.h"
 #include "vdb_shell/houdini/geometry_file.h"
 
 #include "command/file_commands.h"
@@ -36,8 +35,7 @@ BoundOptions add_frame_files(CLI::App& app, FrameFiles& arguments, const std::st
 
 FilePlan plan_frame_files(const FrameFiles& arguments, const std::string& extension)
 {
-    if (lower_case_extension(arguments.output) != extension)
-        throw InvalidOption(arguments.output.string() + ": the extension is not " + extension);
+    require_extension(arguments.output, extension);
     FilePlan plan(existing_files(arguments.no_clobber));
     for (const std::filesystem::path& file : arguments.files)
         plan.add_input(file);

@@ -5,12 +5,7 @@
 
 #include "command/map_command.h"
 
-#include "vdb_shell/core/error.h"
-#include "vdb_shell/core/output_set.h"
-#include "vdb_shell/core/words.h"
-#include "vdb_shell/houdini/polygon_mesh.h"
 #include "vdb_shell/io/volume_file.h"
-#include "vdb_shell/volume/surface_coordinates.h"
 
 #include "command/exit_code.h"
 #include "command/mapped_shell.h"
@@ -21,7 +16,7 @@
 #include <openvdb/openvdb.h>
 
 #include <cstdio>
-#include <ostream>
+#include <string>
 
 namespace vdb_shell::command
 {
@@ -30,9 +25,6 @@ namespace
 
 OptionSections describe(MapArguments& a)
 {
-    Option output =
-        option("", a.output, "--output", "The texture in the shell: .vdb").with_names({"-o"});
-    output.required = true;
     Option shell = option("", a.shell, "--shell", "The shell, at rest or posed");
     shell.required = true;
     Option mesh = option("", a.mesh, "--mesh",
@@ -40,27 +32,10 @@ OptionSections describe(MapArguments& a)
                          ".ply .geo .bgeo .bgeo.sc");
     mesh.required = true;
     return {{"", in_group("Map", {shell, mesh,
-                                  option("", a.grids, "--grid",
+                                  option("", a.call.grids, "--grid",
                                          "A grid to map; all where none is named")})},
             {"map", vdb_shell::describe(a.map)},
-            {"", in_group("Output",
-                          {output,
-                           option("", a.report, "--report",
-                                  "Write all figures as JSON; - is standard output, in "
-                                  "place of the text"),
-                           option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"}),
-                           no_clobber_option(a.no_clobber)})}};
-}
-
-/// Of the shell's triangles, which are those of the mesh at rest.
-SurfaceCoordinates coordinates_of(const std::filesystem::path& mesh, const MappedShell& shell)
-{
-    const Placement& placement = shell.file.placement;
-    const TextureCoordinates textured = houdini::has_geometry_extension(mesh)
-                                            ? houdini::read_polygon_texture(mesh, placement)
-                                            : read_texture_coordinates(mesh, placement);
-    const ShellStack rest = rest_stack(shell.file);
-    return surface_coordinates(textured, {rest.surface(rest.skin), rest.triangles()});
+            output_options(a.call, "The texture in the shell: .vdb")};
 }
 
 std::string text_of(const MapFigures& f)
@@ -90,7 +65,7 @@ nlohmann::json json_of(const MapFigures& f)
 
 BoundOptions add_map_command(CLI::App& app, MapArguments& arguments)
 {
-    app.add_option("volume", arguments.volume,
+    app.add_option("volume", arguments.call.volume,
                    "The texture: a .vdb with grids of floats, vectors or whole numbers")
         ->required();
     return bind(app, describe(arguments));
@@ -98,16 +73,7 @@ BoundOptions add_map_command(CLI::App& app, MapArguments& arguments)
 
 FilePlan plan_map(const MapArguments& arguments)
 {
-    if (lower_case_extension(arguments.output) != ".vdb")
-        throw InvalidOption(arguments.output.string() + ": the extension is not .vdb");
-    FilePlan plan(existing_files(arguments.no_clobber));
-    plan.add_input(arguments.volume);
-    plan.add_input(arguments.shell);
-    plan.add_input(arguments.mesh);
-    plan.add_output(arguments.output);
-    if (!arguments.report.empty() && !is_standard_output(arguments.report))
-        plan.add_output(arguments.report);
-    return plan;
+    return plan_volume_call(arguments.call, {arguments.shell, arguments.mesh});
 }
 
 int run_map(const MapArguments& arguments, Context& context)
@@ -115,21 +81,14 @@ int run_map(const MapArguments& arguments, Context& context)
     FilePlan plan = plan_map(arguments);
     SignalInterrupter interrupter(context);
     const MappedShell shell = map_shell(arguments.shell, plan);
-    const SurfaceCoordinates texture = coordinates_of(arguments.mesh, shell);
+    const SurfaceCoordinates texture = texture_of(arguments.mesh, shell);
     const double unit = shell.file.placement.unit;
     MapOptions options = arguments.map;
-    options.voxel_size /= unit;
-    if (options.voxel_size == 0) {
-        if (!shell.file.surface)
-            throw InvalidOption(arguments.shell.string() +
-                                ": it has no level set, whose voxels these would have; give "
-                                "--voxel-size");
-        options.voxel_size = shell.file.surface->voxelSize()[0];
-    }
+    options.voxel_size = voxel_size_of(shell, options.voxel_size);
     std::vector<GridBasePtr> made;
     nlohmann::json report = nlohmann::json::array();
     std::string text;
-    for (const GridBasePtr& grid : read_volumes(arguments.volume, arguments.grids)) {
+    for (const GridBasePtr& grid : read_volumes(arguments.call.volume, arguments.call.grids)) {
         MapFigures figures;
         made.push_back(
             map_volume(*grid, *shell.map, texture.corner, options, figures, &interrupter));
@@ -144,20 +103,12 @@ int run_map(const MapArguments& arguments, Context& context)
                         " triangles are none of " + arguments.mesh.string() +
                         " and take the texture coordinates nearest to them, at most " +
                         std::to_string(texture.farthest * unit) + " away");
-    OutputSet files(existing_files(arguments.no_clobber));
-    write_volumes(arguments.output, made, &files);
-    const std::string json = nlohmann::json{{"grids", report},
-                                            {"triangles", texture.corner.size()},
-                                            {"triangles_of_the_mesh", texture.same},
-                                            {"farthest_triangle", texture.farthest * unit}}
-                                 .dump(2) +
-                             '\n';
-    const bool to_output = is_standard_output(arguments.report);
-    if (!arguments.report.empty() && !to_output)
-        files.write_stream(arguments.report, [&](std::ostream& out) { out << json; });
-    files.commit();
-    if (to_output || !arguments.quiet)
-        context.out << (to_output ? json : text);
+    write_results(arguments.call, made,
+                  {{"grids", report},
+                   {"triangles", texture.corner.size()},
+                   {"triangles_of_the_mesh", texture.same},
+                   {"farthest_triangle", texture.farthest * unit}},
+                  text, context);
     return success;
 }
 

@@ -5,7 +5,7 @@
 
 #include "command/bound_options.h"
 #include "command/context.h"
-#include "command/file_plan.h"
+#include "command/volume_call.h"
 
 #include <filesystem>
 #include <string>
@@ -20,11 +20,9 @@ namespace vdb_shell::command
 {
 
 struct MapArguments {
-    std::filesystem::path volume, shell, mesh, output;
-    std::vector<std::string> grids; ///< empty: all
-    std::filesystem::path report;
+    VolumeCall call;
+    std::filesystem::path shell, mesh;
     MapOptions map;
-    bool quiet = false, no_clobber = false;
 };
 
 BoundOptions add_map_command(CLI::App& app, MapArguments& arguments);

@@ -4,9 +4,13 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/houdini/polygon_mesh.h"
+#include "vdb_shell/io/texture_coordinates.h"
 #include "vdb_shell/shell/core_tets.h"
 
 #include "command/file_commands.h"
+
+#include <openvdb/openvdb.h>
 
 #include <utility>
 
@@ -18,17 +22,41 @@ MappedShell map_shell(const std::filesystem::path& path, FilePlan& plan)
     // The file says itself where its points are, if they are not in it.
     if (!houdini::has_geometry_extension(path))
         plan.add_input(read_shell_info(path).points_at);
-    MappedShell shell{path, read_shell(path), {}, {}};
-    const ShellFile& file = shell.file;
-    TetMesh tets = joined_tets(file.tets, file.core);
-    if (file.rest.posed()) {
-        // The posed tets with other points: made anew they might share points at rest.
-        TetMesh at_rest = tets;
-        at_rest.points = vectors_of_tet_points(tets, rest_points(file));
-        shell.rest = std::make_unique<ShellMap>(rest_stack(file), std::move(at_rest));
-    }
-    shell.map = std::make_unique<ShellMap>(file.stack, std::move(tets));
+    MappedShell shell{path, read_shell(path), {}};
+    shell.map =
+        std::make_unique<ShellMap>(shell.file.stack, joined_tets(shell.file.tets, shell.file.core));
     return shell;
+}
+
+std::unique_ptr<ShellMap> map_at_rest(const MappedShell& shell)
+{
+    if (!shell.file.rest.posed())
+        return {};
+    // The posed tets with other points: made anew they might share points at rest.
+    TetMesh at_rest = shell.map->tets();
+    at_rest.points = vectors_of_tet_points(at_rest, rest_points(shell.file));
+    return std::make_unique<ShellMap>(rest_stack(shell.file), std::move(at_rest));
+}
+
+double voxel_size_of(const MappedShell& shell, double wanted)
+{
+    if (wanted != 0)
+        return wanted / shell.file.placement.unit;
+    if (!shell.file.surface)
+        throw InvalidOption(shell.path.string() +
+                            ": it has no level set, whose voxels these would have; give "
+                            "--voxel-size");
+    return shell.file.surface->voxelSize()[0];
+}
+
+SurfaceCoordinates texture_of(const std::filesystem::path& mesh, const MappedShell& shell)
+{
+    const Placement& placement = shell.file.placement;
+    const TextureCoordinates textured = houdini::has_geometry_extension(mesh)
+                                            ? houdini::read_polygon_texture(mesh, placement)
+                                            : read_texture_coordinates(mesh, placement);
+    const ShellStack rest = rest_stack(shell.file);
+    return surface_coordinates(textured, {rest.surface(rest.skin), rest.triangles()});
 }
 
 void require_same_tets(const MappedShell& first, const MappedShell& second)

@@ -6,11 +6,7 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/output_set.h"
-#include "vdb_shell/core/words.h"
-#include "vdb_shell/houdini/polygon_mesh.h"
-#include "vdb_shell/io/texture_coordinates.h"
 #include "vdb_shell/io/volume_file.h"
-#include "vdb_shell/volume/surface_coordinates.h"
 
 #include "command/exit_code.h"
 #include "command/mapped_shell.h"
@@ -20,6 +16,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace vdb_shell::command
 {
@@ -40,12 +37,6 @@ OptionSections describe(VolumesArguments& a)
             {"volumes", vdb_shell::describe(a.coordinates)}};
 }
 
-TextureCoordinates texture_of(const std::filesystem::path& path, const Placement& placement)
-{
-    return houdini::has_geometry_extension(path) ? houdini::read_polygon_texture(path, placement)
-                                                 : read_texture_coordinates(path, placement);
-}
-
 } // namespace
 
 BoundOptions add_volumes_command(CLI::App& app, VolumesArguments& arguments)
@@ -59,8 +50,7 @@ BoundOptions add_volumes_command(CLI::App& app, VolumesArguments& arguments)
 
 FilePlan plan_volumes(const VolumesArguments& arguments)
 {
-    if (lower_case_extension(arguments.output) != ".vdb")
-        throw InvalidOption(arguments.output.string() + ": the extension is not .vdb");
+    require_extension(arguments.output, ".vdb");
     const std::vector<Coordinate> wanted = coordinates_of(arguments.coordinates);
     const bool uvw = std::find(wanted.begin(), wanted.end(), Coordinate::uvw) != wanted.end();
     if (uvw == arguments.texture.empty())
@@ -80,22 +70,15 @@ int run_volumes(const VolumesArguments& arguments, Context& context)
     SignalInterrupter interrupter(context);
     const MappedShell shell = map_shell(arguments.shell, plan);
     CoordinateOptions options = arguments.coordinates;
-    if (options.voxel_size == 0) {
-        if (!shell.file.surface)
-            throw InvalidOption(arguments.shell.string() +
-                                ": it has no level set, whose voxels these would have; give "
-                                "--voxel-size");
-        options.voxel_size = shell.file.surface->voxelSize()[0];
-    }
+    options.voxel_size = voxel_size_of(shell, options.voxel_size);
+    const std::unique_ptr<ShellMap> rest = map_at_rest(shell);
     CoordinateInputs inputs;
     inputs.map = shell.map.get();
     inputs.stack = &shell.file.stack;
-    inputs.rest = shell.rest.get();
+    inputs.rest = rest.get();
     SurfaceCoordinates texture;
     if (!arguments.texture.empty()) {
-        const ShellStack rest = rest_stack(shell.file);
-        texture = surface_coordinates(texture_of(arguments.texture, shell.file.placement),
-                                      {rest.surface(rest.skin), rest.triangles()});
+        texture = texture_of(arguments.texture, shell);
         inputs.texture = &texture.corner;
     }
     const std::vector<GridBasePtr> grids = coordinate_grids(inputs, options, &interrupter);
