@@ -7,6 +7,8 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/volume_file.h"
+#include "vdb_shell/volume/deform_points.h"
+#include "vdb_shell/volume/motion_volume.h"
 
 #include "command/exit_code.h"
 #include "command/mapped_shell.h"
@@ -16,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <utility>
@@ -38,16 +41,19 @@ OptionSections describe(DeformArguments& a)
                   "", a.rest, "--rest",
                   "The shell where the volumes are; without it the points at rest that the posed "
                   "shell has"),
-              option("", a.call.grids, "--grid", "A grid to deform; all where none is named")})},
+              option("", a.call.grids, "--grid", "A grid to deform; all where none is named"),
+              option("", a.velocity, "--velocity",
+                     "Also how fast the shell moves, as the posed shell's file has it: a grid "
+                     "\"v\" over the voxels of the first volume, and attribute \"v\" of points")})},
         {"deform", vdb_shell::describe(a.deform)},
-        output_options(a.call, "The volumes in the pose: .vdb")};
+        output_options(a.call, "The volumes and points in the pose: .vdb")};
 }
 
-std::string text_of(const DeformFigures& f)
+std::string text_of(const DeformFigures& f, bool points)
 {
     char line[256];
-    std::snprintf(line, sizeof line, "%s: %zu voxels, %zu before", f.grid.c_str(), f.active_after,
-                  f.active_before);
+    std::snprintf(line, sizeof line, "%s: %zu %s, %zu before", f.grid.c_str(), f.active_after,
+                  points ? "points" : "voxels", f.active_before);
     std::string text = line;
     if (f.mass_before != 0) {
         std::snprintf(line, sizeof line, "; mass %.6g, %.6g before (%+.3f %%)", f.mass_after,
@@ -82,7 +88,7 @@ BoundOptions add_deform_command(CLI::App& app, DeformArguments& arguments)
 {
     app.add_option("volume", arguments.call.volume,
                    "Volumes in the shell at rest: a .vdb with grids of floats, vectors or whole "
-                   "numbers")
+                   "numbers, and of points")
         ->required();
     return bind(app, describe(arguments));
 }
@@ -108,15 +114,34 @@ int run_deform(const DeformArguments& arguments, Context& context)
     if (!from)
         throw InvalidOption(arguments.posed.string() +
                             ": it is at rest; give --posed a shell that pose wrote, or --rest");
+    std::unique_ptr<ShellMap> velocity;
+    if (arguments.velocity && !(velocity = map_of_velocities(posed)))
+        throw InvalidOption(arguments.posed.string() +
+                            ": it does not know how fast it moves, which --velocity asks for; "
+                            "pose it with --mesh-before or --mesh-after");
+    const openvdb::Vec3d shift = posed.file.placement.shift();
     std::vector<GridBasePtr> made;
     nlohmann::json report = nlohmann::json::array();
     std::string text;
-    for (const GridBasePtr& grid : read_volumes(arguments.call.volume, arguments.call.grids)) {
+    const auto deform = [&](const openvdb::GridBase& grid, DeformFigures& figures) {
+        return is_point_grid(grid) ? deform_points(grid, *from, *posed.map, shift, arguments.deform,
+                                                   figures, velocity.get(), &interrupter)
+                                   : deform_volume(grid, *from, *posed.map, shift, arguments.deform,
+                                                   figures, &interrupter);
+    };
+    for (const GridBasePtr& grid :
+         read_volumes(arguments.call.volume, arguments.call.grids, GridKinds::volumes_and_points)) {
         DeformFigures figures;
-        made.push_back(deform_volume(*grid, *from, *posed.map, posed.file.placement.shift(),
-                                     arguments.deform, figures, &interrupter));
+        made.push_back(deform(*grid, figures));
         report.push_back(json_of(figures));
-        text += text_of(figures);
+        text += text_of(figures, is_point_grid(*grid));
+    }
+    if (velocity) {
+        const auto volume = std::find_if(made.begin(), made.end(), [](const GridBasePtr& grid) {
+            return !is_point_grid(*grid);
+        });
+        if (volume != made.end())
+            made.push_back(motion_volume(**volume, *posed.map, *velocity, shift, &interrupter));
     }
     write_results(arguments.call, made, {{"grids", report}}, text, context);
     return success;

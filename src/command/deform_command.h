@@ -22,6 +22,7 @@ namespace vdb_shell::command
 struct DeformArguments {
     VolumeCall call;
     std::filesystem::path rest, posed; ///< rest empty: the posed shell's own points at rest
+    bool velocity = false;             ///< also how fast the shell moves
     DeformOptions deform;
 };
 

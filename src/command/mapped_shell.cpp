@@ -7,6 +7,7 @@
 #include "vdb_shell/houdini/polygon_mesh.h"
 #include "vdb_shell/io/texture_coordinates.h"
 #include "vdb_shell/shell/core_tets.h"
+#include "vdb_shell/volume/motion_volume.h"
 
 #include "command/file_commands.h"
 
@@ -36,6 +37,16 @@ std::unique_ptr<ShellMap> map_at_rest(const MappedShell& shell)
     TetMesh at_rest = shell.map->tets();
     at_rest.points = vectors_of_tet_points(at_rest, rest_points(shell.file));
     return std::make_unique<ShellMap>(rest_stack(shell.file), std::move(at_rest));
+}
+
+std::unique_ptr<ShellMap> map_of_velocities(const MappedShell& shell)
+{
+    const PointVectors& velocity = shell.file.rest.velocity;
+    if (velocity.empty())
+        return {};
+    return std::make_unique<ShellMap>(
+        velocity_map(shell.file.stack, shell.map->tets(), velocity.surface,
+                     vectors_of_tet_points(shell.map->tets(), velocity)));
 }
 
 double voxel_size_of(const MappedShell& shell, double wanted)

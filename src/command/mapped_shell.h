@@ -26,6 +26,9 @@ MappedShell map_shell(const std::filesystem::path& path, FilePlan& plan);
 /// The map of the shell at rest; null where the file's own is that.
 std::unique_ptr<ShellMap> map_at_rest(const MappedShell& shell);
 
+/// How fast the shell moves (velocity_map); null where the file does not know.
+std::unique_ptr<ShellMap> map_of_velocities(const MappedShell& shell);
+
 /// `wanted`, in the file's unit, or where that is 0 the voxels of the shell's level set. In the
 /// mesh's unit. Throws InvalidOption where there is neither.
 double voxel_size_of(const MappedShell& shell, double wanted);

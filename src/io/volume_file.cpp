@@ -5,6 +5,7 @@
 
 #include "vdb_shell/io/volume_file.h"
 
+#include "core/point_grid_instances.h"
 #include "io/vdb_archive.h"
 #include "io/vdb_seal.h"
 #include "io/volume_types.h"
@@ -26,9 +27,17 @@ namespace
 
 using openvdb::GridBase;
 
-bool is_volume(const GridBase& grid)
+bool is_wanted(const GridBase& grid, GridKinds kinds)
 {
-    return grid.apply<VolumeTypes>([](const auto&) {});
+    return grid.apply<VolumeTypes>([](const auto&) {
+    }) || (kinds == GridKinds::volumes_and_points && grid.isType<openvdb::points::PointDataGrid>());
+}
+
+/// For messages.
+std::string text_of(GridKinds kinds)
+{
+    const std::string volume = "volume of floats, vectors or whole numbers";
+    return kinds == GridKinds::volumes ? volume : volume + ", nor of points";
 }
 
 std::string list_of(const openvdb::GridPtrVec& grids)
@@ -41,7 +50,7 @@ std::string list_of(const openvdb::GridPtrVec& grids)
 }
 
 std::vector<GridBasePtr> read_opened(openvdb::io::File& file, const std::string& path,
-                                     std::vector<std::string> names)
+                                     std::vector<std::string> names, GridKinds kinds)
 {
     const openvdb::GridPtrVecPtr all = file.readAllGridMetadata();
     const auto metadata_of = [&](const std::string& name) {
@@ -53,17 +62,15 @@ std::vector<GridBasePtr> read_opened(openvdb::io::File& file, const std::string&
     };
     if (names.empty())
         for (const GridBase::Ptr& grid : *all)
-            if (is_volume(*grid))
+            if (is_wanted(*grid, kinds))
                 names.push_back(grid->getName());
     if (names.empty())
-        throw ReadError(path + ": has no volume of floats, vectors or whole numbers; it has " +
-                        list_of(*all));
+        throw ReadError(path + ": has no " + text_of(kinds) + "; it has " + list_of(*all));
     std::vector<GridBasePtr> grids;
     for (const std::string& name : names) {
-        if (!is_volume(*metadata_of(name)))
-            throw ReadError(path + ": grid " + vdb_shell::quoted(name) +
-                            " is no volume of floats, vectors or whole numbers; the file has " +
-                            list_of(*all));
+        if (!is_wanted(*metadata_of(name), kinds))
+            throw ReadError(path + ": grid " + vdb_shell::quoted(name) + " is no " +
+                            text_of(kinds) + "; the file has " + list_of(*all));
         grids.push_back(file.readGrid(name));
     }
     return grids;
@@ -72,7 +79,7 @@ std::vector<GridBasePtr> read_opened(openvdb::io::File& file, const std::string&
 } // namespace
 
 std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
-                                      const std::vector<std::string>& names)
+                                      const std::vector<std::string>& names, GridKinds kinds)
 {
     openvdb::initialize();
     try {
@@ -80,7 +87,7 @@ std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
         openvdb::io::File file(path.string());
         // Delayed loading would find damage at the first access to a voxel, outside of this.
         file.open(/*delayLoad=*/false);
-        return read_opened(file, path.string(), names);
+        return read_opened(file, path.string(), names, kinds);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

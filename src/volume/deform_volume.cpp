@@ -11,12 +11,12 @@
 #include "vdb_shell/options/option.h"
 #include "volume/extend_volume.h"
 #include "volume/level_set_again.h"
+#include "volume/plain_lattice.h"
+#include "volume/pull_back.h"
 #include "volume/sample_volume.h"
 #include "volume/tet_index_grid.h"
 #include "volume/volume_content.h"
 #include "volume/voxel_leaves.h"
-
-#include <openvdb/math/Mat3.h>
 
 #include <algorithm>
 #include <atomic>
@@ -31,60 +31,8 @@ namespace
 using openvdb::FloatGrid;
 using openvdb::GridBase;
 using openvdb::Int32Grid;
-using openvdb::Mat3d;
 using openvdb::Vec3d;
 using openvdb::Vec3SGrid;
-
-/// How a voxel's place and surroundings in the pose go back to rest.
-struct Pullback {
-    Vec3d rest{0.0};         ///< world units of the shell
-    Mat3d by_pose;           ///< d rest / d pose
-    double volume_ratio = 1; ///< of rest over pose
-};
-
-Pullback pull_back(const ShellMap& rest, const ShellMap& posed, std::uint32_t tet,
-                   const Vec3d& point)
-{
-    const ShellPlace place = posed.place_in(tet, point);
-    Pullback back;
-    back.rest = rest.point_of(place);
-    const Mat3d at_rest = rest.jacobian_of(place), at_pose = posed.jacobian_of(place);
-    // On a pinned pillar the share inwards says nothing, and there is nothing to be undone.
-    const double det = at_pose.det();
-    back.by_pose = det == 0.0 ? Mat3d::identity() : at_rest * at_pose.inverse(0.0);
-    back.volume_ratio = std::abs(back.by_pose.det());
-    return back;
-}
-
-enum class VectorMap { keep, forward, normal, rotate };
-
-VectorMap vector_map(const GridBase& grid, VectorRule rule)
-{
-    switch (rule) {
-    case VectorRule::keep:
-        return VectorMap::keep;
-    case VectorRule::transform:
-        return VectorMap::forward;
-    case VectorRule::rotate:
-        return VectorMap::rotate;
-    case VectorRule::by_type:
-        break;
-    }
-    switch (grid.getVectorType()) {
-    case openvdb::VEC_INVARIANT:
-        return VectorMap::keep;
-    case openvdb::VEC_COVARIANT:
-    case openvdb::VEC_COVARIANT_NORMALIZE:
-        return VectorMap::normal;
-    case openvdb::VEC_CONTRAVARIANT_RELATIVE:
-        return VectorMap::forward;
-    case openvdb::VEC_CONTRAVARIANT_ABSOLUTE:
-        break;
-    }
-    throw InvalidOption("grid \"" + grid.getName() +
-                        "\": its vectors are absolute places (contravariant absolute), which a "
-                        "deformed volume cannot carry; say what to do with --vectors");
-}
 
 /// What else happens to a value than to be moved; nothing to whole numbers.
 class ValueMap
@@ -92,10 +40,8 @@ class ValueMap
 public:
     ValueMap(const GridBase& grid, const DeformOptions& options) : options_(options)
     {
-        if (grid.isType<Vec3SGrid>()) {
+        if (grid.isType<Vec3SGrid>())
             vectors_ = vector_map(grid, options.vectors);
-            normalize_ = grid.getVectorType() == openvdb::VEC_COVARIANT_NORMALIZE;
-        }
         keeps_mass_ = keeps_mass(grid, options.mass);
     }
 
@@ -114,26 +60,7 @@ public:
     }
     openvdb::Vec3s operator()(const openvdb::Vec3s& value, const Pullback& back, std::size_t&) const
     {
-        const Vec3d v(value);
-        switch (vectors_) {
-        case VectorMap::keep:
-            return value;
-        case VectorMap::forward:
-            return openvdb::Vec3s(inverse(back.by_pose) * v);
-        case VectorMap::normal: {
-            Vec3d n = back.by_pose.transpose() * v;
-            if (normalize_)
-                n.normalize(0.0);
-            return openvdb::Vec3s(n);
-        }
-        case VectorMap::rotate: {
-            Mat3d turn, stretch;
-            const bool found =
-                openvdb::math::polarDecomposition(inverse(back.by_pose), turn, stretch);
-            return found ? openvdb::Vec3s(turn * v) : value;
-        }
-        }
-        return value;
+        return openvdb::Vec3s(carried_vector(Vec3d(value), vectors_, back.by_pose));
     }
 
 private:
@@ -145,36 +72,11 @@ private:
             grid.getGridClass() == openvdb::GRID_FOG_VOLUME || grid.getName() == "density";
         return rule == MassRule::all || (rule == MassRule::fog && fog);
     }
-    static Mat3d inverse(const Mat3d& matrix)
-    {
-        return matrix.det() == 0.0 ? Mat3d::identity() : matrix.inverse(0.0);
-    }
 
     const DeformOptions& options_;
     VectorMap vectors_ = VectorMap::keep;
-    bool normalize_ = false, keeps_mass_ = false;
+    bool keeps_mass_ = false;
 };
-
-VoxelLattice lattice_of(const GridBase& grid, const Vec3d& shift)
-{
-    const openvdb::math::Transform& transform = grid.transform();
-    const Vec3d origin = transform.indexToWorld(Vec3d(0.0));
-    const double size = transform.voxelSize()[0];
-    bool plain = transform.isLinear() && size > 0.0;
-    for (int axis = 0; plain && axis < 3; ++axis) {
-        Vec3d unit(0.0), along(0.0);
-        unit[axis] = 1.0;
-        along[axis] = size;
-        // A hundred-thousandth of a voxel over a voxel: what float matrices of other programs lose.
-        constexpr double kExact = 1e-5;
-        plain = (transform.indexToWorld(unit) - origin - along).length() <= kExact * size;
-    }
-    if (!plain)
-        throw InvalidOption(
-            "grid \"" + grid.getName() + "\": its transform is a " + transform.mapType() +
-            " that does more than scale all axes alike and move; resample it first");
-    return {size, origin - shift};
-}
 
 /// The tets of the posed shell below which there may be something.
 template <typename Grid>
@@ -205,7 +107,8 @@ typename Grid::Ptr deform(const Grid& source, const ShellMap& rest, const ShellM
         leaves.begin(i, leaf, false);
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
             const Vec3d point = lattice.origin + lattice.voxel_size * voxel.getCoord().asVec3d();
-            const Pullback back = pull_back(rest, posed, std::uint32_t(*voxel), point);
+            const Pullback back =
+                pull_back(rest, posed, posed.place_in(std::uint32_t(*voxel), point));
             const Vec3d at = (back.rest - lattice.origin) / lattice.voxel_size;
             typename Grid::ValueType value;
             if (sampler.mean(at, back.by_pose, value))
@@ -224,20 +127,14 @@ GridBasePtr deform_grid(const Grid& source, const ShellMap& rest, const ShellMap
                         const Vec3d& shift, const DeformOptions& options, DeformFigures& figures,
                         const StageProgress& progress)
 {
-    const VoxelLattice lattice = lattice_of(source, shift);
+    const VoxelLattice lattice = plain_lattice(source, shift);
     figures.active_before = source.activeVoxelCount();
     if (figures.active_before == 0)
         throw InvalidOption("grid \"" + source.getName() + "\" has no active voxels");
     const Int32Grid::Ptr at_rest = tet_index_grid(rest.tets(), lattice, "deform", progress);
     const Content before = content_of(source, *at_rest);
     figures.outside = before.outside_share();
-    if (figures.outside > options.most_outside)
-        throw InvalidOption("grid \"" + source.getName() +
-                            "\": " + std::to_string(100 * figures.outside) +
-                            " % of it lies outside the shell at rest, more than the " +
-                            std::to_string(100 * options.most_outside) +
-                            " % of --most-outside; make the shell thicker, fill its core, or build "
-                            "it on both sides");
+    require_inside(source.getName(), figures.outside, options.most_outside);
     const bool level_set = source.getGridClass() == openvdb::GRID_LEVEL_SET;
     typename Grid::Ptr made;
     if constexpr (std::is_integral_v<typename Grid::ValueType>) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/point_grid_instances.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/write/shell_points.h"
-#include "write/point_grid_instances.h"
 
 #include <string>
 

@@ -8,9 +8,9 @@
 #include "write/grid_digest.h"
 
 #include "core/parallel.h"
+#include "core/point_grid_instances.h"
 #include "vdb_shell/core/digest.h"
 #include "vdb_shell/core/words.h"
-#include "write/point_grid_instances.h"
 
 #include <openvdb/io/Compression.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "write/point_grid_instances.h"
+#include "core/point_grid_instances.h"
 
 #include <cstdint>
 #include <string>

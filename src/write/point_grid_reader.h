@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/point_grid_instances.h"
 #include "vdb_shell/core/error.h"
-#include "write/point_grid_instances.h"
 
 #include <openvdb/points/AttributeArray.h>
 

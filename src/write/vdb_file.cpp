@@ -13,6 +13,7 @@
 #include "vdb_shell/options/option.h"
 
 #include "core/parallel.h"
+#include "core/point_grid_instances.h"
 #include "io/vdb_archive.h"
 #include "io/vdb_seal.h"
 #include "vdb_shell/core/output_set.h"
@@ -20,7 +21,6 @@
 #include "write/core_feet_grid.h"
 #include "write/core_grids.h"
 #include "write/file_digests.h"
-#include "write/point_grid_instances.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 

@@ -9,6 +9,8 @@
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -78,6 +80,40 @@ TEST_F(Volumes, AreWrittenAndCarriedToThePose)
                   .status,
               ExitCode::success);
     EXPECT_EQ(grids_in(out).size(), 1u);
+}
+
+TEST_F(Volumes, PointsAndVelocitiesGoWithThem)
+{
+    ASSERT_EQ(run("volumes " + rest + " --volumes density -o " + fog).status, ExitCode::success);
+    ASSERT_EQ(run("pose " + rest + " " + file("long.obj") + " --mesh-before " + file("ball.obj") +
+                  " --frame-seconds 0.5 -q -o " + posed)
+                  .status,
+              ExitCode::success);
+    ASSERT_EQ(run("deform " + fog + " --velocity --posed " + posed + " -q -o " + out).status,
+              ExitCode::success);
+    openvdb::io::File file(out);
+    file.open(false);
+    const auto v = openvdb::gridPtrCast<openvdb::Vec3SGrid>(file.readGrid("v"));
+    EXPECT_EQ(v->activeVoxelCount(), file.readGrid("density")->activeVoxelCount());
+    // The skin has been made half as long again along x, in half a second. What is below moves
+    // along x, less far, and no faster than the skin's farthest point.
+    double fastest = 0, across = 0;
+    for (auto voxel = v->cbeginValueOn(); voxel; ++voxel) {
+        fastest = std::max(fastest, std::abs(double((*voxel)[0])));
+        across = std::max(across, std::abs(double((*voxel)[1])));
+    }
+    EXPECT_LE(fastest, 1.0 + 1e-4);
+    EXPECT_GT(fastest, 0.8);
+    EXPECT_LT(across, 0.5 * fastest);
+    file.close();
+
+    // Any grid of points in the shell will do, such as that of its tets' centres.
+    const Outcome points =
+        run("deform " + rest + " --grid shell_tets --posed " + posed + " --report - -o " + out);
+    ASSERT_EQ(points.status, ExitCode::success) << points.err;
+    const auto figures = nlohmann::json::parse(points.out)["grids"][0];
+    EXPECT_EQ(figures["active_before"], figures["active_after"]);
+    EXPECT_EQ(figures["outside"], 0.0);
 }
 
 TEST_F(Volumes, AreTheSameForAnyNumberOfThreads)
@@ -165,8 +201,8 @@ TEST_F(Volumes, RefuseBadInput)
     // The level set of the skin lies half outside.
     expect_refusal("deform " + rest + " --grid surface --posed " + posed + " -o " + out,
                    ExitCode::usage_error, {"surface", "outside the shell"});
-    expect_refusal("deform " + rest + " --grid shell_tets --posed " + posed + " -o " + out,
-                   ExitCode::read_error, {"shell_tets", "no volume"});
+    expect_refusal("deform " + fog + " --velocity --posed " + posed + " -o " + out,
+                   ExitCode::usage_error, {"posed.vdb", "--velocity", "--mesh-before"});
     const std::string other = file("other.vdb");
     ASSERT_EQ(
         run("build " + mesh_file("other.obj", icosphere(1.0, 1)) + kCoarse + " -q -o " + other)

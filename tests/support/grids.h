@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/grid_instances.h"
-#include "write/point_grid_instances.h"
+#include "core/point_grid_instances.h"
 
 #include <openvdb/io/Compression.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/deform_volume.h"
 
-#include "support/shapes.h"
 #include "vdb_shell/core/error.h"
-#include "write/hand_made.h"
+#include "volume/ball.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -27,19 +26,12 @@ using openvdb::Vec3SGrid;
 
 constexpr double kVoxel = 0.025;
 
+using test::as_it_is;
+
 /// A ball's shell, thick enough to hold what these tests put into it, in a pose.
 ShellMap map_of(const std::function<Vec3d(const Vec3d&)>& pose)
 {
-    test::HandMade made = test::hand_made_shell(test::icosphere(1.0, 3), 0.1);
-    for (auto* points : {&made.shell.outer, &made.shell.inner, &made.tets.points})
-        for (Vec3s& p : *points)
-            p = Vec3s(pose(Vec3d(p)));
-    return {one_layer(made.shell, made.split), made.tets};
-}
-
-Vec3d as_it_is(const Vec3d& p)
-{
-    return p;
+    return test::ball(pose).map();
 }
 
 /// Voxels with centres in the box get value(centre).

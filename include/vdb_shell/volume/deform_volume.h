@@ -50,7 +50,7 @@ OptionList describe(DeformOptions& options);
 /// What became of one grid. Content as in DeformOptions; mass in value times world units cubed.
 struct DeformFigures {
     std::string grid;
-    std::size_t active_before = 0, active_after = 0; ///< voxels
+    std::size_t active_before = 0, active_after = 0; ///< voxels; of points, points
     double mass_before = 0, mass_after = 0;          ///< of grids of floats that are no level sets
     double outside = 0;                              ///< share of the content that was left out
     std::size_t limited_density = 0; ///< voxels whose density met DeformOptions::most_density

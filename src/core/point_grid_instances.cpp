@@ -2,7 +2,7 @@
 
 // The grid of points and its tree, compiled once (point_grid_instances.h).
 
-#include "write/point_grid_instances.h"
+#include "core/point_grid_instances.h"
 
 template class openvdb::Grid<openvdb::points::PointDataTree>;
 template class openvdb::tree::Tree<openvdb::points::PointDataTree::RootNodeType>;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdb_shell/volume/motion_volume.h"
+
+#include "volume/ball.h"
+
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+namespace vdb_shell
+{
+namespace
+{
+
+using openvdb::Vec3d;
+
+constexpr double kVoxel = 0.1;
+
+TEST(MotionVolume, HasTheShellsVelocityAtEachVoxel)
+{
+    openvdb::initialize();
+    const test::Ball posed = test::ball(test::turned_long);
+    const ShellMap velocity = test::velocity_of_turning(posed);
+    const auto fog = openvdb::FloatGrid::create();
+    fog->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
+    fog->fill(openvdb::CoordBBox(openvdb::Coord(-12, -3, 3), openvdb::Coord(-6, 3, 5)), 1.0f);
+    fog->tree().voxelizeActiveTiles();
+    const auto made = openvdb::gridPtrCast<openvdb::Vec3SGrid>(
+        motion_volume(*fog, posed.map(), velocity, Vec3d(0.0)));
+    EXPECT_EQ(made->getName(), "v");
+    EXPECT_EQ(made->getVectorType(), openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    EXPECT_EQ(made->transform(), fog->transform());
+    EXPECT_EQ(made->activeVoxelCount(), fog->activeVoxelCount());
+    for (auto voxel = made->cbeginValueOn(); voxel; ++voxel) {
+        ASSERT_TRUE(fog->tree().isValueOn(voxel.getCoord()));
+        const Vec3d at = kVoxel * voxel.getCoord().asVec3d();
+        EXPECT_LT((Vec3d(*voxel) - test::turning(at)).length(), 1e-5);
+    }
+}
+
+} // namespace
+} // namespace vdb_shell
