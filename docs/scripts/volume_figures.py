@@ -20,21 +20,23 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TUNING = ["paper/cow", "creature"]
 JUDGING = ["paper/teapot", "paper/bunny_low_resolution", "paper/knot", "artist/fandisk", "artist/cheburashka", "artist/rocker-arm"]
 FRAMES, MEASURED = 8, 4
+# The creature's walk: its elbows are bent most in the middle.
+WALK_FRAMES, WALK_MEASURED = 100, (12, 37, 62, 87)  # frames from 0
 
 
-def measure(options, name, motion, folder):
+def measure(options, name, motion, folder, count=FRAMES, frame=MEASURED):
     mesh = ROOT / "samples/meshes/creature.obj" if name == "creature" else options.meshes / f"{name}.obj"
     command = options.build / "src/vdb_shell"
     shell, posed = folder / "rest.vdb", folder / "posed.vdb"
     frames = folder / "frames"
     subprocess.run([command, "build", "-q", mesh, "-o", shell], check=True)
-    subprocess.run([options.build / "samples/make_motion", mesh, motion, str(FRAMES), frames], check=True)
+    subprocess.run([options.build / "samples/make_motion", mesh, motion, str(count), frames], check=True)
     # 7 is a pose that is not certified throughout; it is measured as it is.
-    status = subprocess.run([command, "pose", "-q", shell, sorted(frames.glob("*.obj"))[MEASURED], "-o", posed], check=False).returncode
+    status = subprocess.run([command, "pose", "-q", shell, sorted(frames.glob("*.obj"))[frame], "-o", posed], check=False).returncode
     if status not in (0, 7):
         raise SystemExit(f"{name}: pose ended with {status}")
     text = subprocess.run([options.build / "tests/volume_probe", posed], check=True, capture_output=True, text=True).stdout
-    return {"name": name, "motion": motion, **json.loads(text)}
+    return {"name": name, "motion": motion if count == FRAMES else f"{motion}, frame {frame + 1}", **json.loads(text)}
 
 
 def rows(results):
@@ -66,9 +68,12 @@ def main():
     for name in TUNING + JUDGING:
         if options.only and name.split("/")[-1] not in options.only:
             continue
-        for motion in ("twist", "squash"):
+        runs = [("twist", FRAMES, MEASURED), ("squash", FRAMES, MEASURED)]
+        if name == "creature":
+            runs += [("walk", WALK_FRAMES, frame) for frame in WALK_MEASURED]
+        for motion, count, frame in runs:
             with tempfile.TemporaryDirectory() as folder:
-                results.append(measure(options, name, motion, pathlib.Path(folder)))
+                results.append(measure(options, name, motion, pathlib.Path(folder), count, frame))
     if options.only:
         print(json.dumps(results, indent=1))
         return

@@ -102,7 +102,7 @@ int run_deform(const DeformArguments& arguments, Context& context)
 {
     FilePlan plan = plan_deform(arguments);
     SignalInterrupter interrupter(context);
-    const MappedShell posed = map_shell(arguments.posed, plan);
+    MappedShell posed = map_shell(arguments.posed, plan);
     std::unique_ptr<ShellMap> from;
     if (!arguments.rest.empty()) {
         MappedShell rest = map_shell(arguments.rest, plan);
@@ -114,6 +114,8 @@ int run_deform(const DeformArguments& arguments, Context& context)
     if (!from)
         throw InvalidOption(arguments.posed.string() +
                             ": it is at rest; give --posed a shell that pose wrote, or --rest");
+    from->make_linear_as(*posed.map);
+    posed.map->make_linear_as(*from);
     std::unique_ptr<ShellMap> velocity;
     if (arguments.velocity && !(velocity = map_of_velocities(posed)))
         throw InvalidOption(arguments.posed.string() +

@@ -10,6 +10,7 @@
 #include <openvdb/math/Math.h>
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 #include <utility>
 
@@ -93,7 +94,7 @@ ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
 {
     corners_.resize(stack.layers.size() * triangles_);
     curved_.assign(corners_.size(), 0);
-    std::vector<std::uint8_t> has_tets(corners_.size(), 0);
+    has_tets_.assign(corners_.size(), 0);
     for_each_index(corners_.size(), [&](std::size_t p) {
         const PrismShell& layer = stack.layers[p / triangles_];
         const Vec3I& triangle = stack.triangles()[p % triangles_];
@@ -108,16 +109,30 @@ ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
         if (tets_.prism[t] == kCorePrism)
             continue;
         const std::size_t p = tets_.prism_layer[t] * triangles_ + tets_.prism[t];
-        has_tets[p] = 1;
+        has_tets_[p] = 1;
         for (std::size_t i = 0; i < 4; ++i)
             for (std::size_t k = 0; k < 6; ++k)
                 if (corners_[p][k] == tets_.points[tets_.tets[t][int(i)]])
                     corner_bits_[t][i] = std::uint8_t(corner_bits_[t][i] | 1u << k);
     }
+    count_prisms();
+}
+
+void ShellMap::count_prisms()
+{
+    prisms_ = linear_prisms_ = 0;
     for (std::size_t p = 0; p < corners_.size(); ++p) {
-        prisms_ += has_tets[p];
-        linear_prisms_ += has_tets[p] && !curved_[p];
+        prisms_ += has_tets_[p];
+        linear_prisms_ += has_tets_[p] && !curved_[p];
     }
+}
+
+void ShellMap::make_linear_as(const ShellMap& other)
+{
+    assert(curved_.size() == other.curved_.size());
+    for (std::size_t p = 0; p < curved_.size(); ++p)
+        curved_[p] = curved_[p] && other.curved_[p];
+    count_prisms();
 }
 
 Vec4d ShellMap::tet_weights(std::uint32_t tet, const Vec3d& point) const

@@ -282,12 +282,14 @@ int main(int count, char** words)
     at_rest.points = vectors_of_tet_points(tets, rest_points(file));
     const double voxel_size = file.surface->voxelSize()[0];
     const ShellStack rest_shell = rest_stack(file);
-    const ShellMap posed(file.stack, tets), rest(rest_shell, at_rest);
+    ShellMap posed(file.stack, tets), rest(rest_shell, at_rest);
     std::printf("{\n");
     print("triangles", double(posed.triangles()));
     print("prisms", double(posed.prisms()));
     print("linear_prisms", double(posed.linear_prisms()));
     print("linear_prisms_at_rest", double(rest.linear_prisms()));
+    rest.make_linear_as(posed);
+    posed.make_linear_as(rest);
     const auto grid = tet_index_grid(posed.tets(), voxel_size, "probe", StageProgress(nullptr, ""));
     const std::vector<Voxel> voxels = voxels_of(*grid);
     round_trip(rest, posed, voxels, voxel_size);

@@ -110,6 +110,34 @@ TEST(ShellMap, PrismsThatAreTurnedOverAreLinearInTheirTets)
     });
 }
 
+TEST(ShellMap, WhatIsLinearInOnePoseIsLinearInTheOther)
+{
+    const ShellStack at_rest = stack_of(turned_shell(0.1), SplitRule::vertex_index);
+    ShellStack in_pose = at_rest;
+    PrismShell& layer = in_pose.layers[0];
+    layer.inner[7] = layer.outer[7] + 0.7f * (layer.outer[8] - layer.outer[7]);
+    ShellMap rest = map_of(at_rest), posed = map_of(in_pose);
+    const std::size_t linear = posed.linear_prisms();
+    ASSERT_GT(linear, 0u);
+    ASSERT_EQ(rest.linear_prisms(), 0u);
+    rest.make_linear_as(posed);
+    posed.make_linear_as(rest);
+    EXPECT_EQ(rest.linear_prisms(), linear);
+    EXPECT_EQ(posed.linear_prisms(), linear);
+    // A tet goes to the same tet, and back.
+    std::size_t tested = 0;
+    for_each_voxel(posed, [&](std::uint32_t tet, const Vec3d& point) {
+        const ShellPlace place = posed.place_in(tet, point);
+        if (place.prism != ShellPlace::kNone)
+            return;
+        const Vec3d there = rest.point_of(place);
+        ASSERT_TRUE(rest.holds(tet, there));
+        EXPECT_LT((posed.point_of(rest.place_in(tet, there)) - point).length(), 1e-10);
+        ++tested;
+    });
+    EXPECT_GT(tested, 100u);
+}
+
 TEST(ShellMap, TheJacobianIsTheDerivative)
 {
     const ShellMap map = map_of(stack_of(turned_shell(0.1), SplitRule::vertex_index));

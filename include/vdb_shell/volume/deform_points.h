@@ -21,7 +21,7 @@ namespace vdb_shell
 /// `figures`: active_before and active_after count points, outside is the share of points that no
 /// tet holds, which are left out.
 ///
-/// Preconditions: rest and posed are of the same tets. Throws InvalidOption, naming the grid, for a
+/// Preconditions: as deform_volume. Throws InvalidOption, naming the grid, for a
 /// grid that is not of points, has none, has a transform that is not linear or leaves with
 /// different attributes or with positions that are not "P" of three floats, and for more points
 /// outside than DeformOptions::most_outside; Cancelled.

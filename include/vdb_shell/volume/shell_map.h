@@ -49,6 +49,11 @@ public:
     /// `tets`: those of make_tets of the stack, or joined_tets of them and a core.
     ShellMap(const ShellStack& stack, TetMesh tets);
 
+    /// Makes linear what is linear in `other`, the same shell in another pose. Called both ways,
+    /// a point that goes from one to the other comes back to where it was, but for points between
+    /// a curved side and the flat one of a linear prism beside it. Precondition: as many prisms.
+    void make_linear_as(const ShellMap& other);
+
     const TetMesh& tets() const { return tets_; }
     std::size_t triangles() const { return triangles_; }
     std::size_t layers() const { return triangles_ == 0 ? 0 : corners_.size() / triangles_; }
@@ -80,12 +85,14 @@ public:
 private:
     using Corners = std::array<openvdb::Vec3s, 6>; ///< three outer, three inner
 
+    void count_prisms();
     ShellPlace linear_place(std::uint32_t tet, const openvdb::Vec4d& weight) const;
     openvdb::Vec4d tet_weights(std::uint32_t tet, const openvdb::Vec3d& point) const;
 
     TetMesh tets_;
     std::size_t triangles_ = 0, prisms_ = 0, linear_prisms_ = 0;
     std::vector<Corners> corners_;       ///< by prism
+    std::vector<std::uint8_t> has_tets_; ///< by prism
     std::vector<std::uint8_t> curved_;   ///< by prism
     std::vector<openvdb::Vec3I> beyond_; ///< by triangle: that across the side opposite each corner
     /// By tet and corner: a bit for each corner of the prism that is this point.
