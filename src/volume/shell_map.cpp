@@ -86,6 +86,14 @@ WedgePlace place_of_weights(const std::array<std::uint8_t, 4>& bits, const Vec4d
 /// Points on sides are both prisms'. The unit is that of the weights.
 constexpr double kOnSide = 1e-9;
 
+bool all_inside(const Vec4d& weight)
+{
+    for (int i = 0; i < 4; ++i)
+        if (!(weight[i] >= -kOnSide))
+            return false;
+    return true;
+}
+
 } // namespace
 
 ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
@@ -149,11 +157,7 @@ Vec4d ShellMap::tet_weights(std::uint32_t tet, const Vec3d& point) const
 
 bool ShellMap::holds(std::uint32_t tet, const Vec3d& point) const
 {
-    const Vec4d weight = tet_weights(tet, point);
-    for (int i = 0; i < 4; ++i)
-        if (!(weight[i] >= -kOnSide))
-            return false;
-    return true;
+    return all_inside(tet_weights(tet, point));
 }
 
 ShellPlace ShellMap::linear_place(std::uint32_t tet, const Vec4d& weight) const
@@ -166,7 +170,17 @@ ShellPlace ShellMap::linear_place(std::uint32_t tet, const Vec4d& weight) const
 
 ShellPlace ShellMap::place_in(std::uint32_t tet, const Vec3d& point) const
 {
+    return place_of(tet, tet_weights(tet, point), point);
+}
+
+ShellPlace ShellMap::find_in(std::uint32_t tet, const Vec3d& point) const
+{
     const Vec4d weight = tet_weights(tet, point);
+    return all_inside(weight) ? place_of(tet, weight, point) : ShellPlace();
+}
+
+ShellPlace ShellMap::place_of(std::uint32_t tet, const Vec4d& weight, const Vec3d& point) const
+{
     if (tets_.prism[tet] == kCorePrism)
         return linear_place(tet, weight);
     const std::size_t layer = tets_.prism_layer[tet] * triangles_;

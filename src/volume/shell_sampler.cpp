@@ -83,8 +83,11 @@ ShellPlace ShellSampler::find(const Vec3d& point) const
     if (!(std::abs(voxel[0]) < kMost && std::abs(voxel[1]) < kMost && std::abs(voxel[2]) < kMost))
         return {};
     const int near = parts_->near->tree().getValue(openvdb::Coord::round(voxel));
-    if (near >= 0 && map_.holds(std::uint32_t(near), point))
-        return map_.place_in(std::uint32_t(near), point);
+    if (near >= 0) {
+        const ShellPlace place = map_.find_in(std::uint32_t(near), point);
+        if (place.found())
+            return place;
+    }
     std::uint32_t tet = ShellPlace::kNone;
     parts_->tree.for_each_overlap(box_around(point), [&](int t) {
         if (std::uint32_t(t) < tet && map_.holds(std::uint32_t(t), point))

@@ -32,29 +32,45 @@ template <typename Grid, typename Visit> void for_each_active(const Grid& grid, 
     }
 }
 
-template <typename Grid>
-double magnitude_of(const Grid& grid, const typename Grid::ValueType& value)
+/// What a value counts for. Asked for each voxel, so the grid is asked for its class only once:
+/// OpenVDB finds that by comparing strings.
+template <typename Grid> class Magnitude
 {
     using Value = typename Grid::ValueType;
-    if constexpr (std::is_same_v<Value, float>) {
-        if (grid.getGridClass() == openvdb::GRID_LEVEL_SET)
-            return std::abs(value) < grid.voxelSize()[0] ? 1.0 : 0.0;
-        return std::abs(double(value));
-    } else if constexpr (std::is_integral_v<Value>) {
-        return 1.0;
-    } else {
-        return openvdb::Vec3d(value).length();
+
+public:
+    explicit Magnitude(const Grid& grid)
+        : level_set_(grid.getGridClass() == openvdb::GRID_LEVEL_SET),
+          voxel_size_(grid.voxelSize()[0])
+    {
     }
-}
+    double operator()(const Value& value) const
+    {
+        if constexpr (std::is_same_v<Value, float>) {
+            if (level_set_)
+                return std::abs(value) < voxel_size_ ? 1.0 : 0.0;
+            return std::abs(double(value));
+        } else if constexpr (std::is_integral_v<Value>) {
+            return 1.0;
+        } else {
+            return openvdb::Vec3d(value).length();
+        }
+    }
+
+private:
+    bool level_set_;
+    double voxel_size_;
+};
 
 /// `inside`: its active voxels, on the same lattice, are in the shell. In the order of the tree, so
 /// that sums are the same each time.
 template <typename Grid> Content content_of(const Grid& grid, const openvdb::Int32Grid& inside)
 {
     Content content;
+    const Magnitude<Grid> magnitude_of(grid);
     auto tet = inside.getConstAccessor();
     for_each_active(grid, [&](const openvdb::Coord& place, const typename Grid::ValueType& value) {
-        const double magnitude = magnitude_of(grid, value);
+        const double magnitude = magnitude_of(value);
         content.whole += magnitude;
         if (!tet.isValueOn(place))
             content.outside += magnitude;

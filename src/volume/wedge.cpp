@@ -17,15 +17,34 @@ struct Derivatives {
     Vec3d by_u, by_v, by_t;
 };
 
-Derivatives derivatives(const Wedge& w, const WedgePlace& at)
+/// X(u, v, t) = a + u b + v c + t (d + u e + v f), from corner 0 of the outer triangle.
+class Polynomial
 {
-    const double t = at[2];
-    const Vec3d corner = w.outer[0] + t * (w.inner[0] - w.outer[0]);
-    const Vec3d d = w.inner[0] - w.outer[0];
-    return {w.outer[1] + t * (w.inner[1] - w.outer[1]) - corner,
-            w.outer[2] + t * (w.inner[2] - w.outer[2]) - corner,
-            d + at[0] * (w.inner[1] - w.outer[1] - d) + at[1] * (w.inner[2] - w.outer[2] - d)};
-}
+public:
+    explicit Polynomial(const Wedge& w)
+        : a_(w.outer[0]), b_(w.outer[1] - a_), c_(w.outer[2] - a_), d_(w.inner[0] - a_),
+          e_(w.inner[1] - w.outer[1] - d_), f_(w.inner[2] - w.outer[2] - d_)
+    {
+    }
+
+    Derivatives derivatives(const WedgePlace& at) const
+    {
+        return {b_ + at[2] * e_, c_ + at[2] * f_, d_ + at[0] * e_ + at[1] * f_};
+    }
+    /// `by` are the derivatives there.
+    Vec3d point(const WedgePlace& at, const Derivatives& by) const
+    {
+        return a_ + at[0] * b_ + at[1] * c_ + at[2] * by.by_t;
+    }
+    /// Of two sides of the outer triangle and a pillar.
+    double squared_size() const
+    {
+        return std::max(b_.lengthSqr(), d_.lengthSqr()) + c_.lengthSqr();
+    }
+
+private:
+    Vec3d a_, b_, c_, d_, e_, f_;
+};
 
 } // namespace
 
@@ -65,34 +84,39 @@ Vec3d point_of(const Wedge& w, const WedgePlace& at)
 
 Mat3d jacobian_of(const Wedge& wedge, const WedgePlace& at)
 {
-    const Derivatives d = derivatives(wedge, at);
+    const Derivatives d = Polynomial(wedge).derivatives(at);
     return {d.by_u, d.by_v, d.by_t, false};
 }
 
-std::optional<WedgePlace> place_of(const Wedge& w, const Vec3d& point, const WedgePlace& guess)
+std::optional<WedgePlace> place_of(const Wedge& wedge, const Vec3d& point, const WedgePlace& guess)
 {
-    // Doubles give twelve digits beside the prism's size; Newton's steps double them, so there are
-    // four to six.
+    // Doubles give twelve digits beside the prism's size. Newton's steps double the digits, so
+    // there are three to five, and after one
+    // that changes places by a ten-millionth there is nothing left to look at.
     constexpr int kMostSteps = 16;
-    constexpr double kExact = 1e-12, kFarOutside = 1.0;
-    const double size =
-        std::max((w.outer[1] - w.outer[0]).lengthSqr(), (w.inner[0] - w.outer[0]).lengthSqr()) +
-        (w.outer[2] - w.outer[0]).lengthSqr();
+    constexpr double kExact = 1e-12, kLastStep = 1e-7, kFarOutside = 1.0;
+    const Polynomial x(wedge);
+    const double size = x.squared_size();
     WedgePlace at = guess;
     for (int step = 0; step < kMostSteps; ++step) {
-        const Vec3d missing = point - point_of(w, at);
-        if (missing.lengthSqr() <= kExact * kExact * size)
+        const Derivatives d = x.derivatives(at);
+        const Vec3d missing = point - x.point(at, d);
+        const double squared = missing.lengthSqr();
+        if (squared <= kExact * kExact * size)
             return at;
-        const Derivatives d = derivatives(w, at);
         const Vec3d vt = d.by_v.cross(d.by_t);
         const double det = d.by_u.dot(vt);
         if (det == 0.0)
             return {};
-        at += Vec3d(missing.dot(vt), missing.dot(d.by_t.cross(d.by_u)),
-                    missing.dot(d.by_u.cross(d.by_v))) /
-              det;
+        const Vec3d change = Vec3d(missing.dot(vt), missing.dot(d.by_t.cross(d.by_u)),
+                                   missing.dot(d.by_u.cross(d.by_v))) /
+                             det;
+        at += change;
         if (!(outside_of(at) < kFarOutside))
             return {};
+        // What is left of the second order is a product of two changes and a side.
+        if (change.lengthSqr() <= kLastStep * kLastStep)
+            return at;
     }
     return {};
 }

@@ -69,6 +69,9 @@ public:
     /// beyond the side of its own prism, with a negative weight.
     ShellPlace place_in(std::uint32_t tet, const openvdb::Vec3d& point) const;
 
+    /// The same of a point that the tet may or may not hold: not found where it does not.
+    ShellPlace find_in(std::uint32_t tet, const openvdb::Vec3d& point) const;
+
     /// By tet: whether a box around its prism, or around one of the prisms beside it, in which
     /// places found by place_in(tet) may lie, passes `meets`, which is asked by several threads at
     /// once. Of a tet of a core its own box.
@@ -87,6 +90,8 @@ private:
 
     void count_prisms();
     ShellPlace linear_place(std::uint32_t tet, const openvdb::Vec4d& weight) const;
+    ShellPlace place_of(std::uint32_t tet, const openvdb::Vec4d& weight,
+                        const openvdb::Vec3d& point) const;
     openvdb::Vec4d tet_weights(std::uint32_t tet, const openvdb::Vec3d& point) const;
 
     TetMesh tets_;
