@@ -37,7 +37,7 @@ readers)
     cmake --preset readers
     cmake --build --preset readers --target "${rooms[@]/%/_test}" mesh_fuzzers
     ctest --preset readers -j "$(nproc)" -R "^($(IFS='|'; echo "${rooms[*]}"))\."
-    exec python3 tests/fuzz/run.py build/readers --seconds 10 --targets obj ply off stl
+    exec python3 tests/fuzz/run.py build/readers --seconds 10 --targets obj ply off stl obj_texture ply_texture
     ;;
 fuzz)
     cmake --preset fuzz

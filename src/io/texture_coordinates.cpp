@@ -8,6 +8,7 @@
 #include "vdb_shell/io/texture_coordinates.h"
 
 #include "io/file_scan.h"
+#include "io/texture_of_bytes.h"
 #include "mesh/equal_points.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/words.h"
@@ -23,6 +24,13 @@ namespace
 {
 
 using openvdb::Vec2d;
+
+void require_texture_format(const std::string& name, const std::string& extension)
+{
+    if (extension != ".obj" && extension != ".ply")
+        refuse(name,
+               "texture coordinates are read from .obj and .ply, not from \"" + extension + "\"");
+}
 
 void require_all(const std::string& name, const TextureScan& texture)
 {
@@ -80,19 +88,23 @@ TextureCoordinates texture_of_scan(const std::string& name, FileScan scan,
 
 } // namespace
 
-TextureCoordinates read_texture_coordinates(const std::filesystem::path& path,
-                                            const Placement& placement)
+TextureCoordinates texture_of_bytes(const std::string& name, const std::string& extension,
+                                    std::string_view bytes, const Placement& placement)
 {
-    const std::string extension = lower_case_extension(path), name = path.string();
-    if (extension != ".obj" && extension != ".ply")
-        refuse(name,
-               "texture coordinates are read from .obj and .ply, not from \"" + extension + "\"");
-    const std::string bytes = read_whole_file(path);
+    require_texture_format(name, extension);
     Coordinates coordinates(placement);
     TextureScan texture;
     FileScan scan = (extension == ".obj" ? scan_obj(name, bytes, coordinates, &texture)
                                          : scan_ply(name, bytes, coordinates, &texture));
     return texture_of_scan(name, std::move(scan), coordinates, texture);
+}
+
+TextureCoordinates read_texture_coordinates(const std::filesystem::path& path,
+                                            const Placement& placement)
+{
+    const std::string extension = lower_case_extension(path);
+    require_texture_format(path.string(), extension);
+    return texture_of_bytes(path.string(), extension, read_whole_file(path), placement);
 }
 
 TextureCoordinates texture_of_polygons(const PolygonSoup& soup, const std::vector<Vec2d>& by_corner,

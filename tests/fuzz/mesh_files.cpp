@@ -2,10 +2,12 @@
 #include "fuzz/targets.h"
 
 #include "io/file_scan.h"
+#include "io/texture_of_bytes.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdb_shell::fuzz
@@ -52,6 +54,23 @@ void read(Scan scan, std::string_view bytes)
     }
 }
 
+void read_texture(const char* extension, std::string_view bytes)
+{
+    if (bytes.empty())
+        return;
+    try {
+        const TextureCoordinates texture = texture_of_bytes("fuzz", extension, bytes);
+        require(texture.corner.size() == texture.mesh.triangles.size(),
+                "not three texture coordinates a triangle");
+        for (const std::array<openvdb::Vec2d, 3>& corners : texture.corner)
+            for (const openvdb::Vec2d& uv : corners)
+                require(std::isfinite(uv[0]) && std::isfinite(uv[1]),
+                        "a texture coordinate that is not finite");
+    } catch (const ReadError& error) {
+        require(std::string(error.what()).rfind("fuzz: ", 0) == 0, "refused without the name");
+    }
+}
+
 } // namespace
 
 void obj(std::string_view bytes)
@@ -62,6 +81,16 @@ void obj(std::string_view bytes)
 void ply(std::string_view bytes)
 {
     read(scan_ply, bytes);
+}
+
+void obj_texture(std::string_view bytes)
+{
+    read_texture(".obj", bytes);
+}
+
+void ply_texture(std::string_view bytes)
+{
+    read_texture(".ply", bytes);
 }
 
 void off(std::string_view bytes)

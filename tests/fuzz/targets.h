@@ -28,6 +28,9 @@ void obj(std::string_view bytes);
 void ply(std::string_view bytes);
 void off(std::string_view bytes);
 void stl(std::string_view bytes);
+/// Of both, with texture coordinates.
+void obj_texture(std::string_view bytes);
+void ply_texture(std::string_view bytes);
 /// .geo, .bgeo and .bgeo.sc, which are told apart by content. What is read is written the same
 /// twice.
 void houdini(std::string_view bytes);
@@ -46,9 +49,16 @@ struct Target {
 };
 inline const std::vector<Target>& targets()
 {
-    static const std::vector<Target> all{
-        {"obj", obj},         {"ply", ply}, {"off", off},         {"stl", stl},
-        {"houdini", houdini}, {"vdb", vdb}, {"options", options}, {"tiny_meshes", tiny_meshes}};
+    static const std::vector<Target> all{{"obj", obj},
+                                         {"ply", ply},
+                                         {"off", off},
+                                         {"stl", stl},
+                                         {"obj_texture", obj_texture},
+                                         {"ply_texture", ply_texture},
+                                         {"houdini", houdini},
+                                         {"vdb", vdb},
+                                         {"options", options},
+                                         {"tiny_meshes", tiny_meshes}};
     return all;
 }
 
