@@ -12,7 +12,21 @@ TABLE = re.compile(r"(<!-- table (\S+) (\S+): begin -->\n).*?(<!-- table \2 \3: 
 
 
 def load(folder):
-    return {file.stem: json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))}
+    """The files beside the pages, and "shape": what they say of tets by way and half, from ../measurements/shape.json."""
+    data = {file.stem: json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))}
+    shape = folder.parent / "measurements" / "shape.json"
+    return data | ({"shape": shape_means(json.loads(shape.read_text()))} if shape.exists() else {})
+
+
+def shape_means(rows):
+    """way -> half, or "all" -> mean tets a triangle, over the meshes that the way made. The file is shape_figures.py's."""
+    answer = {}
+    for row in rows:
+        if row.get("tets"):
+            for half in (row["half"], "all"):
+                answer.setdefault(row["way"], {}).setdefault(half, []).append(row["tets_per_triangle"])
+    return {way: {half: {"meshes": len(found), "tets_per_triangle": sum(found) / len(found)} for half, found in halves.items()}
+            for way, halves in answer.items()}
 
 
 def value_at(data, name, path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of paper.py share: one run of the command with its report, and the half that a mesh belongs to."""
+"""What the parts of paper.py share: one run of the command with its report, and what the tables say of it."""
 import json
 import os
 import pathlib
@@ -25,18 +25,6 @@ def build(command, mesh, flags):
         if child.returncode not in (0, NOT_VALID):
             raise RuntimeError(f"{mesh} {flags}: {message}")
         return json.loads(report.read_text()), usage.ru_utime + usage.ru_stime
-
-
-def half_of(name):
-    """tuned: looked at while numbers of the library were chosen; judging: only measured (docs/measurements/scan_meshes.txt)."""
-    if name.startswith("paper/"):
-        return "tuned"
-    lists = pathlib.Path(__file__).parent.parent / "measurements" / "scan_meshes.txt"
-    for line in lists.read_text().splitlines():
-        half, _, mesh = line.partition(" ")
-        if mesh == pathlib.Path(name).name:
-            return {"tuning": "tuned"}.get(half, half)
-    return "not listed"
 
 
 def with_tables(answer, **tables):
