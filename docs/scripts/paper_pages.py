@@ -1,21 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Holds the pages of docs/paper to the files beside them: numbers and tables between marks are those of the files.
 
-A number is <!--= FILE KEY/KEY/... FORMAT -->text<!--=-->, with FILE.json beside the page and FORMAT as Python's format() has it. A table is
-what stands between <!-- table FILE NAME: begin --> and <!-- table FILE NAME: end -->. Standard library only.
+A number is <!--= FILE KEY/KEY/... FORMAT -->text<!--=-->, with FILE.json beside the page (or "total" or "shape", see load()) and
+FORMAT as Python's format() has it. A table is what stands between <!-- table FILE NAME: begin --> and <!-- table FILE NAME: end -->. Standard library only.
 """
 import json
 import re
 
-NUMBER = re.compile(r"<!--= (\S+) (\S+) (\S+) -->(.*?)<!--=-->", re.S)
+NUMBER = re.compile(r"<!--= (\S+) (.+?) (\S+) -->(.*?)<!--=-->")  # a key may have spaces: names of situations
 TABLE = re.compile(r"(<!-- table (\S+) (\S+): begin -->\n).*?(<!-- table \2 \3: end -->)", re.S)
 
 
 def load(folder):
-    """The files beside the pages, and "shape": what they say of tets by way and half, from ../measurements/shape.json."""
+    """The files beside the pages; "total": their seconds summed; "shape": means of ../measurements/shape.json."""
     data = {file.stem: json.loads(file.read_text()) for file in sorted(folder.glob("*.json"))}
     shape = folder.parent / "measurements" / "shape.json"
-    return data | ({"shape": shape_means(json.loads(shape.read_text()))} if shape.exists() else {})
+    minutes = {f"{clock}_minutes": sum(part.get(f"{clock}_seconds", 0) for part in data.values()) / 60 for clock in ("wall", "processor")}
+    return data | {"total": minutes} | ({"shape": shape_means(json.loads(shape.read_text()))} if shape.exists() else {})
 
 
 def shape_means(rows):
