@@ -68,13 +68,28 @@ def cost(command, files, name, flags):
             "step_seconds": min(stage_seconds(report, "line stepping") for report in reports)}
 
 
+def line_through(points):
+    """Least squares y = a x - b: a, b, and the largest distance of a point from the line in percent of its y."""
+    count, sx, sy = len(points), sum(x for x, _ in points), sum(y for _, y in points)
+    a = (count * sum(x * y for x, y in points) - sx * sy) / (count * sum(x * x for x, _ in points) - sx * sx)
+    b = (a * sx - sy) / count
+    return a, b, max(abs(a * x - b - y) / y for x, y in points) * 100
+
+
+def lost_steps(by_n):
+    """The steps against N as a line that starts below zero: what each line loses at its end, whatever N is."""
+    a, b, off = line_through([(int(n), row["steps"]) for n, row in by_n.items()])
+    vertices = next(iter(by_n.values()))["vertices"]
+    return {"steps_a_vertex_and_voxel": a / vertices, "lost_a_vertex": b / vertices, "worst_percent": off}
+
+
 def make_cost(command, files):
     """One after the other, as they are timed. One mesh of each half."""
     answer = {}
     for name, cuts in COST_MESHES.items():
         by_n = {n: cost(command, files, name, ["--resolution", str(n)]) for n in COST_RESOLUTIONS}
         by_v = {cut: cost(command, files, name, ["--resolution", "128", "--subdivide", str(cut)]) for cut in range(cuts + 1)}
-        answer[name] = {"half": half_of(name), "by_resolution": by_n, "by_vertices": by_v}
+        answer[name] = {"half": half_of(name), "by_resolution": by_n, "by_vertices": by_v, "line": lost_steps(by_n)}
         for key in ("steps", "field_seconds", "step_seconds"):
             answer[name][f"{key}_exponent_in_n"] = fitted_exponent([(n, row[key]) for n, row in by_n.items()])
             answer[name][f"{key}_exponent_in_v"] = fitted_exponent([(row["vertices"], row[key]) for row in by_v.values()])
