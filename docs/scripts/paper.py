@@ -20,7 +20,7 @@ import paper_figure_2
 import paper_figure_3
 import paper_figures_4_5
 import paper_sentences
-from paper_halves import Meshes
+from paper_halves import ALL_MESHES, Meshes
 from paper_pages import write_pages
 
 
@@ -54,6 +54,9 @@ def main():
     parser.add_argument("--parts", nargs="*", choices=list(PARTS), default=list(PARTS))
     arguments = parser.parse_args()
     arguments.files = Meshes(arguments.meshes, arguments.judging)
+    if set(arguments.parts) & {"figures_4_5", "sentences", "cost"}:
+        for name in ALL_MESHES:
+            arguments.files.path(name)  # what is missing is told now, not after minutes
     (arguments.folder / "images").mkdir(parents=True, exist_ok=True)
     for name in arguments.parts:
         before, spent = time.monotonic(), processor_seconds()
