@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The paper's figure 2, from the solids and tests of symmetry_lines.py. Called by paper.py."""
-from paper_moved import write_moved
+import math
+
+from paper_moved import dot, moved, normals_and_heights, write_moved
 from paper_runs import with_tables
 from symmetry_lines import TESTS, across, draw, measure, run
 from symmetry_shapes import SITUATIONS, write_obj
@@ -21,6 +23,18 @@ def length_of(command, situation, rho, folder, share, tilt, seed):
     return run(command, mesh, folder, flags)[0].get(situation.watched_vertex(), 0.0)
 
 
+def turned_degrees(situation, share):
+    """The most that moves of the seeds turn the watched vertex's pseudo-normal."""
+    points, triangles = situation.mesh()
+    vertex = situation.watched_vertex()
+    before = normals_and_heights(points, triangles)[0][vertex]
+    turns = []
+    for seed in SEEDS:
+        after = normals_and_heights(moved(points, triangles, share, seed), triangles)[0][vertex]
+        turns.append(math.degrees(math.acos(min(1.0, dot(before, after) / math.hypot(*before) / math.hypot(*after)))))
+    return max(turns)
+
+
 def perturbed(command, situation, rho, folder):
     """What random moves of the vertices and tilts of the lines make of one situation: seeds in which the line ends where it ought to."""
     answer = {}
@@ -30,15 +44,20 @@ def perturbed(command, situation, rho, folder):
             found = [length_of(command, situation, rho, folder, value * (kind == "moves"), value * (kind == "tilts"), seed) for seed in SEEDS]
             answer[kind][f"{value:g}"] = {"mean": sum(found) / len(found), "least": min(found), "most": max(found), "seeds": len(found),
                                           "gone": sum(length < 1.1 * situation.wanted for length in found)}
+            if kind == "moves":
+                answer[kind][f"{value:g}"]["turned_degrees"] = turned_degrees(situation, value)
     return answer
 
 
 def perturbed_table(answer, kind):
     rows = []
     for name, about in answer["perturbed"].items():
-        rows += [[name, value, f"{row['least']:.2f}", f"{row['mean']:.2f}", f"{row['most']:.2f}", f"{row['gone']} of {row['seeds']}"]
-                 for value, row in about[kind].items()]
-    return ["situation", {"moves": "largest move", "tilts": "largest tilt, radians"}[kind], "least length", "mean", "most", "gone"], rows
+        for value, row in about[kind].items():
+            rows.append([name, value, f"{row['least']:.2f}", f"{row['mean']:.2f}", f"{row['most']:.2f}", f"{row['gone']} of {row['seeds']}"])
+            if kind == "moves":
+                rows[-1].append(f"{row['turned_degrees']:.1f}")
+    head = ["situation", {"moves": "largest move", "tilts": "largest tilt, radians"}[kind], "least length", "mean", "most", "gone"]
+    return head + ["normal turned by at most, degrees"] * (kind == "moves"), rows
 
 
 def make(command, folder, page_folder):

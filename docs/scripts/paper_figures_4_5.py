@@ -37,6 +37,7 @@ def totals(meshes):
     return {"meshes": count, "fill": sum(m["fill"] for m in meshes) / count, "least_fill": min(m["fill"] for m in meshes),
             "overlapping_pairs": sum(m["overlapping_pairs"] for m in meshes), "inverted": sum(m["inverted"] for m in meshes),
             "with_overlaps": sum(m["overlapping_pairs"] > 0 for m in meshes), "certified": sum(m["certified"] for m in meshes),
+            "pinned": sum(m["pinned"] for m in meshes), "demanded_pins": sum(m["demanded_pins"] for m in meshes),
             "nothing": sum(m["tets"] == 0 for m in meshes)}
 
 

@@ -41,12 +41,13 @@ def figures(report):
     """What the tables say of one shell; of one without a tet too."""
     if report is None:
         return {"fill": 0.0, "covered_percent": 0.0, "twice_percent": 0.0, "inverted": 0, "tets": 0, "overlapping_pairs": 0,
-                "certified": False, "stuck_percent": 100.0}
+                "certified": False, "stuck_percent": 100.0, "pinned": 0, "demanded_pins": 0}
     overlaps, coverage = report["overlaps"], report["coverage"] or {"covered_share": 0, "overlap_share": 0}
     return {"fill": report["volume"]["fill"], "covered_percent": 100 * coverage["covered_share"],
             "twice_percent": 100 * coverage["overlap_share"], "inverted": report["tets"]["inverted"],
             "tets": report["tets"]["tets"], "overlapping_pairs": overlaps["pairs"]["count"] if overlaps else 0,
             "certified": report["certificate"]["certified"],
+            "pinned": report["prisms"]["pinned_vertices"], "demanded_pins": report["prisms"]["demanded_pins"]["count"],
             "stuck_percent": 100 * report["prisms"]["pinned_vertices"] / report["mesh"]["points"]}
 
 
