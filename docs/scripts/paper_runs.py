@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parts of paper.py share: one run of the command with its report, and the half that a mesh belongs to."""
+"""What the parts of paper.py share: one run of the command with its report, and what the tables say of it."""
 import json
 import os
 import pathlib
@@ -27,18 +27,6 @@ def build(command, mesh, flags):
         return json.loads(report.read_text()), usage.ru_utime + usage.ru_stime
 
 
-def half_of(name):
-    """tuned: looked at while numbers of the library were chosen; judging: only measured (docs/measurements/scan_meshes.txt)."""
-    if name.startswith("paper/"):
-        return "tuned"
-    lists = pathlib.Path(__file__).parent.parent / "measurements" / "scan_meshes.txt"
-    for line in lists.read_text().splitlines():
-        half, _, mesh = line.partition(" ")
-        if mesh == pathlib.Path(name).name:
-            return {"tuning": "tuned"}.get(half, half)
-    return "not listed"
-
-
 def with_tables(answer, **tables):
     """`tables`: name -> (head, rows), kept beside the numbers for paper_pages.py."""
     answer["tables"] = {name: {"head": head, "rows": rows} for name, (head, rows) in tables.items()}
@@ -53,12 +41,13 @@ def figures(report):
     """What the tables say of one shell; of one without a tet too."""
     if report is None:
         return {"fill": 0.0, "covered_percent": 0.0, "twice_percent": 0.0, "inverted": 0, "tets": 0, "overlapping_pairs": 0,
-                "certified": False, "stuck_percent": 100.0}
+                "certified": False, "stuck_percent": 100.0, "pinned": 0, "demanded_pins": 0}
     overlaps, coverage = report["overlaps"], report["coverage"] or {"covered_share": 0, "overlap_share": 0}
     return {"fill": report["volume"]["fill"], "covered_percent": 100 * coverage["covered_share"],
             "twice_percent": 100 * coverage["overlap_share"], "inverted": report["tets"]["inverted"],
             "tets": report["tets"]["tets"], "overlapping_pairs": overlaps["pairs"]["count"] if overlaps else 0,
             "certified": report["certificate"]["certified"],
+            "pinned": report["prisms"]["pinned_vertices"], "demanded_pins": report["prisms"]["demanded_pins"]["count"],
             "stuck_percent": 100 * report["prisms"]["pinned_vertices"] / report["mesh"]["points"]}
 
 

@@ -17,6 +17,8 @@ def main():
     data = {"file": {"a": {"b": 1.26}, "tables": {"t": {"head": ["x"], "rows": [["1"]]}}}}
     right = "<!--= file a/b .1f -->1.3<!--=-->"
     assert rendered(right, data) == right and rendered(right.replace("1.3", "1.2"), data) != right.replace("1.3", "1.2")
+    spaced = {"file": {"tentacle, 70 degrees": {"gone": 9}, "tables": {}}}
+    assert rendered("<!--= file tentacle, 70 degrees/gone d -->8<!--=-->", spaced) == "<!--= file tentacle, 70 degrees/gone d -->9<!--=-->"
     wrong_table = "<!-- table file t: begin -->\n\n| x |\n| --- |\n| 2 |\n\n<!-- table file t: end -->"
     assert rendered(wrong_table, data) == wrong_table.replace("2", "1")
     try:
