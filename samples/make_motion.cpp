@@ -4,8 +4,8 @@
 //
 //   make_motion samples/meshes/creature.obj walk 100 FOLDER    FOLDER/walk.0001.obj and so on
 //
-// Motions are walk (of the creature), twist (half a turn) and squash (to half its length). The
-// triangles are those of the mesh in every frame.
+// Motions are walk (of the creature), twist (half a turn), squash (to half its length) and bend (a
+// quarter of a circle, both ends up). The triangles are those of the mesh in every frame.
 
 #include "shapes/motions.h"
 
@@ -31,7 +31,10 @@ std::vector<openvdb::Vec3s> points_at(const std::string& motion,
         return twist(rest, 180, phase);
     if (motion == "squash")
         return squash(rest, 0.5, phase);
-    throw std::invalid_argument("no motion \"" + motion + "\": walk, twist and squash are known");
+    if (motion == "bend")
+        return bend(rest, 90, phase);
+    throw std::invalid_argument("no motion \"" + motion +
+                                "\": walk, twist, squash and bend are known");
 }
 
 } // namespace
@@ -39,7 +42,7 @@ std::vector<openvdb::Vec3s> points_at(const std::string& motion,
 int main(int argc, char** argv)
 {
     if (argc != 5) {
-        std::cerr << "usage: make_motion MESH walk|twist|squash FRAMES FOLDER\n";
+        std::cerr << "usage: make_motion MESH walk|twist|squash|bend FRAMES FOLDER\n";
         return 2;
     }
     try {

@@ -149,12 +149,12 @@ def add_camera_and_light(centre, width, height):
     bpy.context.scene.camera = eye
 
 
-def render(picture, size, samples):
+def render(picture, size, samples, background=0.02):
     scene = bpy.context.scene
     world = scene.world or bpy.data.worlds.new("world")
     scene.world = world
     world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.02, 0.02, 0.02, 1)
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (background, background, background, 1)
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples = samples

@@ -4,7 +4,7 @@
     vdb_shell volumes rest.vdb --volumes density --density-ramp 0:1,0.2:1,0.25:0 -o smoke.vdb
     vdb_shell deform smoke.vdb --posed posed.vdb -o posed_smoke.vdb
     blender --background --factory-startup --python samples/blender/show_volumes.py -- \
-        smoke.vdb posed_smoke.vdb picture.png [--up y] [--size 640 360] [--samples 32]
+        smoke.vdb posed_smoke.vdb picture.png [--up y] [--turn 90] [--size 640 360] [--samples 32]
 
 Written for Blender 3.4.
 """
@@ -26,6 +26,8 @@ def arguments():
     parser = argparse.ArgumentParser(prog="show_volumes.py")
     parser.add_argument("files", nargs="+", help="one or more .vdb, and last the .png to write")
     parser.add_argument("--up", choices=("y", "z"), default="z", help="axis of the volumes that is up")
+    parser.add_argument("--turn", type=float, default=0, help="degrees about the axis that is up")
+    parser.add_argument("--light", type=float, default=3, help="strength of the sun")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
     parser.add_argument("--samples", type=int, default=32)
     return parser.parse_args(own)
@@ -54,7 +56,8 @@ def main():
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     # Blender's z is up.
-    upright = Matrix.Rotation(math.radians(90 if options.up == "y" else 0), 4, "X")
+    upright = (Matrix.Rotation(math.radians(options.turn), 4, "Z")
+               @ Matrix.Rotation(math.radians(90 if options.up == "y" else 0), 4, "X"))
     made = [add_volume(volume, upright) for volume in volumes]
     bpy.context.view_layer.update()
     boxes = []
@@ -69,6 +72,7 @@ def main():
         thing.data.materials.append(smoke(max(size)))
     width, height = options.size
     add_camera_and_light(Vector((0, 0, 0)), max(len(made) * step, 1.3 * size.z * width / height), size.z)
+    bpy.data.lights["sun"].energy = options.light
     render(picture, options.size, options.samples)
 
 

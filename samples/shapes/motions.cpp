@@ -184,4 +184,20 @@ std::vector<Vec3s> squash(const std::vector<Vec3s>& rest, double share, double p
     });
 }
 
+std::vector<Vec3s> bend(const std::vector<Vec3s>& rest, double degrees, double phase)
+{
+    const double whole = degrees * kPi / 180 * phase;
+    if (whole == 0)
+        return rest;
+    return along_axis(rest, [&](const Vec3d& q, double share, int axis) {
+        if (share == 0)
+            return q;
+        const double angle = whole * share, radius = q[axis] / angle; // length over whole angle
+        Vec3d bent = q;
+        bent[axis] = (radius - q[1]) * std::sin(angle);
+        bent[1] = radius - (radius - q[1]) * std::cos(angle);
+        return bent;
+    });
+}
+
 } // namespace vdb_shell::samples

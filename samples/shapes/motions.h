@@ -22,4 +22,9 @@ std::vector<openvdb::Vec3s> twist(const std::vector<openvdb::Vec3s>& rest, doubl
 std::vector<openvdb::Vec3s> squash(const std::vector<openvdb::Vec3s>& rest, double share,
                                    double phase);
 
+/// Its longest axis on an arc of `degrees` at phase 1, both ends moved towards y; its length is
+/// kept on the axis. Precondition: its longest axis is not y, and 0 < `degrees` < 360.
+std::vector<openvdb::Vec3s> bend(const std::vector<openvdb::Vec3s>& rest, double degrees,
+                                 double phase);
+
 } // namespace vdb_shell::samples

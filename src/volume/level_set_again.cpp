@@ -11,6 +11,11 @@ namespace vdb_shell
 void make_distances_again(openvdb::FloatGrid& grid, float half_width_voxels)
 {
     openvdb::tools::signedFloodFill(grid.tree());
+    make_distances_of_signed(grid, half_width_voxels);
+}
+
+void make_distances_of_signed(openvdb::FloatGrid& grid, float half_width_voxels)
+{
     grid.setTree(openvdb::tools::levelSetRebuild(grid, 0.0f, half_width_voxels)->treePtr());
 }
 

@@ -10,4 +10,7 @@ namespace vdb_shell
 /// distances with as many voxels on either side of its surface.
 void make_distances_again(openvdb::FloatGrid& grid, float half_width_voxels);
 
+/// The same of a grid whose inactive values have their signs already.
+void make_distances_of_signed(openvdb::FloatGrid& grid, float half_width_voxels);
+
 } // namespace vdb_shell

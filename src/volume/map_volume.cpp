@@ -102,6 +102,9 @@ private:
     std::size_t limited_ = 0;
 };
 
+/// Voxels on either side of a level set's surface, as OpenVDB has them (LEVEL_SET_HALF_WIDTH).
+constexpr float kHalfWidth = 3;
+
 /// Where a voxel is in the texture.
 struct TexturePlace {
     Vec3d index{0.0};
@@ -233,7 +236,13 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
     }
     const double voxel = options.voxel_size;
     const Int32Grid::Ptr tets = tet_index_grid(map.tets(), voxel, "map", progress);
-    VoxelLeaves<Grid> leaves(texture.getName(), texture.background(), tets->tree().leafCount());
+    // Of a level set all voxels are kept, also those far from its surface, whose signs say where
+    // the inside is. What is cut off by the end of the shell is closed there: beyond is outside.
+    const bool level_set =
+        std::is_same_v<Grid, FloatGrid> && texture.getGridClass() == openvdb::GRID_LEVEL_SET;
+    const auto background =
+        level_set ? typename Grid::ValueType(kHalfWidth * float(voxel)) : texture.background();
+    VoxelLeaves<Grid> leaves(texture.getName(), background, tets->tree().leafCount());
     std::vector<Sums> sums(tets->tree().leafCount());
     for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
         TiledSampler<Grid> sampler(texture, tile, options.most_samples);
@@ -254,7 +263,7 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
             sums[i].stretch += share * squared_norm(to_shell) / 3;
             sums[i].mirrored += to_world.det() < 0;
             typename Grid::ValueType value;
-            if (sampler.mean(place.index, voxel * place.by_world, value))
+            if (sampler.mean(place.index, voxel * place.by_world, value) || level_set)
                 leaves.set_on(i, at.pos(), carried(value, to_shell, texture, options.keep_mass));
         }
         sums[i].limited = sampler.limited();
@@ -270,8 +279,8 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
         figures.stretch = std::sqrt(all.stretch / all.texture) / std::cbrt(all.shell / all.texture);
     typename Grid::Ptr made = leaves.grid(tets->transform());
     if constexpr (std::is_same_v<Grid, FloatGrid>) {
-        if (texture.getGridClass() == openvdb::GRID_LEVEL_SET && made->activeVoxelCount() > 0)
-            make_distances_again(*made, 3.0f);
+        if (level_set && made->activeVoxelCount() > 0)
+            make_distances_of_signed(*made, kHalfWidth);
     }
     const openvdb::math::Transform::Ptr transform = made->transformPtr();
     made->insertMeta(texture);

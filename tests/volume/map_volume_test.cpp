@@ -2,11 +2,15 @@
 #include "vdb_shell/volume/map_volume.h"
 
 #include "support/shapes.h"
+#include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/shell/shell_stack.h"
+#include "vdb_shell/volume/shell_sampler.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
+#include <openvdb/tools/VolumeToMesh.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -210,6 +214,193 @@ TEST(MapVolume, VectorsAreTurnedAndStretched)
     const auto kept = vectors();
     for (auto value = kept->cbeginValueOn(); value; ++value)
         ASSERT_LT((*value - Vec3s(1, 2, 4)).length(), 1e-5);
+}
+
+/// A sphere of 20 voxels radius with a band of three; the tile is a cube of its active voxels.
+FloatGrid::Ptr sphere_texture()
+{
+    const FloatGrid::Ptr sphere = openvdb::tools::createLevelSetSphere<FloatGrid>(
+        20.0f, openvdb::Vec3f(0), 1.0f, openvdb::LEVEL_SET_HALF_WIDTH);
+    sphere->setName("surface");
+    return sphere;
+}
+
+/// Norms of central differences at voxels within one of the surface: farther out OpenVDB's
+/// rebuilding is rougher.
+void expect_unit_gradients(const FloatGrid& grid)
+{
+    const auto at = grid.getConstAccessor();
+    const double voxel = grid.voxelSize()[0];
+    std::size_t looked_at = 0;
+    for (auto value = grid.cbeginValueOn(); value; ++value) {
+        if (std::abs(*value) > voxel)
+            continue;
+        Vec3d gradient(0.0);
+        for (int axis = 0; axis < 3; ++axis) {
+            openvdb::Coord low = value.getCoord(), high = low;
+            --low[axis], ++high[axis];
+            gradient[axis] = (at.getValue(high) - at.getValue(low)) / (2 * voxel);
+        }
+        ++looked_at;
+        ASSERT_NEAR(gradient.length(), 1, 0.1) << value.getCoord();
+    }
+    EXPECT_GT(looked_at, 1000U);
+}
+
+TEST(MapVolume, ALevelSetIsOneAgainWithItsSurfaceWhereTheTilesSurfaceIsMappedTo)
+{
+    const Slab slab;
+    const FloatGrid::Ptr sphere = sphere_texture();
+    const openvdb::CoordBBox tile = sphere->evalActiveVoxelBoundingBox();
+    ASSERT_EQ(tile.dim()[0], tile.dim()[2]);
+    const double side = tile.dim()[0];
+    constexpr double kVoxel = 0.0125;
+    // Tiles are 0.5 high and as long, then twice as long: spheres, and ellipsoids.
+    for (const double repeat : {4.0, 2.0}) {
+        MapOptions options = voxels_of(kVoxel);
+        options.repeat_u = options.repeat_v = repeat;
+        MapFigures figures;
+        const GridBasePtr made = map_volume(*sphere, slab.map(), slab.texture, options, figures);
+        ASSERT_EQ(made->getGridClass(), openvdb::GRID_LEVEL_SET);
+        EXPECT_NEAR(floats(made).background(), 3 * kVoxel, 1e-6);
+        expect_unit_gradients(floats(made));
+        const Vec3d semi_axes = 20 / side * Vec3d(2 / repeat, 2 / repeat, 0.5);
+        std::vector<Vec3s> points;
+        std::vector<openvdb::Vec4I> quads;
+        openvdb::tools::volumeToMesh(floats(made), points, quads);
+        EXPECT_GT(points.size(), 1000U);
+        double area = 0;
+        for (const Vec3s& point : points) {
+            const double length = 2 / repeat;
+            const Vec3d p(std::fmod(point[0], length) - length / 2,
+                          std::fmod(point[1], length) - length / 2, point[2] - 0.75);
+            // Nearly the distance from the ellipsoid: over the gradient's length.
+            const Vec3d scaled = p / semi_axes;
+            const double off =
+                (scaled.length() - 1) * scaled.length() / (scaled / semi_axes).length();
+            ASSERT_LT(std::abs(off), 0.5 * kVoxel) << point;
+        }
+        for (const openvdb::Vec4I& quad : quads)
+            area += 0.5 * double((points[quad[2]] - points[quad[0]])
+                                     .cross(points[quad[3]] - points[quad[1]])
+                                     .length());
+        // All of each sphere, and nothing inside.
+        const double a = semi_axes[0], c = semi_axes[2];
+        const double e = std::sqrt(std::max(0.0, 1 - c * c / (a * a)));
+        const double each = e == 0
+                                ? 4 * M_PI * a * a
+                                : 2 * M_PI * a * a + M_PI * c * c / e * std::log((1 + e) / (1 - e));
+        EXPECT_NEAR(area, repeat * repeat * each, 0.02 * repeat * repeat * each);
+    }
+}
+
+TEST(MapVolume, ALevelSetThatReachesTheEndOfTheShellIsClosedThere)
+{
+    // The lower halves of four spheres, with their middles in the plane on which the slab ends.
+    const Slab slab;
+    const FloatGrid::Ptr sphere = sphere_texture();
+    constexpr double kVoxel = 0.0125;
+    const double radius = 20.0 / sphere->evalActiveVoxelBoundingBox().dim()[0];
+    MapOptions options = voxels_of(kVoxel);
+    options.repeat_u = options.repeat_v = 2;
+    options.repeat_depth = 0.5;
+    MapFigures figures;
+    const GridBasePtr made = map_volume(*sphere, slab.map(), slab.texture, options, figures);
+    std::vector<Vec3s> points;
+    std::vector<openvdb::Vec4I> quads;
+    openvdb::tools::volumeToMesh(floats(made), points, quads);
+    ASSERT_GT(points.size(), 1000U);
+    for (const Vec3s& point : points)
+        ASSERT_LT(point[2], 1 + kVoxel);
+    double volume = 0;
+    for (const openvdb::Vec4I& quad : quads)
+        for (const int k : {1, 2})
+            volume += Vec3d(points[quad[0]])
+                          .cross(Vec3d(points[quad[k]]))
+                          .dot(Vec3d(points[quad[k + 1]])) /
+                      6;
+    // The end is met to a voxel.
+    EXPECT_NEAR(std::abs(volume), 4 * 2 * M_PI / 3 * std::pow(radius, 3),
+                4 * M_PI * radius * radius * kVoxel);
+}
+
+/// One prism of three positive tets whose map turns back between its ends: the inner triangle is
+/// the outer one by a matrix whose trace is below -2 times the root of its determinant.
+ShellStack prism_that_turns_back()
+{
+    constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                   {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    for (const auto& order : kOrders) {
+        PrismShell shell;
+        shell.triangles = {{0, 1, 2}};
+        const openvdb::Vec2d ends[3] = {{0, 0}, {1, 0}, {0, 1}};
+        for (const int k : order) {
+            const openvdb::Vec2d& p = ends[k];
+            shell.outer.emplace_back(float(p[0]), float(p[1]), 1);
+            shell.inner.emplace_back(float(-p[0] + 0.2 * p[1]), float(-0.2 * p[0]), 0);
+            shell.stop.push_back(StopReason::thickness);
+        }
+        if (order[1] != (order[0] + 1) % 3)
+            std::swap(shell.triangles[0][1], shell.triangles[0][2]);
+        const ShellStack stack = one_layer(shell, split_prisms(shell, {}));
+        const TetSigns signs = count_tet_signs(make_tets(stack));
+        if (signs.inverted.count + signs.flat.count == 0)
+            return stack;
+    }
+    return {};
+}
+
+TEST(MapVolume, IsLinearInTheTetsOfAPrismThatTurnsBack)
+{
+    const ShellStack stack = prism_that_turns_back();
+    ASSERT_EQ(stack.layers.size(), 1U);
+    const ShellMap map(stack, make_tets(stack));
+    ASSERT_EQ(map.linear_prisms(), 1U);
+    // u and v are the outer triangle's x and y: of an inner corner those of the outer one above.
+    const PrismShell& shell = stack.layers[0];
+    const auto uvw = [&](std::uint32_t point) {
+        const bool outer = point < 3;
+        const Vec3s& above = shell.outer[outer ? point : point - 3];
+        return Vec3d(above[0], above[1], outer ? 1 : 0);
+    };
+    Texture texture(1);
+    for (int k = 0; k < 3; ++k) {
+        const Vec3d at = uvw(shell.triangles[0][k]);
+        texture[0][std::size_t(k)] = Vec2d(at[0], at[1]);
+    }
+    MapFigures figures;
+    MapOptions options = voxels_of(0.03);
+    options.most_samples = 1; // a mean would reach into the next tile
+    const GridBasePtr made =
+        map_volume(*texture_of([](double u, double v, double w) { return 1 + u + 2 * v + 4 * w; }),
+                   map, texture, options, figures);
+    const ShellSampler sampler(map);
+    std::size_t compared = 0;
+    for (auto value = floats(made).cbeginValueOn(); value; ++value) {
+        const Vec3d p = made->indexToWorld(value.getCoord());
+        const ShellPlace place = sampler.find(p);
+        ASSERT_TRUE(place.found());
+        const openvdb::Vec4I& tet = map.tets().tets[place.tet];
+        // Weights by volumes.
+        Vec3d at(0.0);
+        double whole = 0;
+        for (int k = 0; k < 4; ++k) {
+            std::array<Vec3d, 4> corner;
+            for (int j = 0; j < 4; ++j)
+                corner[std::size_t(j)] = j == k ? p : Vec3d(map.tets().points[tet[j]]);
+            const double volume =
+                (corner[1] - corner[0]).cross(corner[2] - corner[0]).dot(corner[3] - corner[0]);
+            at += volume * uvw(tet[k]);
+            whole += volume;
+        }
+        at /= whole;
+        const Vec3d rest = Vec3d(1) - at;
+        if (std::min({at[0], at[1], rest[0], rest[1]}) < 0.025 || std::min(at[2], rest[2]) < 0.05)
+            continue; // the next tile comes in
+        ASSERT_NEAR(*value, 1 + at[0] + 2 * at[1] + 4 * at[2], 1e-5) << p;
+        ++compared;
+    }
+    EXPECT_GT(compared, 1000U);
 }
 
 TEST(MapVolume, HasTheSameBitsOnAnyNumberOfThreads)

@@ -5,6 +5,7 @@
 #include "mesh/triangle_corners.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
+#include "support/tapered.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/layers/cut_layers.h"
 #include "vdb_shell/shell/core_tets.h"
@@ -168,6 +169,16 @@ TEST(TetDistance, LayersDoNotChangeIt)
     const ShellStack three = cut_layers(one, {3}, PrismTest::twelve_tets).stack;
     ASSERT_EQ(three.layers.size(), 3U);
     expect_exact(three, make_tets(three));
+}
+
+TEST(TetDistance, IsExactWherePrismsHaveOneTetOrTwo)
+{
+    for (const ShellStack& stack : {test::coned(test::icosphere(1.0, 2), openvdb::Vec3s(0.1f)),
+                                    test::pinched_rod(), test::layers_to_a_point()}) {
+        const TetMesh tets = make_tets(stack);
+        ASSERT_LT(tets.tets.size(), 3 * stack.layers.size() * stack.triangles().size());
+        expect_exact(stack, tets);
+    }
 }
 
 TEST(TetDistance, LeavesTheVoidAlone)

@@ -52,7 +52,8 @@ struct MapFigures {
 /// map shrinks the mean over what the voxel covers there, by samples no farther apart than voxels
 /// of the texture. Vectors are turned and stretched with what they are in, unless their type is
 /// invariant. Distances of level sets are scaled by the map's mean scale there and then made
-/// distances again. Name, class, half floats and metadata stay.
+/// distances again; what reaches the end of the shell, or of the range of depths, is closed there.
+/// Name, class, half floats and metadata stay.
 ///
 /// `corner`: texture coordinates of the corners of the shell's triangles. Voxels have the size of
 /// the options and a centre at the origin. Same bits for any number of threads. Throws
