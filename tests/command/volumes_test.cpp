@@ -84,6 +84,7 @@ TEST_F(Volumes, AreWrittenAndCarriedToThePose)
 
 TEST_F(Volumes, PointsAndVelocitiesGoWithThem)
 {
+    openvdb::initialize();
     ASSERT_EQ(run("volumes " + rest + " --volumes density -o " + fog).status, ExitCode::success);
     ASSERT_EQ(run("pose " + rest + " " + file("long.obj") + " --mesh-before " + file("ball.obj") +
                   " --frame-seconds 0.5 -q -o " + posed)
