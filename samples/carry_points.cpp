@@ -20,8 +20,7 @@ try {
     const auto rest = vdb_shell::read_shell_vdb(words[1]),
                posed = vdb_shell::read_shell_vdb(words[2]);
     vdb_shell::ShellMap from(rest.stack, rest.tets), to(posed.stack, posed.tets);
-    from.make_linear_as(to);
-    to.make_linear_as(from);
+    make_linear_alike(from, to);
     const vdb_shell::ShellSampler sampler(from);
     openvdb::Vec3d point;
     while (std::cin >> point[0] >> point[1] >> point[2]) {

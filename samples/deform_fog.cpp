@@ -20,7 +20,8 @@ try {
     openvdb::initialize();
     const auto rest = vdb_shell::read_shell_vdb(words[2]),
                posed = vdb_shell::read_shell_vdb(words[3]);
-    const vdb_shell::ShellMap from(rest.stack, rest.tets), to(posed.stack, posed.tets);
+    vdb_shell::ShellMap from(rest.stack, rest.tets), to(posed.stack, posed.tets);
+    make_linear_alike(from, to);
     std::vector<vdb_shell::GridBasePtr> carried;
     for (const auto& fog : vdb_shell::read_volumes(words[1])) {
         vdb_shell::DeformFigures figures;

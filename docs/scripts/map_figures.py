@@ -13,15 +13,11 @@ import subprocess
 import tempfile
 
 from runs import replace_tables, table
-
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Those of volume_figures.py.
-TUNING = ["paper/cow", "creature"]
-JUDGING = ["paper/teapot", "paper/bunny_low_resolution", "paper/knot", "artist/fandisk", "artist/cheburashka", "artist/rocker-arm"]
+from volume_meshes import JUDGING, TUNING, half, path
 
 
 def measure(options, name, folder):
-    mesh = ROOT / "samples/meshes/creature.obj" if name == "creature" else options.meshes / f"{name}.obj"
+    mesh = path(options.meshes, name)
     shell = folder / "shell.vdb"
     subprocess.run([options.build / "src/vdb_shell", "build", "-q", mesh, "-o", shell], check=True)
     text = subprocess.run([options.build / "tests/map_probe", shell], check=True, capture_output=True, text=True).stdout
@@ -38,7 +34,7 @@ def main():
     for name in TUNING + JUDGING:
         with tempfile.TemporaryDirectory() as folder:
             results.append(measure(options, name, pathlib.Path(folder)))
-    rows = [[r["name"].split("/")[-1], "tuning" if r["name"] in TUNING else "judging", str(r["voxels"]), f"{r['ratio_single']:.2f}",
+    rows = [[r["name"].split("/")[-1], half(r["name"]), str(r["voxels"]), f"{r['ratio_single']:.2f}",
              f"{r['ratio_filtered']:.2f}", f"{100 * r['limited_samples'] / r['voxels']:.2f}", f"{r['seconds']:.2f}"] for r in results]
     head = ["mesh", "half", "voxels", "one sample", "filtered", "limited samples, %", "seconds, filtered"]
     replace_tables(options.page, table(head, rows), "map")

@@ -14,18 +14,15 @@ import subprocess
 import tempfile
 
 from runs import replace_tables, table
+from volume_meshes import JUDGING, TUNING, half, path
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-# The map was made with the first half in view; the others were only measured.
-TUNING = ["paper/cow", "creature"]
-JUDGING = ["paper/teapot", "paper/bunny_low_resolution", "paper/knot", "artist/fandisk", "artist/cheburashka", "artist/rocker-arm"]
 FRAMES, MEASURED = 8, 4
 # The creature's walk: its elbows are bent most in the middle.
 WALK_FRAMES, WALK_MEASURED = 100, (12, 37, 62, 87)  # frames from 0
 
 
 def measure(options, name, motion, folder, count=FRAMES, frame=MEASURED):
-    mesh = ROOT / "samples/meshes/creature.obj" if name == "creature" else options.meshes / f"{name}.obj"
+    mesh = path(options.meshes, name)
     command = options.build / "src/vdb_shell"
     shell, posed = folder / "rest.vdb", folder / "posed.vdb"
     frames = folder / "frames"
@@ -41,7 +38,7 @@ def measure(options, name, motion, folder, count=FRAMES, frame=MEASURED):
 
 def rows(results):
     head = ["mesh", "motion", "half", "voxels", "prisms", "linear", "there and back, mean", ".999", "most", "values, mean", "most"]
-    points = [[r["name"].split("/")[-1], r["motion"], "tuning" if r["name"] in TUNING else "judging", f"{r['voxels']}",
+    points = [[r["name"].split("/")[-1], r["motion"], half(r["name"]), f"{r['voxels']}",
                f"{r['prisms']:.0f}", f"{r['linear_prisms']:.0f}", f"{r['round_trip_mean_voxels']:.1e}", f"{r['round_trip_99.9_voxels']:.1e}",
                f"{r['round_trip_most_voxels']:.1e}", f"{r['volume_there_and_back_mean']:.4f}",
                f"{r['volume_there_and_back_most']:.3f}"] for r in results]

@@ -18,16 +18,35 @@ import bpy
 from mathutils import Matrix, Vector
 
 
+def own_words():
+    """What stands behind "--": the rest is Blender's."""
+    return sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+
+
+def add_picture_options(parser):
+    parser.add_argument("--up", choices=("y", "z"), default="z", help="axis of what is shown that is up")
+    parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
+    parser.add_argument("--samples", type=int, default=32)
+
+
 def arguments():
-    own = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     parser = argparse.ArgumentParser(prog="show_shell.py")
     parser.add_argument("volume", help="the .vdb")
     parser.add_argument("tets", help="the .node, its .ele beside it")
     parser.add_argument("picture", help=".png to write")
-    parser.add_argument("--up", choices=("y", "z"), default="z", help="axis of the mesh that is up")
-    parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
-    parser.add_argument("--samples", type=int, default=32)
-    return parser.parse_args(own)
+    add_picture_options(parser)
+    return parser.parse_args(own_words())
+
+
+def clear_scene():
+    for thing in list(bpy.data.objects):
+        bpy.data.objects.remove(thing)
+
+
+def upright_matrix(up, turn=0):
+    """Blender's z is up; `turn` in degrees about that."""
+    return (Matrix.Rotation(math.radians(turn), 4, "Z")
+            @ Matrix.Rotation(math.radians(90 if up == "y" else 0), 4, "X"))
 
 
 def rows(path):
@@ -170,10 +189,8 @@ def render(picture, size, samples, background=0.02):
 
 def main():
     options = arguments()
-    for thing in list(bpy.data.objects):
-        bpy.data.objects.remove(thing)
-    # Blender's z is up.
-    upright = Matrix.Rotation(math.radians(90 if options.up == "y" else 0), 4, "X")
+    clear_scene()
+    upright = upright_matrix(options.up)
     points, layers, tets = read_tets(options.tets)
     placed = [upright @ p for p in points]
     low, high = (Vector(f(p[axis] for p in placed) for axis in range(3)) for f in (min, max))

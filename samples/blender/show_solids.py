@@ -11,33 +11,30 @@ two colours of marble a body is. Written for Blender 3.4 with pyopenvdb, as Debi
 """
 
 import argparse
-import math
 import os
 import sys
 
 import bpy
 import numpy
 import pyopenvdb as vdb
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from show_shell import add_camera_and_light, new_material, render  # noqa: E402
+from show_shell import (add_camera_and_light, add_picture_options, clear_scene, new_material,  # noqa: E402
+                        own_words, render, upright_matrix)
 
 PALE, DARK = numpy.array([0.85, 0.82, 0.76]), numpy.array([0.04, 0.11, 0.10])
 
 
 def arguments():
-    own = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     parser = argparse.ArgumentParser(prog="show_solids.py")
     parser.add_argument("volume", help="the .vdb")
     parser.add_argument("picture", help=".png to write")
     parser.add_argument("--body", action="append", required=True, help="GRID or GRID:RED,GREEN,BLUE")
     parser.add_argument("--colour", help="grid that colours the bodies")
-    parser.add_argument("--up", choices=("y", "z"), default="z", help="axis of the volumes that is up")
     parser.add_argument("--turn", type=float, default=0, help="degrees about the axis that is up")
-    parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
-    parser.add_argument("--samples", type=int, default=32)
-    return parser.parse_args(own)
+    add_picture_options(parser)
+    return parser.parse_args(own_words())
 
 
 def values_at(grid, points):
@@ -91,11 +88,8 @@ def stone(colour):
 
 def main():
     options = arguments()
-    for thing in list(bpy.data.objects):
-        bpy.data.objects.remove(thing)
-    # Blender's z is up.
-    upright = (Matrix.Rotation(math.radians(options.turn), 4, "Z")
-               @ Matrix.Rotation(math.radians(90 if options.up == "y" else 0), 4, "X"))
+    clear_scene()
+    upright = upright_matrix(options.up, options.turn)
     colours = vdb.read(options.volume, options.colour) if options.colour else None
     corners = []
     for words in options.body:

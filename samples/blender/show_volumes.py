@@ -10,27 +10,24 @@ Written for Blender 3.4.
 """
 
 import argparse
-import math
 import os
 import sys
 
 import bpy
-from mathutils import Matrix, Vector
+from mathutils import Vector
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from show_shell import add_camera_and_light, add_volume, new_material, render  # noqa: E402
+from show_shell import (add_camera_and_light, add_picture_options, add_volume, clear_scene,  # noqa: E402
+                        new_material, own_words, render, upright_matrix)
 
 
 def arguments():
-    own = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     parser = argparse.ArgumentParser(prog="show_volumes.py")
     parser.add_argument("files", nargs="+", help="one or more .vdb, and last the .png to write")
-    parser.add_argument("--up", choices=("y", "z"), default="z", help="axis of the volumes that is up")
     parser.add_argument("--turn", type=float, default=0, help="degrees about the axis that is up")
     parser.add_argument("--light", type=float, default=3, help="strength of the sun")
-    parser.add_argument("--size", type=int, nargs=2, default=(640, 360))
-    parser.add_argument("--samples", type=int, default=32)
-    return parser.parse_args(own)
+    add_picture_options(parser)
+    return parser.parse_args(own_words())
 
 
 def smoke(size):
@@ -53,11 +50,8 @@ def smoke(size):
 def main():
     options = arguments()
     *volumes, picture = options.files
-    for thing in list(bpy.data.objects):
-        bpy.data.objects.remove(thing)
-    # Blender's z is up.
-    upright = (Matrix.Rotation(math.radians(options.turn), 4, "Z")
-               @ Matrix.Rotation(math.radians(90 if options.up == "y" else 0), 4, "X"))
+    clear_scene()
+    upright = upright_matrix(options.up, options.turn)
     made = [add_volume(volume, upright) for volume in volumes]
     bpy.context.view_layer.update()
     boxes = []

@@ -114,8 +114,7 @@ int run_deform(const DeformArguments& arguments, Context& context)
     if (!from)
         throw InvalidOption(arguments.posed.string() +
                             ": it is at rest; give --posed a shell that pose wrote, or --rest");
-    from->make_linear_as(*posed.map);
-    posed.map->make_linear_as(*from);
+    make_linear_alike(*from, *posed.map);
     std::unique_ptr<ShellMap> velocity;
     if (arguments.velocity && !(velocity = map_of_velocities(posed)))
         throw InvalidOption(arguments.posed.string() +

@@ -135,12 +135,13 @@ void ShellMap::count_prisms()
     }
 }
 
-void ShellMap::make_linear_as(const ShellMap& other)
+void make_linear_alike(ShellMap& a, ShellMap& b)
 {
-    assert(curved_.size() == other.curved_.size());
-    for (std::size_t p = 0; p < curved_.size(); ++p)
-        curved_[p] = curved_[p] && other.curved_[p];
-    count_prisms();
+    assert(a.curved_.size() == b.curved_.size());
+    for (std::size_t p = 0; p < a.curved_.size(); ++p)
+        a.curved_[p] = b.curved_[p] = a.curved_[p] && b.curved_[p];
+    a.count_prisms();
+    b.count_prisms();
 }
 
 Vec4d ShellMap::tet_weights(std::uint32_t tet, const Vec3d& point) const

@@ -3,17 +3,15 @@
 // Times `map_volume` on a shell: map_probe SHELL.vdb. Prints one JSON object;
 // docs/scripts/map_figures.py makes a page of several.
 
+#include "benchmarks/resampling.h"
 #include "vdb_shell/volume/map_volume.h"
 #include "vdb_shell/write/vdb_file.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/GridTransformer.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 
 namespace
 {
@@ -21,13 +19,6 @@ namespace
 using namespace vdb_shell;
 using openvdb::FloatGrid;
 using openvdb::Vec3d;
-
-double seconds(const std::function<void()>& work)
-{
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 constexpr int kTile = 64; // voxels a side
 
@@ -79,8 +70,8 @@ int main(int count, char** words)
     const auto corner = projected(file.stack, kTile * filtered.voxel_size);
     const FloatGrid::Ptr texture = tile();
     MapFigures figures;
-    double with = 1e30, without = 1e30, resample = 1e30;
-    std::size_t resampled_voxels = 1;
+    double with = 1e30, without = 1e30;
+    Resampling resampling;
     // The best of three of each: the machine does other things as well.
     for (int i = 0; i < 3; ++i) {
         GridBasePtr made;
@@ -88,18 +79,9 @@ int main(int count, char** words)
             without, seconds([&] { made = map_volume(*texture, map, corner, single, figures); }));
         with = std::min(
             with, seconds([&] { made = map_volume(*texture, map, corner, filtered, figures); }));
-        const auto source = openvdb::gridPtrCast<FloatGrid>(made);
-        const auto turned = FloatGrid::create();
-        // Turned a little, so that it has to interpolate.
-        turned->setTransform(source->transform().copy());
-        turned->transform().postRotate(0.1, openvdb::math::Z_AXIS);
-        resample = std::min(resample, seconds([&] {
-                                openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(
-                                    *source, *turned);
-                            }));
-        resampled_voxels = turned->activeVoxelCount();
+        resampling.measure(*openvdb::gridPtrCast<FloatGrid>(made));
     }
-    const double voxels = double(figures.active), each = resample / double(resampled_voxels);
+    const double voxels = double(figures.active), each = resampling.per_voxel();
     std::printf("{\"voxels\": %zu, \"stretch\": %.4g, \"limited_samples\": %zu, "
                 "\"ratio_single\": %.4g, \"ratio_filtered\": %.4g, \"seconds\": %.4g}\n",
                 figures.active, figures.stretch, figures.limited_samples, without / voxels / each,

@@ -3,6 +3,7 @@
 // Measures the map of a shell and volumes that go through it: volume_probe POSED.vdb, a shell that
 // `pose` wrote. Prints one JSON object; docs/scripts/volume_figures.py makes a page of several.
 
+#include "benchmarks/resampling.h"
 #include "vdb_shell/volume/coordinate_grids.h"
 #include "vdb_shell/volume/deform_volume.h"
 #include "vdb_shell/volume/shell_sampler.h"
@@ -12,11 +13,9 @@
 #include "volume/tet_index_grid.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/GridTransformer.h>
 #include <openvdb/tools/Interpolation.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -30,13 +29,6 @@ using openvdb::Coord;
 using openvdb::FloatGrid;
 using openvdb::Mat3d;
 using openvdb::Vec3d;
-
-double seconds(const std::function<void()>& work)
-{
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void print(const char* key, double value)
 {
@@ -185,28 +177,20 @@ void deformation(const ShellMap& rest, const ShellMap& posed, double voxel_size)
     DeformFigures figures;
     GridBasePtr made;
     // The best of three, for both: the machine does other things as well.
-    double deform = 1e30, resample = 1e30;
-    FloatGrid::Ptr resampled;
+    double deform = 1e30;
+    Resampling resampling;
     for (int i = 0; i < 3; ++i) {
         deform = std::min(deform, seconds([&] {
                               made = deform_volume(*source, rest, posed, Vec3d(0.0), {}, figures);
                           }));
-        resampled = FloatGrid::create();
-        // Turned a little, so that it has to interpolate.
-        resampled->setTransform(source->transform().copy());
-        resampled->transform().postRotate(0.1, openvdb::math::Z_AXIS);
-        resample = std::min(resample, seconds([&] {
-                                openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(
-                                    *source, *resampled);
-                            }));
+        resampling.measure(*source);
     }
     print("mass_change", figures.mass_after / figures.mass_before - 1);
     print("deform_seconds", deform);
     print("deform_voxels", double(figures.active_after));
-    print("resample_seconds", resample);
-    print("resample_voxels", double(resampled->activeVoxelCount()));
-    print("time_ratio_per_voxel", deform / double(figures.active_after) /
-                                      (resample / double(resampled->activeVoxelCount())));
+    print("resample_seconds", resampling.seconds);
+    print("resample_voxels", double(resampling.voxels));
+    print("time_ratio_per_voxel", deform / double(figures.active_after) / resampling.per_voxel());
 
     // There and back, against what was there; the two resamplings alone blur as much as they do.
     DeformOptions plain;
@@ -288,8 +272,7 @@ int main(int count, char** words)
     print("prisms", double(posed.prisms()));
     print("linear_prisms", double(posed.linear_prisms()));
     print("linear_prisms_at_rest", double(rest.linear_prisms()));
-    rest.make_linear_as(posed);
-    posed.make_linear_as(rest);
+    make_linear_alike(rest, posed);
     const auto grid = tet_index_grid(posed.tets(), voxel_size, "probe", StageProgress(nullptr, ""));
     const std::vector<Voxel> voxels = voxels_of(*grid);
     round_trip(rest, posed, voxels, voxel_size);

@@ -120,8 +120,7 @@ TEST(ShellMap, WhatIsLinearInOnePoseIsLinearInTheOther)
     const std::size_t linear = posed.linear_prisms();
     ASSERT_GT(linear, 0u);
     ASSERT_EQ(rest.linear_prisms(), 0u);
-    rest.make_linear_as(posed);
-    posed.make_linear_as(rest);
+    make_linear_alike(rest, posed);
     EXPECT_EQ(rest.linear_prisms(), linear);
     EXPECT_EQ(posed.linear_prisms(), linear);
     // A tet goes to the same tet, and back.

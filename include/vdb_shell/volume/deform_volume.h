@@ -65,8 +65,8 @@ struct DeformFigures {
 /// `rest` values stay bit for bit. Same bits for any number of threads.
 ///
 /// `shift` is added to the shells' coordinates to get the volume's. Preconditions: `rest` and
-/// `posed` are of the same tets. Each should have been made linear as the other
-/// (ShellMap::make_linear_as), or a volume does not come back to where it was in some prisms.
+/// `posed` are of the same tets. They should have been made
+/// linear alike (make_linear_alike), or a volume does not come back to where it was in some prisms.
 /// Throws InvalidOption, naming the grid, for a type that is none of FloatGrid, Vec3SGrid,
 /// Int32Grid, a transform that does more than scale alike and move, a grid without active voxels,
 /// vectors that are absolute places, and more outside than is allowed; Cancelled.

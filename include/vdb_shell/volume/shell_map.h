@@ -49,10 +49,7 @@ public:
     /// `tets`: those of make_tets of the stack, or joined_tets of them and a core.
     ShellMap(const ShellStack& stack, TetMesh tets);
 
-    /// Makes linear what is linear in `other`, the same shell in another pose. Called both ways,
-    /// a point that goes from one to the other comes back to where it was, but for points between
-    /// a curved side and the flat one of a linear prism beside it. Precondition: as many prisms.
-    void make_linear_as(const ShellMap& other);
+    friend void make_linear_alike(ShellMap& a, ShellMap& b);
 
     const TetMesh& tets() const { return tets_; }
     std::size_t triangles() const { return triangles_; }
@@ -103,5 +100,10 @@ private:
     /// By tet and corner: a bit for each corner of the prism that is this point.
     std::vector<std::array<std::uint8_t, 4>> corner_bits_;
 };
+
+/// Of the same shell in two poses: makes each linear where the other is, so that a point that goes
+/// from one to the other comes back to where it was, but for points between a curved side and the
+/// flat one of a linear prism beside it. Precondition: as many prisms.
+void make_linear_alike(ShellMap& a, ShellMap& b);
 
 } // namespace vdb_shell
