@@ -189,6 +189,29 @@ TEST(VdbHeader, BlocksThatOverflowTheirNode)
     }
 }
 
+/// OpenVDB 10 leaks a node whose own values it cannot read.
+TEST(VdbHeader, TileValuesThatDoNotDecompress)
+{
+    auto grid = named(FloatGrid::create(0.0f), "a");
+    for (int i = 0; i < 16; ++i)
+        grid->tree().addTile(2, Coord(0, 128 * i, 0), float(i % 5), true);
+    for (const std::uint32_t compression : {COMPRESS_BLOSC, COMPRESS_ZIP}) {
+        const std::string bytes = bytes_by_openvdb({grid}, compression);
+        EXPECT_EQ(complaint(bytes), "");
+        // With no leaf, the file ends with the block of the only node.
+        std::size_t place = bytes.size() - 8;
+        std::int64_t size = 0;
+        while (size != std::int64_t(bytes.size() - place - 8) || size < 16)
+            std::memcpy(&size, &bytes[--place], sizeof size);
+        std::string changed = bytes;
+        // Behind the header of a chunk of Blosc, and of a stream of zlib.
+        for (std::size_t i = place + 8 + 20; i < bytes.size(); ++i)
+            changed[i] = '\xff';
+        EXPECT_NE(complaint(changed).find("does not decompress"), std::string::npos)
+            << compression << ": " << complaint(changed);
+    }
+}
+
 TEST(VdbHeader, StreamsWithoutPlacesOfGrids)
 {
     std::ostringstream out;
