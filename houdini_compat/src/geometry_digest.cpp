@@ -9,8 +9,10 @@
 #include "vdb_shell/core/digest.h"
 #include "vdb_shell/io/read_file.h"
 
+#include "detail_figures.h"
 #include "shell_names.h"
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -35,7 +37,7 @@ template <typename T> void add(Digest& digest, const std::vector<T>& values)
 void add_attributes(const std::string& kind, const std::vector<Attribute>& attributes, Lines& lines)
 {
     for (const Attribute& attribute : attributes) {
-        if (attribute.name == kDigests)
+        if (attribute.name == kDigests || attribute.name == kDigestCount)
             continue;
         Digest digest;
         digest.add_number(attribute.size);
@@ -94,11 +96,23 @@ std::string digests_of(const HoudiniGeometry& geometry)
     return text;
 }
 
+void add_digests(HoudiniGeometry& geometry)
+{
+    const std::string lines = digests_of(geometry);
+    const auto count = std::size_t(std::count(lines.begin(), lines.end(), '\n'));
+    // A changed bit in the name of one of the two leaves the other.
+    add_count(geometry, kDigestCount, count);
+    add_text(geometry, kDigests, lines);
+}
+
 std::size_t require_digests(const HoudiniGeometry& geometry, const std::string& name)
 {
     const Attribute* const attribute = find(geometry.detail_attributes, kDigests);
-    if (!attribute)
+    if (!attribute) {
+        if (find(geometry.detail_attributes, kDigestCount))
+            refuse(name, std::string("detail attribute \"") + kDigests + "\" is missing");
         return 0;
+    }
     const auto* const strings = std::get_if<Strings>(&attribute->values);
     if (!strings || strings->index.size() != 1)
         refuse(name, std::string("detail attribute \"") + kDigests + "\" is not one string");
@@ -119,6 +133,13 @@ std::size_t require_digests(const HoudiniGeometry& geometry, const std::string& 
     }
     if (count == 0)
         refuse(name, std::string("detail attribute \"") + kDigests + "\" is empty");
+    const Attribute* const number = find(geometry.detail_attributes, kDigestCount);
+    const auto* const said =
+        number ? std::get_if<std::vector<std::int32_t>>(&number->values) : nullptr;
+    if (number && (!said || said->size() != 1 || std::size_t(said->front()) != count))
+        refuse(name, std::string("detail attribute \"") + kDigestCount +
+                         "\" is not what was written: there are " + std::to_string(count) +
+                         " digests");
     return count;
 }
 

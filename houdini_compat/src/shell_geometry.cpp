@@ -339,7 +339,7 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     add_primitive_groups(file, parts, geometry);
     add_detail(file, geometry);
     // Last, for they are of all that is there.
-    add_text(geometry, kDigests, digests_of(geometry));
+    add_digests(geometry);
     return geometry;
 }
 

@@ -25,6 +25,7 @@ inline constexpr const char* kUnit = "vdb_shell_unit";
 inline constexpr const char* kOrientation = "vdb_shell_orientation";
 inline constexpr const char* kChecksum = "vdb_shell_checksum";
 inline constexpr const char* kDigests = "vdb_shell_digests";
+inline constexpr const char* kDigestCount = "vdb_shell_digest_count";
 inline constexpr const char* kParameters = "vdb_shell_parameters";
 inline constexpr const char* kReport = "vdb_shell_report";
 inline constexpr const char* kCreator = "creator";

@@ -12,6 +12,8 @@ namespace vdb_shell
 /// part of the file means (write/grid_digest.h) and, for the metadata and for each grid, 16 digits
 /// that seal_vdb fills in.
 inline constexpr const char* kDigestsKey = "vdb_shell_digests";
+/// How many digests there are: of a file whose digests are lost it tells that it had some.
+inline constexpr const char* kDigestCountKey = "vdb_shell_digest_count";
 inline constexpr std::string_view kUnsealed = "0000000000000000";
 
 /// Makes a .vdb tell damage of any of its bytes: fills in the digests of the bytes of each part

@@ -36,10 +36,12 @@ std::string in_words(const std::string& name)
 
 void add_digests(openvdb::MetaMap& metadata, const openvdb::GridPtrVec& grids)
 {
-    std::vector<NamedDigest> all{digest_of_metadata(metadata, kDigestsKey)};
+    std::vector<NamedDigest> all(1);
     for (const openvdb::GridBase::Ptr& grid : grids)
         for (NamedDigest& one : digests_of(*grid))
             all.push_back(std::move(one));
+    metadata.insertMeta(kDigestCountKey, openvdb::Int32Metadata(std::int32_t(all.size())));
+    all.front() = digest_of_metadata(metadata, kDigestsKey);
     std::string text;
     for (const NamedDigest& one : all) {
         text.append(one.name).append(" ").append(one.hex);
@@ -55,8 +57,11 @@ StatedDigests::StatedDigests(const openvdb::MetaMap& metadata, fs::path path)
     : path_(std::move(path))
 {
     const openvdb::Metadata::ConstPtr entry = metadata[kDigestsKey];
-    if (!entry)
+    if (!entry) {
+        if (metadata[kDigestCountKey])
+            throw ReadError(path_.string() + ": metadata \"" + kDigestsKey + "\" is missing");
         return;
+    }
     std::istringstream lines(entry->str());
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);

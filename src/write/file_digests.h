@@ -19,8 +19,8 @@ void add_digests(openvdb::MetaMap& metadata, const openvdb::GridPtrVec& grids);
 class StatedDigests
 {
 public:
-    /// None where the file has no entry. Throws ReadError for one that cannot be read, and where
-    /// the metadata are not those that were written.
+    /// None where the file has no entry. Throws ReadError for one that cannot be read or is lost,
+    /// and where the metadata are not those that were written.
     StatedDigests(const openvdb::MetaMap& metadata, std::filesystem::path path);
 
     /// Throws ReadError with grid and attribute unless the grid is the one that was written.

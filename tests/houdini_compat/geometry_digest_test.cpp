@@ -99,10 +99,19 @@ TEST(GeometryDigests, NameGroupsPrimitivesAndWhatIsMissing)
     EXPECT_EQ(complaint(changed), "");
 }
 
+TEST(GeometryDigests, AreMissed)
+{
+    HoudiniGeometry geometry = small_geometry();
+    ASSERT_EQ(geometry.detail_attributes.back().name, kDigests);
+    geometry.detail_attributes.back().name[3] ^= 1; // as a flipped bit does
+    EXPECT_NE(complaint(geometry).find("\"vdb_shell_digests\" is missing"), std::string::npos)
+        << complaint(geometry);
+}
+
 TEST(GeometryDigests, OlderGeometryHasNone)
 {
     HoudiniGeometry geometry = small_geometry();
-    geometry.detail_attributes.pop_back();
+    geometry.detail_attributes.resize(geometry.detail_attributes.size() - 2);
     EXPECT_EQ(require_digests(geometry, "a.geo"), 0u);
     EXPECT_EQ(shell_of_geometry(geometry, "a.geo").digests, 0u);
 }

@@ -150,9 +150,21 @@ TEST_F(FileDigests, NameChangedMetadata)
 TEST_F(FileDigests, OldFilesHaveNone)
 {
     write();
-    rewrite([](auto&, auto& metadata) { metadata.removeMeta(kDigestsKey); });
+    rewrite([](auto&, auto& metadata) {
+        metadata.removeMeta(kDigestsKey);
+        metadata.removeMeta(kDigestCountKey);
+    });
     EXPECT_EQ(complaint(), "");
     EXPECT_EQ(read_shell_vdb(path_).digests, 0u);
+}
+
+/// As when a bit in the name of the entry is flipped.
+TEST_F(FileDigests, AreMissed)
+{
+    write();
+    rewrite([](auto&, auto& metadata) { metadata.removeMeta(kDigestsKey); });
+    EXPECT_NE(complaint().find("\"vdb_shell_digests\" is missing"), std::string::npos)
+        << complaint();
 }
 
 TEST_F(FileDigests, AreTheSameForAnyNumberOfThreads)

@@ -54,7 +54,8 @@ protected:
     void rewrite(const std::function<void(openvdb::GridPtrVec&, openvdb::MetaMap&)>& change) const
     {
         test::rewrite_vdb(path_, [&](openvdb::GridPtrVec& grids, openvdb::MetaMap& metadata) {
-            metadata.removeMeta("vdb_shell_digests");
+            for (const char* key : {"vdb_shell_digests", "vdb_shell_digest_count"})
+                metadata.removeMeta(key);
             change(grids, metadata);
         });
     }
