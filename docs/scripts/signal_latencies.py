@@ -106,6 +106,9 @@ def main():
     parser.add_argument("--commands", nargs="+")
     parser.add_argument("--stages", action="store_true")
     options = parser.parse_args()
+    # A shell ignores some of them for what runs in the background, and whoever it starts ignores them too.
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_DFL)
     results = Results(options.results)
     with tempfile.TemporaryDirectory() as work:
         shell, out = pathlib.Path(work) / "shell.vdb", pathlib.Path(work) / "out"
