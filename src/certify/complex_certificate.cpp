@@ -15,10 +15,10 @@
 #include "certify/free_faces.h"
 #include "certify/prism_checks.h"
 #include "certify/tet_faces.h"
-#include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "core/triangle_pairs.h"
 #include "mesh/exact_winding.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_contacts.h"
@@ -115,7 +115,7 @@ void check_contacts(const FreeFaces& free, const std::vector<char>& degenerate,
         // A triangle of no area has no plane; the stack has failed by it already.
         return !degenerate[f] && !degenerate[g] && triangles.touch(f, g);
     };
-    for (const auto& [f, g] : overlapping_pairs(triangle_boxes(free.points, free.faces), touch))
+    for (const auto& [f, g] : overlapping_triangles(free.points, free.faces, touch))
         list_contact(free, f, g, certificate);
 }
 

@@ -11,9 +11,9 @@
 #include "certify/surface_contacts.h"
 
 #include "certify/certificate_findings.h"
-#include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/triangle_pairs.h"
 #include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
@@ -115,7 +115,7 @@ check_surfaces(const PrismShell& shell, const std::vector<char>& pinned, Certifi
         return !degenerate[f] && !degenerate[g] && triangles.touch(f, g);
     };
     std::vector<std::array<std::uint32_t, 2>> contacts;
-    for (const auto& [f, g] : overlapping_pairs(triangle_boxes(both.points, both.faces), touch)) {
+    for (const auto& [f, g] : overlapping_triangles(both.points, both.faces, touch)) {
         list_contact(both, f, g, certificate);
         contacts.push_back({both.source[f], both.source[g]});
     }

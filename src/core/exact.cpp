@@ -354,6 +354,12 @@ bool crosses_ray(const Point2& p, const Point2& a, const Point2& b)
 int crossing_above(const openvdb::Vec3s& point, const openvdb::Vec3s& a, const openvdb::Vec3s& b,
                    const openvdb::Vec3s& c, bool& on_surface)
 {
+    // A corner is on the triangle, and no line from there crosses it. Filters do not decide that,
+    // and pieces that share a corner ask for it once a pair.
+    if (point == a || point == b || point == c) {
+        on_surface = on_surface || !collinear(a, b, c);
+        return 0;
+    }
     const Point2 p = point2(point), pa = point2(a), pb = point2(b), pc = point2(c);
     const CGAL::Orientation turn = CGAL::orientation(pa, pb, pc);
     const int side = orient3d(a, b, c, point); // < 0: the point lies behind the triangle

@@ -10,10 +10,10 @@
 
 #include "mesh/surface_defects.h"
 
-#include "core/box_pairs.h"
 #include "core/bucket_sort.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/triangle_pairs.h"
 #include "mesh/triangle_contacts.h"
 
 #include <algorithm>
@@ -158,23 +158,11 @@ std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
                                                   const std::vector<char>& left_out,
                                                   Interrupter* interrupter)
 {
-    std::vector<std::uint32_t> tested;
-    std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
-    for (std::uint32_t t = 0; t < left_out.size(); ++t)
-        if (!left_out[t]) {
-            boxes[tested.size()] = boxes[t];
-            tested.push_back(t);
-        }
-    boxes.resize(tested.size());
     const TriangleContacts contacts(mesh.points, mesh.triangles);
-    const auto touch = [&](std::uint32_t first, std::uint32_t second) {
-        return contacts.touch(tested[first], tested[second]);
-    };
-    std::vector<TrianglePair> pairs = overlapping_pairs(boxes, touch, interrupter);
-    // Ascending numbers name ascending triangles, so the order stays.
-    for (TrianglePair& pair : pairs)
-        pair = {tested[pair[0]], tested[pair[1]]};
-    return pairs;
+    return overlapping_triangles(
+        mesh.points, mesh.triangles,
+        [&](std::uint32_t first, std::uint32_t second) { return contacts.touch(first, second); },
+        interrupter, left_out);
 }
 
 SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,

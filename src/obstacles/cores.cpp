@@ -8,10 +8,10 @@
 
 #include "vdb_shell/obstacles/cores.h"
 
-#include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "core/triangle_pairs.h"
 #include "mesh/components.h"
 #include "mesh/exact_winding.h"
 #include "mesh/topology.h"
@@ -108,8 +108,8 @@ void add_part(Together& all, const TriangleMesh& mesh)
 std::vector<std::array<std::uint32_t, 2>> contacts_between(const Together& all)
 {
     const TriangleMesh& mesh = all.mesh;
-    return overlapping_pairs(
-        triangle_boxes(mesh.points, mesh.triangles), [&](std::uint32_t a, std::uint32_t b) {
+    return overlapping_triangles(
+        mesh.points, mesh.triangles, [&](std::uint32_t a, std::uint32_t b) {
             return all.part[a] != all.part[b] &&
                    exact::triangles_touch(mesh.points, mesh.triangles[a], mesh.triangles[b]);
         });

@@ -7,9 +7,9 @@
 // fill may cross something in its turn: therefore the cut grows from round to round, and the caller
 // bounds the number of rounds.
 
-#include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/triangle_pairs.h"
 #include "mesh/components.h"
 #include "mesh/surface_defects.h"
 #include "mesh/triangle_contacts.h"
@@ -124,7 +124,7 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* inte
         }
         return false; // no list of the pairs is wanted
     };
-    overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), mark, interrupter);
+    overlapping_triangles(mesh.points, mesh.triangles, mark, interrupter);
     return {crossing.begin(), crossing.end()};
 }
 

@@ -7,9 +7,9 @@
 
 #include "resample/spoiled_triangles.h"
 
-#include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/triangle_pairs.h"
 #include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
@@ -26,7 +26,7 @@ std::vector<char> spoiled_triangles(const TriangleMesh& mesh)
     const auto touch = [&](std::uint32_t a, std::uint32_t b) {
         return !bad[a] && !bad[b] && contacts.touch(a, b);
     };
-    for (const auto& [a, b] : overlapping_pairs(triangle_boxes(mesh.points, mesh.triangles), touch))
+    for (const auto& [a, b] : overlapping_triangles(mesh.points, mesh.triangles, touch))
         bad[a] = bad[b] = 1;
     return bad;
 }
