@@ -7,14 +7,13 @@
 #include "command/surface_input.h"
 
 #include "core/temporary_file.h"
+#include "field/map_values.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/polygon_mesh.h"
 
 #include "command/file_plan.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/ChangeBackground.h>
-#include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <fstream>
@@ -113,13 +112,10 @@ FloatGridPtr in_place(const FloatGridPtr& grid, const Placement& placement)
     // is a power of two: dividing lengths by it rounds nothing, short of underflow.
     moved->transform().postTranslate(-placement.origin);
     moved->transform().postScale(1.0 / placement.unit);
-    const auto divided = [&](const auto& value) {
-        value.setValue(static_cast<float>(double(*value) / placement.unit));
-    };
-    openvdb::tools::foreach (moved->beginValueAll(), divided);
     // The background too: it is the length wherever nothing was painted.
-    openvdb::tools::changeBackground(
-        moved->tree(), static_cast<float>(double(moved->background()) / placement.unit));
+    map_values(moved->tree(), [unit = placement.unit](float value) {
+        return static_cast<float>(double(value) / unit);
+    });
     return moved;
 }
 

@@ -11,13 +11,12 @@
 #include "core/stage_progress.h"
 #include "field/cavities.h"
 #include "field/level_set_checks.h"
+#include "field/map_values.h"
 #include "field/mesh_distances.h"
 #include "field/value_range.h"
 #include "mesh/triangle_area.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
-
-#include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <array>
@@ -296,11 +295,7 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
 
 void negate_level_set(openvdb::FloatGrid& level_set)
 {
-    openvdb::tools::foreach (level_set.beginValueAll(),
-                             [](const auto& value) { value.setValue(-*value); });
-    openvdb::FloatTree::RootNodeType& root = level_set.tree().root();
-    // The loop has already negated inactive values, so the root must not replace them once more.
-    root.setBackground(-root.background(), false);
+    map_values(level_set.tree(), [](float value) { return -value; });
 }
 
 } // namespace vdb_shell

@@ -7,6 +7,7 @@
 
 #include "obstacles/offset_surface.h"
 
+#include "field/map_values.h"
 #include "field/mesh_distances.h"
 #include "obstacles/nearest_core.h"
 #include "vdb_shell/core/error.h"
@@ -14,8 +15,6 @@
 #include "vdb_shell/field/level_set.h"
 
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/ChangeBackground.h>
-#include <openvdb/tools/ValueTransformer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,9 +52,7 @@ openvdb::FloatGrid::Ptr lowered(const openvdb::FloatGrid& field, double iso)
 {
     openvdb::FloatGrid::Ptr grid = field.deepCopy();
     const auto by = static_cast<float>(iso);
-    openvdb::tools::foreach (grid->beginValueAll(),
-                             [by](const auto& value) { value.setValue(*value - by); });
-    openvdb::tools::changeBackground(grid->tree(), field.background() - by);
+    map_values(grid->tree(), [by](float value) { return value - by; });
     // Of any other class OpenVDB takes what is positive for the inside.
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
     return grid;
