@@ -17,6 +17,7 @@
 #include <openvdb/io/Compression.h>
 #include <openvdb/openvdb.h>
 
+#include <cctype>
 #include <string>
 
 namespace vdb_shell
@@ -36,6 +37,19 @@ constexpr const char* kWholeNumbers = "Tree_int32_5_4_3";
 constexpr const char* kPoints = "Tree_ptdataidx32_5_4_3";
 constexpr std::string_view kHalfMark = "_HalfFloat";
 
+/// Hexadecimal digits and the dashes between them. OpenVDB 10 reads it as formatted text and passes
+/// over white space, so a UUID with any would be longer for OpenVDB than for the walk, and all that
+/// follows another thing.
+bool is_uuid(std::string_view text)
+{
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool dash = i == 8 || i == 13 || i == 18 || i == 23;
+        if (dash ? text[i] != '-' : !std::isxdigit(static_cast<unsigned char>(text[i])))
+            return false;
+    }
+    return true;
+}
+
 std::uint32_t walk_header(VdbCursor& walk)
 {
     if (walk.size() == 0)
@@ -54,7 +68,7 @@ std::uint32_t walk_header(VdbCursor& walk)
         walk.fail("it was written as a stream, without the places of its grids, and cannot be "
                   "checked before it is decoded; write it as a file");
     walk.require(offsets == 1, "the offsets flag is neither 0 nor 1");
-    walk.take(kUuidLength, "the UUID");
+    walk.require(is_uuid(walk.take(kUuidLength, "the UUID")), "the UUID is none");
     return version;
 }
 

@@ -122,6 +122,8 @@ void PointGridBuilder::add(const std::string& name, const std::vector<Vec3s>& co
 void PointGridBuilder::add_tuples(const std::string& name, openvdb::Index stride,
                                   const std::vector<std::int32_t>& column)
 {
+    if (column.empty())
+        return; // no leaf has an array
     append<std::int32_t>(*index_, grid_->tree(), name, {column.data(), stride, stride});
     for (openvdb::Index element = 0; element < stride; ++element)
         append<std::int32_t>(*index_, grid_->tree(), name + std::to_string(element),

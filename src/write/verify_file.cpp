@@ -37,7 +37,8 @@ using nlohmann::json;
 /// Bytes and not values, so that zeros of either sign differ. The types have no padding.
 template <typename T> bool same_bytes(const std::vector<T>& a, const std::vector<T>& b)
 {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
 /// A figure of the report by its JSON pointer; NaN where it is missing, which equals nothing.

@@ -212,6 +212,23 @@ TEST(VdbHeader, TileValuesThatDoNotDecompress)
     }
 }
 
+/// OpenVDB 10 passes over white space in a UUID, and reads on behind it in another place.
+TEST(VdbHeader, UuidsThatAreNone)
+{
+    constexpr std::size_t kUuid = 21;
+    const std::string bytes = bytes_by_openvdb({odd_grid()}, COMPRESS_BLOSC);
+    for (const std::size_t at : {0u, 5u, 12u, 23u, 35u})
+        for (const char wrong : {'\f', ' ', 'g', '\0'}) {
+            std::string changed = bytes;
+            changed[kUuid + at] = wrong;
+            EXPECT_NE(complaint(changed).find("UUID"), std::string::npos) << at;
+            // One byte more instead of another.
+            changed = bytes;
+            changed.insert(kUuid + at, 1, wrong);
+            EXPECT_NE(complaint(changed).find("UUID"), std::string::npos) << at;
+        }
+}
+
 TEST(VdbHeader, StreamsWithoutPlacesOfGrids)
 {
     std::ostringstream out;

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <set>
 
 namespace vdb_shell::test
@@ -22,11 +22,17 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
+/// Of all threads: a busy machine does not fail a test.
+double processor_seconds()
+{
+    return double(std::clock()) / CLOCKS_PER_SEC;
+}
+
 double seconds_of_repair(const TriangleMesh& mesh, const RepairOptions& options = {})
 {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     repair_mesh(mesh, options);
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return processor_seconds() - start;
 }
 
 /// All faces of a grid of cubes that are cut into six tets each, every face once.
@@ -72,10 +78,9 @@ TEST(RepairCost, ThousandsOfCopiesOfATriangle)
 {
     TriangleMesh mesh = box({0, 0, 0}, {1, 1, 1});
     mesh.triangles.resize(mesh.triangles.size() + 60000, mesh.triangles[0]);
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     EXPECT_EQ(check_mesh(mesh).duplicate_triangles.count, 60000u);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    EXPECT_LT(taken.count(), 20);
+    EXPECT_LT(processor_seconds() - start, 20);
     EXPECT_LT(seconds_of_repair(mesh), 20);
 }
 
@@ -103,10 +108,9 @@ TEST(RepairCost, APointOfThousandsOfTriangles)
         mesh.triangles.emplace_back(i, (i + 1) % kRim, kRim);
         mesh.triangles.emplace_back((i + 1) % kRim, i, kRim + 1);
     }
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     EXPECT_EQ(check_mesh(mesh).self_intersections.count, 0u);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    EXPECT_LT(taken.count(), 20);
+    EXPECT_LT(processor_seconds() - start, 20);
 }
 
 TEST(RepairCost, AWeldThatIsFinerThanNumbersAre)
