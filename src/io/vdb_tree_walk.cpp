@@ -49,7 +49,7 @@ bool disjoint(std::string_view a, std::string_view b)
     return true;
 }
 
-enum class Blocks { Measured, Decompressed };
+enum class Blocks { measured, decompressed };
 
 bool decompresses(std::string_view block, std::uint64_t bytes, bool blosc)
 {
@@ -81,7 +81,7 @@ void walk_data(VdbCursor& walk, const VdbCoding& coding, std::uint64_t bytes, Bl
     // zlib is told how much room there is, and what it made is held against that by OpenVDB.
     const bool blosc = (coding.compression & COMPRESS_BLOSC) != 0;
     walk.require((!blosc || is_blosc_of(block, bytes)) &&
-                     (blocks == Blocks::Measured || decompresses(block, bytes, blosc)),
+                     (blocks == Blocks::measured || decompresses(block, bytes, blosc)),
                  "a block that does not decompress to its node");
 }
 
@@ -163,7 +163,7 @@ private:
         const std::string_view active = walk_.take(values / 8, "a mask of active values");
         // OpenVDB keeps a child's address and a value in the same place.
         walk_.require(disjoint(children, active), "an active value where a child is");
-        walk_values(walk_, coding_, values, count_bits(active), Blocks::Decompressed);
+        walk_values(walk_, coding_, values, count_bits(active), Blocks::decompressed);
         for (std::uint32_t child = count_bits(children); child > 0; --child)
             if (level == 1)
                 leaves_.push_back(
@@ -189,7 +189,7 @@ void walk_voxels(VdbCursor& walk, const VdbCoding& coding, const std::vector<std
     for (const std::uint16_t active : leaves) {
         // OpenVDB skips this mask and goes by that of the topology.
         walk.take(kNodeValues[0] / 8, "a leaf's mask");
-        walk_values(walk, coding, kNodeValues[0], active, Blocks::Measured);
+        walk_values(walk, coding, kNodeValues[0], active, Blocks::measured);
     }
 }
 
