@@ -15,6 +15,7 @@
 
 #include "core_columns.h"
 #include "detail_figures.h"
+#include "filled_core.h"
 #include "geometry_digest.h"
 #include "shell_names.h"
 
@@ -276,7 +277,7 @@ void add_primitive_groups(const ShellFile& file, const std::vector<Part>& parts,
 void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
 {
     // The reader bounds its memory by these counts, and compares them with the primitives.
-    ShellCounts counts = counts_of(file.stack, file.tets);
+    ShellCounts counts = counts_of(file.stack, file.tets, file.core);
     counts.posed = file.rest.posed();
     const int schema = schema_for(counts);
     add_count(geometry, kSchema, static_cast<std::size_t>(schema));
@@ -291,6 +292,10 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
         add_count(geometry, kTapered, counts.tapered ? 1 : 0);
     if (counts.posed)
         add_count(geometry, kPosed, 1);
+    if (!file.core.empty()) {
+        add_count(geometry, kCorePointCount, file.core.points.size());
+        add_count(geometry, kCoreTetCount, file.core.tets.size());
+    }
     add_count(geometry, kRipples, ripples_of(file.stack));
     if (file.placement.moves()) {
         const Vec3d& o = file.placement.origin;
@@ -301,7 +306,7 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
     }
     add_text(geometry, kCreator, "vdb_shell " VDB_SHELL_VERSION);
     add_text(geometry, kOrientation, kOrientationText);
-    add_text(geometry, kChecksum, checksum_of(file.stack, file.tets));
+    add_text(geometry, kChecksum, checksum_of(file.stack, file.tets, file.core));
     add_text(geometry, kParameters, file.parameters_json);
     add_text(geometry, kReport, file.report_json);
     add_figures(geometry, file.report_json);
@@ -323,10 +328,8 @@ void require_readable(const ShellStack& stack)
 
 HoudiniGeometry shell_geometry(const ShellFile& file)
 {
-    if (!file.core.empty())
-        throw InvalidOption("the shell cannot be written as Houdini geometry: it has no place for "
-                            "the tets of a core");
     vdb_shell::require_consistent(file.stack, file.tets);
+    require_consistent_core(file.stack, file.tets, file.core);
     require_readable(file.stack);
     const ShellPoints points = number_points(file.stack, file.tets);
     const std::vector<Part> parts = parts_of(file);
@@ -338,6 +341,8 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     add_primitive_attributes(file, parts, geometry);
     add_primitive_groups(file, parts, geometry);
     add_detail(file, geometry);
+    if (!file.core.empty())
+        append_core(file, points, geometry);
     // Last, for they are of all that is there.
     add_digests(geometry);
     return geometry;

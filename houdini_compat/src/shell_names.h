@@ -17,6 +17,8 @@ inline constexpr const char* kLayers = "vdb_shell_layers";
 inline constexpr const char* kSkin = "vdb_shell_skin";
 inline constexpr const char* kTapered = "vdb_shell_tapered";
 inline constexpr const char* kPosed = "vdb_shell_posed";
+inline constexpr const char* kCorePointCount = "vdb_shell_core_points";
+inline constexpr const char* kCoreTetCount = "vdb_shell_core_tets";
 inline constexpr const char* kRest = "rest";
 inline constexpr const char* kVelocity = "v";
 inline constexpr const char* kRipples = "vdb_shell_ripples";
@@ -39,6 +41,8 @@ inline constexpr const char* kLayer = "layer";
 inline constexpr const char* kSplitOrder = "split_order";
 inline constexpr const char* kSurface = "surface";
 inline constexpr const char* kCollapsed = "collapsed";
+inline constexpr const char* kCorePoints = "core_points";
+inline constexpr const char* kCoreTets = "core_tets";
 
 /// Shells of one layer below the surface say nothing of layers: their files are of schema 1.
 inline bool layered(std::size_t layers, std::size_t skin)

@@ -12,6 +12,7 @@
 #include "vdb_shell/write/shell_points.h"
 
 #include "core_columns.h"
+#include "filled_core.h"
 #include "geometry_digest.h"
 #include "shell_columns.h"
 
@@ -73,10 +74,9 @@ void require_primitives(const HoudiniGeometry& geometry, const Counts& counts,
 Counts read_counts(const HoudiniGeometry& geometry, const Columns& detail, const std::string& name)
 {
     const std::int32_t schema = detail.integers(kSchema)[0];
-    if (schema < 1 || schema > kPosedSchema || schema == kFilledSchema)
+    if (schema < 1 || schema > kShellSchema)
         detail.fail(kSchema, "is " + std::to_string(schema) + ", schemas 1 to " +
-                                 std::to_string(kTaperedSchema) + " and " +
-                                 std::to_string(kPosedSchema) + " can be read");
+                                 std::to_string(kShellSchema) + " can be read");
     // Each count is bounded by the elements that the geometry has, before memory is taken by it.
     Counts counts;
     counts.vertices = detail.count(kVertices, geometry.points);
@@ -246,18 +246,18 @@ void read_placement(const HoudiniGeometry& geometry, const Columns& detail, Plac
         detail.fail(kUnit, "is " + std::to_string(placement.unit) + ", not a power of two");
 }
 
-} // namespace
-
-bool is_shell(const HoudiniGeometry& geometry)
+/// Nothing where the file says nothing of a core.
+CoreSize read_core_size(const HoudiniGeometry& geometry, const Columns& detail)
 {
-    return find(geometry.detail_attributes, kSchema) != nullptr;
+    if (!find(geometry.detail_attributes, kCoreTetCount))
+        return {};
+    return {detail.count(kCorePointCount, geometry.points),
+            detail.count(kCoreTetCount, geometry.primitives.size())};
 }
 
-ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& name)
+/// The shell of a geometry that has no core, without checksum and digests.
+ShellFile shell_alone(const HoudiniGeometry& geometry, const std::string& name)
 {
-    if (!is_shell(geometry))
-        refuse(name,
-               std::string("it holds no shell: detail attribute \"") + kSchema + "\" is missing");
     const Columns detail(geometry.detail_attributes, "detail attribute", name);
     const Columns points(geometry.point_attributes, "point attribute", name);
     const Columns primitives(geometry.primitive_attributes, "primitive attribute", name);
@@ -280,10 +280,6 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
     } catch (const InvalidOption& error) {
         refuse(name, std::string("its parts do not fit together: ") + error.what());
     }
-    const std::string found = checksum_of(file.stack, file.tets);
-    if (found != detail.text(kChecksum))
-        refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
-                         detail.text(kChecksum));
     if (counts.posed)
         file.rest.surface =
             vectors_by_surface(number_points(file.stack, {}), points.vectors(kRest));
@@ -291,6 +287,31 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
         file.rest.velocity.surface =
             vectors_by_surface(number_points(file.stack, {}), points.vectors(kVelocity));
     file.core_feet = read_core_attributes(geometry, points, file.stack, name);
+    return file;
+}
+
+} // namespace
+
+bool is_shell(const HoudiniGeometry& geometry)
+{
+    return find(geometry.detail_attributes, kSchema) != nullptr;
+}
+
+ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& name)
+{
+    if (!is_shell(geometry))
+        refuse(name,
+               std::string("it holds no shell: detail attribute \"") + kSchema + "\" is missing");
+    const Columns detail(geometry.detail_attributes, "detail attribute", name);
+    const CoreSize core = read_core_size(geometry, detail);
+    ShellFile file = core.tets > 0 ? shell_alone(without_core(geometry, core, name), name)
+                                   : shell_alone(geometry, name);
+    if (core.tets > 0)
+        read_core(geometry, core, name, file);
+    const std::string found = checksum_of(file.stack, file.tets, file.core);
+    if (found != detail.text(kChecksum))
+        refuse(name, "the shell's arrays have checksum " + found + ", the file says " +
+                         detail.text(kChecksum));
     // After the others, whose messages say more.
     file.digests = require_digests(geometry, name);
     return file;

@@ -164,8 +164,6 @@ void require_sensible(const BuildArguments& arguments)
     require_format(arguments.mesh, arguments.format);
     require_sensible(arguments.shell, !arguments.thickness_grid.empty());
     require_fit(arguments.purpose, arguments.shell);
-    if (arguments.shell.core_fill.wanted())
-        require_places_for_core(arguments.outputs);
     require_program(arguments.shell.core_fill);
     if (!arguments.remesh_map.empty())
         require_map_extension(arguments.remesh_map);

@@ -138,15 +138,6 @@ void add_outputs(FilePlan& plan, const Outputs& outputs)
             plan.add_output(file);
 }
 
-void require_places_for_core(const Outputs& outputs)
-{
-    for (const fs::path& path : outputs.paths)
-        if (kind_of(path) == Kind::houdini)
-            throw InvalidOption(path.string() +
-                                ": Houdini's geometry has no place for the tets of a core "
-                                "(--core-fill); write .vdb, .usda, or tets");
-}
-
 bool wants_vdb(const Outputs& outputs)
 {
     return std::any_of(outputs.paths.begin(), outputs.paths.end(),
@@ -162,8 +153,6 @@ bool wants_flags(const Outputs& outputs)
 void write_outputs(const Outputs& outputs, const ShellFile& file,
                    const std::vector<std::uint8_t>& certified, OutputSet& files)
 {
-    if (!file.core.empty())
-        require_places_for_core(outputs);
     const Solid solid = wants_flags(outputs) ? solid_of(file, certified) : Solid{};
     for (const fs::path& path : outputs.paths) {
         if (files_of(path, outputs).empty())

@@ -32,9 +32,6 @@ OptionSections describe(Outputs& outputs);
 /// done.
 void add_outputs(FilePlan& plan, const Outputs& outputs);
 
-/// Throws InvalidOption where one of the formats cannot hold a core.
-void require_places_for_core(const Outputs& outputs);
-
 /// True when some output needs the grids of the file.
 bool wants_vdb(const Outputs& outputs);
 

@@ -61,9 +61,6 @@ TEST_F(CoreFillCommand, RefusesWhatContradictsItBeforeTheWork)
     for (const std::string wrong : {"--side both", "--method raw", "--allow-self-intersections"})
         expect_refusal(words + wrong + " -o " + file("out.vdb"), command::usage_error,
                        {"--core-fill is not for"});
-    for (const std::string name : {"out.geo", "out.bgeo.sc"})
-        expect_refusal(words + "-o " + file(name), command::usage_error,
-                       {name, "no place for the tets of a core"});
 }
 
 } // namespace
