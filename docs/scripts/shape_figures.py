@@ -8,7 +8,8 @@ own on the files that were written, and writes the tables of docs/measurements/s
 COMMAND is the vdb_shell binary. --ours adds rows of the command, each with a list of options; the row `default` has
 none. --meshes is a list of "tuning NAME" and "judging NAME" lines. --quick leaves out the surfaces of more than 5000
 triangles. A page that does not exist gets the tables alone. Beside it stands the same as JSON. What a program made is
-kept in --cache, a failure too; a new COMMAND is run again.
+kept in --cache, a failure too; a new COMMAND is run again. With --keep-others rows of the other programs, which depend
+on the surface alone, are taken from the JSON beside the page.
 """
 import argparse
 import json
@@ -39,6 +40,7 @@ def arguments():
     tet_makers.add_arguments(parser, ["default="], 300)
     parser.add_argument("--others", nargs="*", choices=OTHERS, default=OTHERS)
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--keep-others", action="store_true")
     return parser.parse_args()
 
 
@@ -56,6 +58,13 @@ def ways_of(options):
     """{name of the row: the command's options, or None for another program}"""
     ours = dict(one.partition("=")[::2] for one in options.ours)
     return {name: shlex.split(words) for name, words in ours.items()} | {name: None for name in options.others}
+
+
+def rows_of_others(page):
+    """{(mesh, program): its figures} of an earlier run."""
+    rows = json.loads(page.with_suffix(".json").read_text())
+    return {(row["mesh"], row["way"]): {key: value for key, value in row.items() if key not in ("mesh", "half", "way")}
+            for row in rows if row["way"] in OTHERS}
 
 
 def measure(maker, mesh, way, words):
@@ -125,13 +134,14 @@ def main():
     options = arguments()
     halves, ways = read_list(options.meshes), ways_of(options)
     maker, runs = Maker(options.command.resolve(), options.cache, options.seconds), {}
+    known = rows_of_others(options.page) if options.keep_others else {}
     for name in halves:
         mesh = (options.folder / f"{name}.obj").resolve()
         if options.only and name not in options.only:
             continue
         if options.quick and len(read_obj(mesh)[1]) > QUICK_TRIANGLES:
             continue
-        runs[name] = {way: measure(maker, mesh, way, words) for way, words in ways.items()}
+        runs[name] = {way: known.get((name, way)) or measure(maker, mesh, way, words) for way, words in ways.items()}
         for way, found in runs[name].items():
             print(f"{name}, {way}: {found.get('failed') or ' '.join(cells(found))}", flush=True)
     write_page(options, runs, halves, ways)

@@ -8,7 +8,9 @@ docs/measurements/soft_body.md. Needs numpy.
 
 COMMAND is the vdb_shell binary, SOFT_BODY the sample's. The list of meshes and --ours are as for shape_figures.py. The
 reference of a surface is TetGen's -pYq1.414/14 refined twice, or once where that would be more than --reference-tets.
-Beside the page stands the same as JSON. Results are kept in --cache; other binaries are run again.
+Beside the page stands the same as JSON. Results are kept in --cache; other binaries are run again. With --keep-others
+the rows of other programs are taken from that JSON, and the reference from its own row there: its compliance over its
+ratio is the limit, so nothing is refined again.
 """
 import argparse
 import hashlib
@@ -18,7 +20,7 @@ import pathlib
 import subprocess
 
 from runs import replace_tables, table
-from shape_figures import HALVES, read_list, ways_of
+from shape_figures import HALVES, read_list, rows_of_others, ways_of
 from tet_files import read_tets
 import tet_makers
 from tet_makers import TETGEN, Failed, Maker, digest
@@ -38,6 +40,7 @@ def arguments():
     tet_makers.add_arguments(parser, ["default="], 600)
     parser.add_argument("--others", nargs="*", choices=list(TETGEN), default=[REFERENCE])
     parser.add_argument("--up", choices=("x", "y", "z"), default="y")
+    parser.add_argument("--keep-others", action="store_true")
     parser.add_argument("--reference-tets", type=float, default=4e6, help="most tets of a refined reference")
     return parser.parse_args()
 
@@ -67,6 +70,15 @@ def reference_of(options, maker, mesh):
     first, second = found["refined_compliances_joule"][:2]
     return {"limit": found["limit_joule"], "limit_skin": skin["limit_joule"], "limit_of_one": second + (second - first) / 3,
             "refinements": refinements, "explicit": found["explicit_step_s"]}
+
+
+def known_reference(options, maker, mesh, row):
+    """What reference_of gave when the row was written."""
+    solid = maker.others(mesh, REFERENCE)
+    found, skin = solve(options, solid), solve(options, solid, ["--hold", "skin"])
+    return {"limit": found["compliance_joule"] / row["ratio"], "limit_skin": skin["compliance_joule"] / row["ratio_skin"],
+            "limit_of_one": found["compliance_joule"] / row["ratio_of_one"], "refinements": row["refinements"],
+            "explicit": found["explicit_step_s"]}
 
 
 def measure(options, maker, mesh, way, words, reference):
@@ -125,16 +137,19 @@ def main():
     options.soft_body = options.soft_body.resolve()
     halves, ways = read_list(options.meshes), ways_of(options)
     maker, runs = Maker(options.command.resolve(), options.cache, options.seconds), {}
+    known = rows_of_others(options.page) if options.keep_others else {}
     for name in halves:
         if options.only and name not in options.only:
             continue
         mesh = (options.folder / f"{name}.obj").resolve()
         try:
-            reference = reference_of(options, maker, mesh)
+            row = known.get((name, REFERENCE))
+            reference = known_reference(options, maker, mesh, row) if row else reference_of(options, maker, mesh)
         except Failed as error:
             runs[name] = {way: {"failed": f"reference: {error}"} for way in ways}
         else:
-            runs[name] = {way: measure(options, maker, mesh, way, words, reference) for way, words in ways.items()}
+            runs[name] = {way: known.get((name, way)) or measure(options, maker, mesh, way, words, reference)
+                          for way, words in ways.items()}
         for way, found in runs[name].items():
             print(f"{name}, {way}: {' '.join(cells(found))}", flush=True)
         write_page(options, runs, halves, ways)

@@ -25,6 +25,12 @@ struct Symmetric {
         xy += w * (u[0] * v[1] + u[1] * v[0]), xz += w * (u[0] * v[2] + u[2] * v[0]);
         yz += w * (u[1] * v[2] + u[2] * v[1]);
     }
+    /// Adds w times another.
+    void add(double w, const Symmetric& o)
+    {
+        xx += w * o.xx, xy += w * o.xy, xz += w * o.xz;
+        yy += w * o.yy, yz += w * o.yz, zz += w * o.zz;
+    }
     void add_identity(double w) { xx += w, yy += w, zz += w; }
 };
 

@@ -41,6 +41,7 @@ CostWeights weights_of(const ShellStack& stack, const TaperOptions& options)
     CostWeights weights;
     weights.tet = options.tet_cost;
     weights.power = options.shape_power;
+    weights.poor = options.poor_cost;
     // The void is what of the solid has no tets, so a cost of the void is a gain of the tets.
     const double solid = std::abs(signed_volume(stack.surface(0), stack.triangles()));
     weights.volume6 = options.void_cost *
@@ -96,6 +97,11 @@ OptionList describe(TaperOptions& o)
          option("shape_power", o.shape_power, "--taper-shape-power",
                 "Power of the distortion that counts: the larger, the more the worst tets count")
              .within(at_least(1).at_most(8))
+             .needing("--taper"),
+         option("poor_cost", o.poor_cost, "--taper-poor-cost",
+                "What a tet costs besides that SOFA's mesh checks warn of: a dihedral angle under "
+                "20 or over 160 degrees, or edges of more than 1 to 10")
+             .within(at_least(0))
              .needing("--taper"),
          option("void_cost", o.void_cost, "--taper-void-cost",
                 "What the empty solid would cost for each triangle, or for each prism as high as "

@@ -160,6 +160,8 @@ bool measure(const TaperState& s, const Piece& piece, PieceCost& cost)
         const double shape =
             volume > 0 ? distortion(squared_edges(p), volume) : std::numeric_limits<float>::max();
         cost.distortion += weighed(shape, s.weights.power);
+        if (s.weights.poor > 0 && breaks_sofa_rule(p, volume))
+            cost.distortion += s.weights.poor;
         cost.worst = std::max(cost.worst, shape);
         cost.volume6 += volume;
         ++cost.tets;

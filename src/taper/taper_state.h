@@ -24,6 +24,7 @@ using openvdb::Vec3s;
 struct CostWeights {
     double tet = 1;
     double power = 1;            ///< of the distortion, at least 1
+    double poor = 0;             ///< of a tet that breaks SOFA's rule, besides
     double volume6 = 0;          ///< of six times a volume
     double worst_distortion = 6; ///< a change makes no worse tet than this, unless there was one
 };

@@ -8,6 +8,8 @@
 
 #include <openvdb/Types.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdb_shell::taper
@@ -37,6 +39,31 @@ inline double distortion_of_amips(double amips)
 inline double amips_of_distortion(double distortion)
 {
     return 3 * std::cbrt(distortion * distortion);
+}
+
+/// SOFA's rule on one tet (shell/quality.h), without an angle or a root: the sine of the angle at
+/// an edge is six volumes times its length over the double areas of its two faces, and it is at
+/// least that of 20 degrees from 20 to 160 degrees. Precondition: six_volumes > 0.
+inline bool breaks_sofa_rule(const TetCorners& p, double six_volumes)
+{
+    constexpr double kSquaredSine = 0.116977778440511; // of 20 degrees
+    constexpr double kSquaredRatio = 100;              // of edges
+    const Vec3d a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
+    const Vec3d d = b - a, e = c - a, f = c - b;
+    const std::array<double, 6> squared{a.lengthSqr(), b.lengthSqr(), c.lengthSqr(),
+                                        d.lengthSqr(), e.lengthSqr(), f.lengthSqr()};
+    const auto [least, most] = std::minmax_element(squared.begin(), squared.end());
+    if (*most > kSquaredRatio * *least)
+        return true;
+    // Of the faces opposite to corners 0 to 3.
+    const std::array<double, 4> area{d.cross(e).lengthSqr(), b.cross(c).lengthSqr(),
+                                     a.cross(c).lengthSqr(), a.cross(b).lengthSqr()};
+    const double volume = six_volumes * six_volumes / kSquaredSine;
+    const auto flat = [&](std::size_t edge, std::size_t k, std::size_t l) {
+        return volume * squared[edge] < area[k] * area[l];
+    };
+    return flat(0, 2, 3) || flat(1, 1, 3) || flat(2, 1, 2) || flat(3, 0, 3) || flat(4, 0, 2) ||
+           flat(5, 0, 1);
 }
 
 /// A power of the distortion: the larger, the more the worst tets count.

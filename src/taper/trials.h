@@ -62,8 +62,11 @@ private:
     bool costs_less(const Substitution& change, double than, double& cost);
     double volume6_after(const Substitution& change) const;
     bool loses_last_tet(int piece, const PieceCost& now) const;
-    Vec3d newton_step(int n) const;
-    bool shorter_move(int n);
+    struct Steps {
+        Vec3d plain, for_poor;
+    };
+    Steps newton_steps(int n) const;
+    bool shorter_move(int n, double than);
 
     const TaperState& s_;
     Substitution change_{};

@@ -96,6 +96,42 @@ TEST(TetShape, IsConvexInOneCorner)
         }
 }
 
+TEST(TetShape, BreaksSofasRuleWhereTheReportSaysSo)
+{
+    int broken = 0, kept = 0;
+    for (int k = 1; k < 4000; ++k) {
+        TetCorners p = kSome;
+        for (std::size_t c = 0; c < 4; ++c)
+            p[c] += 0.6 * Vec3d(std::sin(1.1 * k + double(c)), std::sin(2.3 * k + 3.0 * double(c)),
+                                0.5 * std::cos(1.7 * k - double(c)));
+        // One in three is stretched, for the ratio of its edges.
+        p[0] *= k % 3 == 0 ? 12 : 1;
+        const double volume = six_volumes(p);
+        if (volume <= 0)
+            continue;
+        const bool bad = shape_of(p).sofa_bad();
+        EXPECT_EQ(breaks_sofa_rule(p, volume), bad) << k;
+        bad ? ++broken : ++kept;
+    }
+    EXPECT_GT(broken, 100);
+    EXPECT_GT(kept, 100);
+}
+
+TEST(TetShape, EdgesOfMoreThanOneToTenBreakSofasRuleWithAnyAngles)
+{
+    // A long tet over a regular triangle: its angles are 60 degrees and more.
+    const auto over_triangle = [](double height) {
+        const double r = std::sqrt(3.0) / 3;
+        return TetCorners{Vec3d(r, 0, 0), Vec3d(-r / 2, 0.5, 0), Vec3d(-r / 2, -0.5, 0),
+                          Vec3d(0, 0, height)};
+    };
+    for (const double height : {9.5, 10.5}) {
+        const TetCorners p = over_triangle(height);
+        ASSERT_GT(shape_of(p).min_dihedral_radians, kSofaSmallRadians);
+        EXPECT_EQ(breaks_sofa_rule(p, six_volumes(p)), height > 10);
+    }
+}
+
 TEST(TetShape, SolvesWhatIsPositiveAndNothingElse)
 {
     Symmetric h;

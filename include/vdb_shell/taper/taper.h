@@ -29,6 +29,8 @@ struct TaperOptions {
     double tet_cost = 4;
     /// The distortion counts to this power: the larger, the more the worst tets count.
     double shape_power = 1;
+    /// What a tet costs besides that SOFA's mesh checks warn of (TetShape::sofa_bad).
+    double poor_cost = 0;
     /// What an empty solid would cost for each triangle of the surface, or for each prism as high
     /// as edges are long that it would hold, if those are more: the larger, the fuller.
     double void_cost = 80;
