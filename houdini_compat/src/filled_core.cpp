@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Tets that fill a shell, behind the shell's own points and primitives, and back. So a reader of
-// the shell sees the shell that it would see without them. Each attribute of the shell has a value
-// for them: -1 for what belongs to no prism or vertex, 0 for what would be a pillar's.
+// Tets that fill a shell, behind the shell's own points and primitives, and back.
 
 #include "filled_core.h"
 
@@ -12,89 +10,13 @@
 #include "shell_columns.h"
 #include "shell_names.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <numeric>
+#include <vector>
 
 namespace vdb_shell::houdini
 {
 namespace
 {
-
-using openvdb::Vec3s;
-
-/// A value for each added element, where the attribute has something to say of it.
-struct Added {
-    std::string name;
-    Values values;
-};
-
-std::vector<float> as_floats(const std::vector<Vec3s>& vectors)
-{
-    std::vector<float> values;
-    values.reserve(3 * vectors.size());
-    for (const Vec3s& v : vectors)
-        values.insert(values.end(), {v[0], v[1], v[2]});
-    return values;
-}
-
-void append(std::vector<std::int32_t>& values, std::size_t count)
-{
-    values.resize(values.size() + count, -1);
-}
-void append(std::vector<float>& values, std::size_t count)
-{
-    values.resize(values.size() + count, 0.0f);
-}
-/// Of a shell's attributes of strings, which are stop reasons.
-void append(Strings& strings, std::size_t count)
-{
-    const std::string none(name_of(StopReason::none));
-    const auto found = std::find(strings.table.begin(), strings.table.end(), none);
-    const auto place = static_cast<std::int32_t>(found - strings.table.begin());
-    if (found == strings.table.end())
-        strings.table.push_back(none);
-    strings.index.resize(strings.index.size() + count, place);
-}
-/// A shell has no columns of these.
-template <typename T> void append(std::vector<T>& values, std::size_t count)
-{
-    values.resize(values.size() + count);
-}
-
-void append_values(std::vector<Attribute>& attributes, std::size_t count,
-                   const std::vector<Added>& known)
-{
-    for (Attribute& attribute : attributes) {
-        std::visit(
-            [&](auto& values) { append(values, count * static_cast<std::size_t>(attribute.size)); },
-            attribute.values);
-        for (const Added& added : known) {
-            if (added.name != attribute.name)
-                continue;
-            std::visit(
-                [&](auto& values) {
-                    using Column = std::decay_t<decltype(values)>;
-                    if constexpr (!std::is_same_v<Column, Strings>) {
-                        const auto& news = std::get<Column>(added.values);
-                        std::copy(news.begin(), news.end(),
-                                  values.end() - static_cast<std::ptrdiff_t>(news.size()));
-                    }
-                },
-                attribute.values);
-        }
-    }
-}
-
-void append_group(std::vector<Group>& groups, std::size_t before, std::size_t count,
-                  const char* name)
-{
-    for (Group& group : groups)
-        group.members.resize(before + count, false);
-    Group own{name, std::vector<bool>(before, false)};
-    own.members.resize(before + count, true);
-    groups.push_back(std::move(own));
-}
 
 /// Of each tet its mean ratio.
 std::vector<float> qualities(const TetMesh& all, std::size_t first)
@@ -103,32 +25,6 @@ std::vector<float> qualities(const TetMesh& all, std::size_t first)
     for (std::size_t t = first; t < all.tets.size(); ++t)
         quality.push_back(static_cast<float>(shape_of(all, t).mean_ratio));
     return quality;
-}
-
-template <typename List> void shorten(List& list, std::size_t count)
-{
-    list.resize(count);
-}
-void shorten(Strings& strings, std::size_t count)
-{
-    strings.index.resize(count);
-}
-
-void shorten(std::vector<Attribute>& attributes, std::vector<Group>& groups, std::size_t count)
-{
-    for (Attribute& attribute : attributes)
-        std::visit(
-            [&](auto& values) {
-                shorten(values, count * static_cast<std::size_t>(attribute.size));
-            },
-            attribute.values);
-    for (Group& group : groups)
-        group.members.resize(count);
-}
-
-template <typename T> std::vector<T> last_of(const std::vector<T>& list, std::size_t count)
-{
-    return {list.end() - static_cast<std::ptrdiff_t>(count), list.end()};
 }
 
 } // namespace
@@ -164,32 +60,7 @@ void append_core(const ShellFile& file, const ShellPoints& points, HoudiniGeomet
     geometry.points += count;
 }
 
-HoudiniGeometry without_core(const HoudiniGeometry& geometry, const CoreSize& size,
-                             const std::string& name)
-{
-    if (size.points > geometry.points || size.tets > geometry.primitives.size())
-        refuse(name, "it has fewer points or primitives than the core that it tells of");
-    HoudiniGeometry shell = geometry;
-    shell.points -= size.points;
-    const std::size_t primitives = geometry.primitives.size() - size.tets;
-    for (std::size_t i = primitives; i < geometry.primitives.size(); ++i)
-        if (geometry.primitives[i].type != PrimitiveType::tetrahedron ||
-            geometry.primitives[i].vertices != 4)
-            refuse(name, "primitive " + std::to_string(i) + " is no tetrahedron of the core");
-    shell.primitives.resize(primitives);
-    shell.vertex_point.resize(geometry.vertex_point.size() - 4 * size.tets);
-    for (std::size_t i = 0; i < shell.vertex_point.size(); ++i)
-        if (shell.vertex_point[i] >= shell.points)
-            refuse(name, "vertex " + std::to_string(i) + " of the shell is a point of the core");
-    shorten(shell.point_attributes, shell.point_groups, shell.points);
-    shorten(shell.primitive_attributes, shell.primitive_groups, primitives);
-    // Of vertices a shell has nothing.
-    shell.vertex_attributes.clear();
-    shell.vertex_groups.clear();
-    return shell;
-}
-
-void read_core(const HoudiniGeometry& geometry, const CoreSize& size, const std::string& name,
+void read_core(const HoudiniGeometry& geometry, const AddedSize& size, const std::string& name,
                ShellFile& file)
 {
     const Columns points(geometry.point_attributes, "point attribute", name);

@@ -4,31 +4,21 @@
 #include "vdb_shell/houdini/geometry.h"
 #include "vdb_shell/write/vdb_file.h"
 
-#include <cstddef>
+#include "added_elements.h"
+
 #include <string>
-#include <vector>
 
 namespace vdb_shell::houdini
 {
-
-/// Points and tets of a core behind those of the shell, whose own primitives keep their numbers.
-struct CoreSize {
-    std::size_t points = 0, tets = 0;
-};
 
 /// Appends the core of the file to the geometry of its shell, with a value in each of its
 /// attributes, and adds point group `core_points` and primitive group `core_tets`. Precondition:
 /// require_consistent_core; `geometry` has neither digests nor a core.
 void append_core(const ShellFile& file, const ShellPoints& points, HoudiniGeometry& geometry);
 
-/// The geometry of the shell alone. Throws ReadError where it has fewer points or primitives than
-/// the core.
-HoudiniGeometry without_core(const HoudiniGeometry& geometry, const CoreSize& size,
-                             const std::string& name);
-
 /// Fills file.core, and where the shell is posed rest and velocity of the core's points.
 /// Precondition: the shell itself has been read. Throws ReadError for what is not in range.
-void read_core(const HoudiniGeometry& geometry, const CoreSize& size, const std::string& name,
+void read_core(const HoudiniGeometry& geometry, const AddedSize& size, const std::string& name,
                ShellFile& file);
 
 } // namespace vdb_shell::houdini

@@ -17,6 +17,7 @@
 #include "detail_figures.h"
 #include "filled_core.h"
 #include "geometry_digest.h"
+#include "input_columns.h"
 #include "shell_names.h"
 
 #include <algorithm>
@@ -297,6 +298,8 @@ void add_detail(const ShellFile& file, HoudiniGeometry& geometry)
         add_count(geometry, kCoreTetCount, file.core.tets.size());
     }
     add_count(geometry, kRipples, ripples_of(file.stack));
+    if (!file.input.empty())
+        add_count(geometry, kInputPointCount, file.input.points.size());
     if (file.placement.moves()) {
         const Vec3d& o = file.placement.origin;
         geometry.detail_attributes.push_back(
@@ -330,6 +333,7 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
 {
     vdb_shell::require_consistent(file.stack, file.tets);
     require_consistent_core(file.stack, file.tets, file.core);
+    vdb_shell::require_consistent(file.input, file.stack.surface(0).size());
     require_readable(file.stack);
     const ShellPoints points = number_points(file.stack, file.tets);
     const std::vector<Part> parts = parts_of(file);
@@ -343,6 +347,8 @@ HoudiniGeometry shell_geometry(const ShellFile& file)
     add_detail(file, geometry);
     if (!file.core.empty())
         append_core(file, points, geometry);
+    if (!file.input.empty())
+        append_input_points(file.input, geometry);
     // Last, for they are of all that is there.
     add_digests(geometry);
     return geometry;

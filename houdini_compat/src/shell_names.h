@@ -19,6 +19,7 @@ inline constexpr const char* kTapered = "vdb_shell_tapered";
 inline constexpr const char* kPosed = "vdb_shell_posed";
 inline constexpr const char* kCorePointCount = "vdb_shell_core_points";
 inline constexpr const char* kCoreTetCount = "vdb_shell_core_tets";
+inline constexpr const char* kInputPointCount = "vdb_shell_input_points";
 inline constexpr const char* kRest = "rest";
 inline constexpr const char* kVelocity = "v";
 inline constexpr const char* kRipples = "vdb_shell_ripples";
@@ -43,6 +44,7 @@ inline constexpr const char* kSurface = "surface";
 inline constexpr const char* kCollapsed = "collapsed";
 inline constexpr const char* kCorePoints = "core_points";
 inline constexpr const char* kCoreTets = "core_tets";
+inline constexpr const char* kInputPoints = "input_points";
 
 /// Shells of one layer below the surface say nothing of layers: their files are of schema 1.
 inline bool layered(std::size_t layers, std::size_t skin)

@@ -14,6 +14,7 @@
 #include "core_columns.h"
 #include "filled_core.h"
 #include "geometry_digest.h"
+#include "input_columns.h"
 #include "shell_columns.h"
 
 #include <cmath>
@@ -247,7 +248,7 @@ void read_placement(const HoudiniGeometry& geometry, const Columns& detail, Plac
 }
 
 /// Nothing where the file says nothing of a core.
-CoreSize read_core_size(const HoudiniGeometry& geometry, const Columns& detail)
+AddedSize read_core_size(const HoudiniGeometry& geometry, const Columns& detail)
 {
     if (!find(geometry.detail_attributes, kCoreTetCount))
         return {};
@@ -290,6 +291,17 @@ ShellFile shell_alone(const HoudiniGeometry& geometry, const std::string& name)
     return file;
 }
 
+ShellFile with_its_core(const HoudiniGeometry& geometry, const std::string& name)
+{
+    const AddedSize size =
+        read_core_size(geometry, Columns(geometry.detail_attributes, "detail attribute", name));
+    if (size.tets == 0)
+        return shell_alone(geometry, name);
+    ShellFile file = shell_alone(without_last(geometry, size, name), name);
+    read_core(geometry, size, name, file);
+    return file;
+}
+
 } // namespace
 
 bool is_shell(const HoudiniGeometry& geometry)
@@ -303,11 +315,13 @@ ShellFile shell_of_geometry(const HoudiniGeometry& geometry, const std::string& 
         refuse(name,
                std::string("it holds no shell: detail attribute \"") + kSchema + "\" is missing");
     const Columns detail(geometry.detail_attributes, "detail attribute", name);
-    const CoreSize core = read_core_size(geometry, detail);
-    ShellFile file = core.tets > 0 ? shell_alone(without_core(geometry, core, name), name)
-                                   : shell_alone(geometry, name);
-    if (core.tets > 0)
-        read_core(geometry, core, name, file);
+    const std::size_t input = find(geometry.detail_attributes, kInputPointCount)
+                                  ? detail.count(kInputPointCount, geometry.points)
+                                  : 0;
+    ShellFile file = input > 0 ? with_its_core(without_last(geometry, {input, 0}, name), name)
+                               : with_its_core(geometry, name);
+    if (input > 0)
+        file.input = read_input_points(geometry, input, file.stack.surface(0).size(), name);
     const std::string found = checksum_of(file.stack, file.tets, file.core);
     if (found != detail.text(kChecksum))
         refuse(name, "the shell's arrays have checksum " + found + ", the file says " +

@@ -106,6 +106,8 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     file.core_feet = std::move(result.core_feet);
     if (result.core)
         file.core = std::move(*result.core);
+    if (result.remesh_map)
+        file.input = input_points_of(*result.remesh_map);
     if (result.report.read)
         file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);

@@ -168,7 +168,7 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             write_tets(path, solid.tets, solid.certified, file.placement,
                        {feet_of_tet_points(file.stack, solid.tets, file.core_feet),
                         vectors_of_tet_points(file.tets, file.rest),
-                        vectors_of_tet_points(file.tets, file.rest.velocity)},
+                        vectors_of_tet_points(file.tets, file.rest.velocity), file.input},
                        &files);
             break;
         case Kind::surface:

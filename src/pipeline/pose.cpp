@@ -122,6 +122,7 @@ ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
     file.parameters_json = rest.parameters_json;
     file.placement = rest.placement;
     file.rest = rest_points(rest);
+    file.input = rest.input;
     file.rest.velocity = std::move(posed.velocity);
     file.stack = std::move(posed.stack);
     if (with_volumes)

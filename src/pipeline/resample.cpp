@@ -162,6 +162,7 @@ void remesh_surface(ShellResult& result, const ShellOptions& options, Interrupte
 {
     require_embedded(result, "remeshing");
     RemeshResult remeshed = remesh(result.surface, options.remesh, interrupter);
+    remeshed.map.input_points = std::move(result.surface.points);
     result.surface = std::move(remeshed.mesh);
     result.remesh_map = std::move(remeshed.map);
     result.report.remesh = remeshed.report;

@@ -21,6 +21,7 @@
 #include "write/core_feet_grid.h"
 #include "write/core_grids.h"
 #include "write/file_digests.h"
+#include "write/input_points_grid.h"
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 
@@ -149,17 +150,19 @@ template <typename Grid> typename Grid::Ptr read_grid(OpenFile& from, const char
 struct AllPoints {
     PointGrids shell;
     CoreGrids core;
+    openvdb::points::PointDataGrid::Ptr input;
 };
 
-AllPoints read_points_of(OpenFile& file, bool with_core)
+AllPoints read_points_of(OpenFile& file, const ShellInfo& info)
 {
     using openvdb::points::PointDataGrid;
     return {{read_grid<PointDataGrid>(file, kPointsGrid),
              read_grid<PointDataGrid>(file, kPrismsGrid),
              read_grid<PointDataGrid>(file, kTetsGrid)},
-            with_core ? CoreGrids{read_grid<PointDataGrid>(file, kCorePointsGrid),
-                                  read_grid<PointDataGrid>(file, kCoreTetsGrid)}
-                      : CoreGrids{}};
+            info.core_tets > 0 ? CoreGrids{read_grid<PointDataGrid>(file, kCorePointsGrid),
+                                           read_grid<PointDataGrid>(file, kCoreTetsGrid)}
+                               : CoreGrids{},
+            info.input_points > 0 ? read_grid<PointDataGrid>(file, kInputPointsGrid) : nullptr};
 }
 
 void require_consistent_rest(const ShellFile& file)
@@ -207,9 +210,8 @@ template <typename Read> auto guarded(const fs::path& path, const Read& read)
 /// Adds the digests of another file to those of the first.
 AllPoints find_points(OpenFile& main, const ShellInfo& info, std::size_t& digests)
 {
-    const bool with_core = info.core_tets > 0;
     if (info.points_at == main.path)
-        return read_points_of(main, with_core);
+        return read_points_of(main, info);
     return guarded(info.points_at, [&] {
         OpenFile beside(info.points_at);
         // Names prove nothing: a file of the same name may be left from an earlier run.
@@ -219,7 +221,7 @@ AllPoints find_points(OpenFile& main, const ShellInfo& info, std::size_t& digest
                             ": its points are those of another shell: checksum " + found +
                             ", expected " + info.checksum);
         digests += beside.digests.count();
-        return read_points_of(beside, with_core);
+        return read_points_of(beside, info);
     });
 }
 
@@ -251,6 +253,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     require_consistent(file.stack, file.tets);
     require_consistent_core(file.stack, file.tets, file.core);
     require_consistent_rest(file);
+    require_consistent(file.input, file.stack.surface(0).size());
     const bool beside = options.points == PointPlacement::beside;
     openvdb::MetaMap metadata;
     PointGrids made;
@@ -279,6 +282,8 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
         points.push_back(core.points);
         points.push_back(core.tets);
     }
+    if (!file.input.empty())
+        points.push_back(make_input_points_grid(file.input));
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
     // The grids of points were made for this call, so they may be changed in place.
@@ -336,6 +341,9 @@ ShellFile read_shell_vdb(const fs::path& path)
             result.rest = read_rest_points(points.shell, points.core, counts, result.stack, name);
         result.core_feet =
             read_core_feet(*points.shell.points, number_points(result.stack, {}), name);
+        if (points.input)
+            result.input = read_input_points_grid(*points.input, info.input_points,
+                                                  std::size_t(info.vertices), name);
         // The file has the sum over all layers; it is put into the first layer.
         result.stack.splits.front().ripples = std::size_t(info.ripples);
         result.parameters_json = info.parameters_json;

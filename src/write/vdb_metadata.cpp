@@ -59,6 +59,7 @@ constexpr const char* kOrientationOfLayers =
     "triangles counter-clockwise seen from outside; tets (a,b,c,d) with det(b-a,c-a,d-a) > 0 "
     "unless inverted; surfaces and layers from 0, the outermost";
 constexpr const char* kGridNames = "surface depth shell_points shell_prisms shell_tets";
+constexpr const char* kInputPointsKey = "vdb_shell_input_points";
 constexpr const char* kCoreGridNames = " core_points core_tets";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what)
@@ -237,6 +238,8 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     }
     if (counts.posed)
         map.insertMeta(kPosedKey, Int32Metadata(1));
+    if (!file.input.empty())
+        map.insertMeta(kInputPointsKey, Int32Metadata(std::int32_t(file.input.points.size())));
     if (file.placement.moves()) {
         map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
         map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
@@ -246,6 +249,7 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     map.insertMeta(
         kGridsKey,
         StringMetadata(std::string(kGridNames) + (counts.core_tets > 0 ? kCoreGridNames : "") +
+                       (file.input.empty() ? "" : " input_points") +
                        (file.rest_volume ? " rest" : "") + (file.velocity_volume ? " v" : "")));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
@@ -288,6 +292,8 @@ ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& p
     info.tets = count_entry(metadata, path, kTetsKey);
     info.ripples = count_entry(metadata, path, kRipplesKey);
     read_layers(metadata, path, info);
+    if (metadata[kInputPointsKey])
+        info.input_points = count_entry(metadata, path, kInputPointsKey);
     read_placement(metadata, path, info.placement);
     info.creator = entry<std::string>(metadata, path, kCreatorKey);
     info.orientation = entry<std::string>(metadata, path, kOrientationKey);

@@ -34,11 +34,15 @@ const char* byte_order()
 
 template <typename T>
 void write_array(TextOut& text, const char* type, const char* name, int components,
-                 const std::vector<T>& values)
+                 const std::vector<T>& values, std::size_t tuples = 0)
 {
     const std::uint64_t size = values.size() * sizeof(T);
     text << "<DataArray type=\"" << type << "\" Name=\"" << name << "\" NumberOfComponents=\""
-         << components << "\" format=\"binary\">\n";
+         << components << '"';
+    // Of points and cells VTK knows how many there are.
+    if (tuples > 0)
+        text << " NumberOfTuples=\"" << tuples << '"';
+    text << " format=\"binary\">\n";
     // The length is a base-64 block of its own, padded before the data begin: VTK decodes the
     // header before it knows how much follows.
     text << base64(reinterpret_cast<const unsigned char*>(&size), sizeof size)
@@ -106,6 +110,26 @@ void write_feet(TextOut& text, const std::vector<CoreFoot>& feet)
     write_array(text, "Float32", "core_distance", 1, distance);
 }
 
+/// Arrays of the whole file, as long as they are.
+void write_input(TextOut& text, const InputPoints& input, const Placement& placement)
+{
+    if (input.empty())
+        return;
+    std::vector<openvdb::Vec3d> points;
+    for (const openvdb::Vec3s& point : input.points)
+        points.push_back(placement.in_file(point));
+    std::vector<std::int32_t> corners;
+    for (const openvdb::Vec3I& c : input.corners)
+        for (int k = 0; k < 3; ++k)
+            corners.push_back(std::int32_t(c[k]));
+    text << "<FieldData>\n";
+    const std::size_t tuples = points.size();
+    write_array(text, "Float64", "input_points", 3, points, tuples);
+    write_array(text, "Int32", "input_corners", 3, corners, tuples);
+    write_array(text, "Float32", "input_weights", 3, input.weights, tuples);
+    text << "</FieldData>\n";
+}
+
 } // namespace
 
 void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::uint8_t>& certified,
@@ -114,9 +138,10 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
     TextOut text(out);
     text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
             "byte_order=\""
-         << byte_order() << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece "
-         << "NumberOfPoints=\"" << tets.points.size() << "\" NumberOfCells=\"" << tets.tets.size()
-         << "\">\n<PointData>\n";
+         << byte_order() << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n";
+    write_input(text, extras.input, placement);
+    text << "<Piece NumberOfPoints=\"" << tets.points.size() << "\" NumberOfCells=\""
+         << tets.tets.size() << "\">\n<PointData>\n";
     write_numbers(text, tets, "UInt32", "source_vertex", tets.source_vertex);
     write_numbers(text, tets, "UInt8", "layer", tets.layer);
     write_feet(text, extras.feet);

@@ -106,6 +106,47 @@ TEST(FilledGeometry, WhereAPillarEndedAtACoreComesBackBesideAFilling)
     expect_same_core(found, file);
 }
 
+/// Three vertices of a surface that was remeshed.
+InputPoints some_input()
+{
+    return {{Vec3s(1, 2, 3), Vec3s(-0.0f, 0, 0), Vec3s(4, 5, 6)},
+            {{0, 1, 2}, {2, 5, 7}, {1, 0, 3}},
+            {Vec3s(0.25f, 0.5f, 0.25f), Vec3s(1, 0, 0), Vec3s(0, 0.125f, 0.875f)}};
+}
+
+TEST(FilledGeometry, TheSurfaceBeforeRemeshingComesBackWithACoreAndWithout)
+{
+    for (ShellFile file : {filled_ball(), filled_tapered_ball()})
+        for (const bool with_core : {true, false}) {
+            if (!with_core)
+                file.core = {};
+            file.input = some_input();
+            test::expect_round_trips(file);
+            const ShellFile found = read_back(file);
+            expect_same_core(found, file);
+            EXPECT_TRUE(test::same_values(found.input.points, file.input.points));
+            EXPECT_EQ(found.input.corners, file.input.corners);
+            EXPECT_TRUE(test::same_values(found.input.weights, file.input.weights));
+            const HoudiniGeometry g = shell_geometry(file);
+            const auto& members = find(g.point_groups, "input_points")->members;
+            EXPECT_EQ(std::count(members.begin(), members.end(), true), 3);
+        }
+    EXPECT_TRUE(read_back(filled_ball()).input.empty());
+}
+
+TEST(FilledGeometry, ACornerThatIsNoVertexIsRefused)
+{
+    ShellFile file = filled_ball();
+    file.input = some_input();
+    HoudiniGeometry g = shell_geometry(file);
+    auto corners = std::find_if(g.point_attributes.begin(), g.point_attributes.end(),
+                                [](const Attribute& a) { return a.name == "input_corners"; });
+    std::get<std::vector<std::int32_t>>(corners->values).back() = 42;
+    EXPECT_THROW(shell_of_geometry(g, "x.geo"), ReadError);
+    file.input.corners[0][0] = 42;
+    EXPECT_THROW(shell_geometry(file), InvalidOption);
+}
+
 TEST(FilledGeometry, TheTetsFillTheSolidInHoudinisOrientation)
 {
     const ShellFile file = filled_ball();
@@ -192,11 +233,11 @@ TEST(FilledGeometry, SaysWhatOfTheCoreContradicts)
         "is no tetrahedron of the core");
     has(refusal_after(
             [](auto& g) { integers(g.detail_attributes, "vdb_shell_core_tets")[0] -= 1; }),
-        "is a point of the core");
+        "is a point behind the shell's");
     has(refusal_after([](auto& g) { integers(g.point_attributes, "source_vertex").back() = -2; }),
         "\"source_vertex\" of a point of the core is -2");
     has(refusal_after([](auto& g) { g.vertex_point[0] = std::uint32_t(g.points - 1); }),
-        "is a point of the core");
+        "is a point behind the shell's");
     has(refusal_after(
             [](auto& g) { std::swap(g.vertex_point.back(), *(g.vertex_point.end() - 2)); }),
         "checksum");

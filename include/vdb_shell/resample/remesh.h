@@ -47,6 +47,8 @@ struct RemeshMap {
     std::vector<SurfacePoint> input_on_result;
     /// Of each vertex of the result, its place on the input.
     std::vector<SurfacePoint> result_on_input;
+    /// Where the input's vertices are; filled in by build_shell, whose input is gone afterwards.
+    std::vector<openvdb::Vec3s> input_points{};
 };
 
 /// How well triangles are shaped and how long their edges are.

@@ -4,6 +4,7 @@
 #include "vdb_shell/mesh/placement.h"
 #include "vdb_shell/obstacles/core_feet.h"
 #include "vdb_shell/shell/tessellate.h"
+#include "vdb_shell/write/input_points.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,6 +22,7 @@ const std::vector<std::string>& tet_file_extensions();
 struct PointExtras {
     std::vector<CoreFoot> feet;                 ///< feet_of_tet_points
     std::vector<openvdb::Vec3s> rest, velocity; ///< vectors_of_tet_points
+    InputPoints input{};                        ///< not of the points: data of the whole
 };
 
 /// Writes the tets, by extension: VTK unstructured grid (.vtu), TetGen (.node and .ele: either name

@@ -8,6 +8,7 @@
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/shell/shell_stack.h"
+#include "vdb_shell/write/input_points.h"
 #include "vdb_shell/write/shell_points.h"
 
 #include <cstdint>
@@ -48,6 +49,7 @@ struct ShellFile {
     std::vector<CoreFoot> core_feet{}; ///< by vertex; empty where there were no cores
     CoreTets core{};                   ///< empty where nothing fills the shell
     RestPoints rest{};                 ///< of a posed shell
+    InputPoints input{};               ///< of the surface before remeshing; empty where it was not
     GridBasePtr rest_volume{};         ///< written if there is one; not read
     GridBasePtr velocity_volume{};     ///< the same
     /// Digests of parts of the file that held when it was read; 0 where it has none.
@@ -80,6 +82,7 @@ struct ShellInfo {
     std::int64_t skin = 0;   ///< ShellStack::skin
     bool tapered = false;    ///< ShellStack::tapered
     std::int64_t core_points = 0, core_tets = 0;
+    std::int64_t input_points = 0;   ///< ShellFile::input
     bool posed = false;              ///< ShellFile::rest.posed()
     Placement placement;             ///< moves nothing where the file has none
     std::int64_t ripples = 0;        ///< PrismSplit::ripples, of all layers

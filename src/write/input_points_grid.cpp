@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// The surface before remeshing to a grid of points and back, bit for bit. As in core_grids.cpp a
+// point carries its id and its exact position in `rest`.
+
+#include "write/input_points_grid.h"
+
+#include "write/point_grid_builder.h"
+#include "write/point_grid_reader.h"
+
+namespace vdb_shell
+{
+
+openvdb::points::PointDataGrid::Ptr make_input_points_grid(const InputPoints& input)
+{
+    std::vector<std::int32_t> id, corners;
+    for (std::size_t i = 0; i < input.points.size(); ++i) {
+        id.push_back(std::int32_t(i));
+        for (int k = 0; k < 3; ++k)
+            corners.push_back(std::int32_t(input.corners[i][k]));
+    }
+    PointGridBuilder builder(kInputPointsGrid, input.points);
+    builder.add("id", id);
+    builder.add("rest", input.points);
+    builder.add_tuples("corner", 3, corners);
+    builder.add("weights", input.weights);
+    return builder.take();
+}
+
+InputPoints read_input_points_grid(const openvdb::points::PointDataGrid& grid, std::int64_t count,
+                                   std::size_t vertices, const std::string& name)
+{
+    const PointGridReader reader(grid, count, name);
+    InputPoints input;
+    reader.positions("rest", input.points);
+    reader.positions("weights", input.weights);
+    input.corners.resize(input.points.size());
+    reader.indices("corner", 3, vertices,
+                   [&](std::size_t id, openvdb::Index k, std::uint32_t value) {
+                       input.corners[id][int(k)] = value;
+                   });
+    return input;
+}
+
+} // namespace vdb_shell
