@@ -198,6 +198,21 @@ void BoxTree::widen(std::size_t i, const FloatBox& box)
     }
 }
 
+void BoxTree::replace(std::size_t i, const FloatBox& box)
+{
+    const std::size_t place = place_[i];
+    boxes_[place] = box;
+    FloatBox around = box;
+    for (Lane at = lane_of_place_[place]; at.node >= 0;
+         at = lane_of_node_[static_cast<std::size_t>(at.node)]) {
+        Node& n = nodes_[static_cast<std::size_t>(at.node)];
+        n.box.set(at.lane, around);
+        around = n.box.get(0);
+        for (unsigned lane = 1; lane < n.children; ++lane)
+            around.add(n.box.get(lane));
+    }
+}
+
 void BoxTree::fit_nodes()
 {
     std::vector<FloatBox> around(nodes_.size());

@@ -87,6 +87,8 @@ public:
     /// Precondition: index_parents. For boxes that stay and are soon built anew; those that come
     /// and go one by one lie in resample/loose_grid.h.
     void widen(std::size_t i, const FloatBox& box);
+    /// Box i becomes `box`, at the same cost. Precondition: index_parents.
+    void replace(std::size_t i, const FloatBox& box);
 
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const FloatBox& query, Visit&& visit) const

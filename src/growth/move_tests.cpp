@@ -258,8 +258,25 @@ bool split_positive(const GrowState& s, int f, int order)
     return true;
 }
 
+namespace
+{
+
+/// Whether doubles show that all twelve tets are positive: each holds an inner point. Never beside
+/// a pin, where some are flat.
+bool surely_all_positive(const GrowState& s, int f)
+{
+    for (int k = 0; k < 3; ++k)
+        if (!surely_positive(prism_around(s, {f, k}), s.b[s.mesh->corner(f, k)].asPointer()))
+            return false;
+    return true;
+}
+
+} // namespace
+
 bool prism_valid(const GrowState& s, int f)
 {
+    if (s.twelve && surely_all_positive(s, f))
+        return true;
     if (!s.twelve && !split_positive(s, f, s.order[f]))
         return false;
     if (s.twelve)

@@ -114,6 +114,20 @@ TEST(BoxTree, LooksOnlyAtBoxesThatAreSaidToHaveChanged)
 }
 
 // Through the middle of each box, and away from it.
+TEST(BoxTree, FindsBoxesWhereTheyHaveBeenPutOneByOne)
+{
+    std::vector<FloatBox> boxes = random_boxes(700, 5);
+    const std::vector<FloatBox> later = random_boxes(700, 6);
+    BoxTree tree;
+    tree.build(boxes);
+    tree.index_parents();
+    for (std::size_t i = 0; i < boxes.size(); i += 3) {
+        boxes[i] = later[i];
+        tree.replace(i, later[i]);
+    }
+    expect_same_as_all_pairs(tree, boxes);
+}
+
 TEST(BoxTree, FindsTheBoxesOnARayAndNoneBehindIt)
 {
     const std::vector<FloatBox> boxes = random_boxes(300, 4);
