@@ -246,12 +246,40 @@ void BoxTree::Near::add(const FloatBox& box, int item)
     item_.push_back(item);
 }
 
-void BoxTree::list_overlaps(const FloatBox& box, Near& near) const
+bool BoxTree::list_overlaps(const FloatBox& box, Near& near, std::size_t most) const
 {
     near.clear();
     const FourBoxes wanted = FourBoxes::same(box);
-    descend([&](const FourBoxes& boxes) { return boxes.overlaps(wanted); },
-            [&](std::size_t at) { near.add(boxes_[at], item_[at]); });
+    bool all = true;
+    descend([&](std::size_t, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
+            [&](std::size_t at) {
+                all = near.size() < most;
+                if (all)
+                    near.add(boxes_[at], item_[at]);
+                return all;
+            });
+    return all;
+}
+
+void BoxTree::mark(const std::vector<Marks>& marks)
+{
+    assert(marks.size() == item_.size());
+    common_.assign(kWide * nodes_.size(), {kNoMark, kNoMark, kNoMark});
+    // By node, of all its lanes. Children stand behind their node, as in fit_nodes().
+    std::vector<Marks> under(nodes_.size());
+    for (std::size_t i = nodes_.size(); i-- > 0;) {
+        const Node& n = nodes_[i];
+        for (unsigned lane = 0; lane < n.children; ++lane) {
+            const auto child = static_cast<std::size_t>(n.child[lane]);
+            Marks& own = common_[kWide * i + lane];
+            own = n.leaf ? marks[static_cast<std::size_t>(item_[child])] : under[child];
+            if (lane == 0)
+                under[i] = own;
+            for (std::uint32_t& mark : under[i])
+                if (std::find(own.begin(), own.end(), mark) == own.end())
+                    mark = kNoMark;
+        }
+    }
 }
 
 } // namespace vdb_shell

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -90,12 +91,41 @@ public:
     /// Box i becomes `box`, at the same cost. Precondition: index_parents.
     void replace(std::size_t i, const FloatBox& box);
 
+    /// Numbers that a box carries, kNoMark where it has fewer: so that all boxes of a kind can be
+    /// passed over at once.
+    using Marks = std::array<std::uint32_t, 3>;
+    static constexpr std::uint32_t kNoMark = ~0U;
+    /// Precondition: as many as boxes. To be called after each build().
+    void mark(const std::vector<Marks>& marks);
+
     /// Calls visit(i) for every box i that overlaps `query`.
     template <class Visit> void for_each_overlap(const FloatBox& query, Visit&& visit) const
     {
         const FourBoxes wanted = FourBoxes::same(query);
-        descend([&](const FourBoxes& boxes) { return boxes.overlaps(wanted); },
-                [&](std::size_t at) { visit(item_[at]); });
+        descend([&](std::size_t, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
+                [&](std::size_t at) {
+                    visit(item_[at]);
+                    return true;
+                });
+    }
+    /// The same but for boxes that carry one of these marks, until visit(i) returns false.
+    /// Precondition: mark().
+    template <class Visit>
+    void for_each_overlap_without(const Marks& marks, const FloatBox& query, Visit&& visit) const
+    {
+        const FourBoxes wanted = FourBoxes::same(query);
+        descend(
+            [&](std::size_t node, const FourBoxes& boxes) {
+                return without(marks, node, boxes.overlaps(wanted));
+            },
+            [&](std::size_t at) { return visit(item_[at]); });
+    }
+    static bool have_common(const Marks& a, const Marks& b)
+    {
+        bool found = false;
+        for (const std::uint32_t mark : a)
+            found |= mark != kNoMark && (mark == b[0] || mark == b[1] || mark == b[2]);
+        return found;
     }
 
     /// Calls visit(i) for the boxes the ray p + t d, 0 <= t <= limit, may meet; visit may lower
@@ -104,14 +134,23 @@ public:
     void for_each_on_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, const double& limit,
                          Visit&& visit) const
     {
+        descend([&](std::size_t, const FourBoxes& boxes) { return met_by_ray(boxes, p, d, limit); },
+                [&](std::size_t at) {
+                    visit(item_[at]);
+                    return true;
+                });
+    }
+    /// The same but for boxes that carry one of these marks, until visit(i) returns false.
+    /// Precondition: mark().
+    template <class Visit>
+    void for_each_on_ray_without(const Marks& marks, const openvdb::Vec3d& p,
+                                 const openvdb::Vec3d& d, double limit, Visit&& visit) const
+    {
         descend(
-            [&](const FourBoxes& boxes) {
-                unsigned met = 0;
-                for (std::size_t lane = 0; lane < kWide; ++lane)
-                    met |= unsigned(boxes.get(lane).meets_ray(p, d, limit)) << lane;
-                return met;
+            [&](std::size_t node, const FourBoxes& boxes) {
+                return without(marks, node, met_by_ray(boxes, p, d, limit));
             },
-            [&](std::size_t at) { visit(item_[at]); });
+            [&](std::size_t at) { return visit(item_[at]); });
     }
 
     /// Boxes that lie together, for those who ask about all of them: one walk serves a group.
@@ -121,6 +160,7 @@ public:
     {
     public:
         void clear() { block_.clear(), item_.clear(); }
+        std::size_t size() const { return item_.size(); }
         void add(const FloatBox& box, int item);
         /// Calls visit(item) for each box that overlaps this one, until one returns true; whether
         /// one did.
@@ -138,13 +178,15 @@ public:
         std::vector<FourBoxes> block_;
         std::vector<int> item_;
     };
-    /// The boxes that overlap this one, for those who go on to look at parts of it.
-    void list_overlaps(const FloatBox& box, Near& near) const;
+    /// The boxes that overlap this one, for those who go on to look at parts of it. False if there
+    /// are more than `most`, and then not all are listed.
+    bool list_overlaps(const FloatBox& box, Near& near, std::size_t most = SIZE_MAX) const;
     /// Calls visit(i, j) for every box i of the group with wanted(i) and every box j of `other`
-    /// that overlaps it; `other` may be this tree.
+    /// that overlaps it; `other` may be this tree. False, and nothing is called, where more than
+    /// `most` boxes overlap the one around the group.
     template <class Wanted, class Visit>
-    void for_each_overlap_of(std::size_t group, const BoxTree& other, Near& near,
-                             const Wanted& wanted, Visit&& visit) const
+    bool for_each_overlap_of(std::size_t group, const BoxTree& other, Near& near,
+                             const Wanted& wanted, Visit&& visit, std::size_t most = SIZE_MAX) const
     {
         const std::size_t begin = group * kGroup, end = std::min(item_.size(), begin + kGroup);
         bool any = false;
@@ -157,14 +199,22 @@ public:
                 any = true;
             }
         if (!any)
-            return;
-        other.list_overlaps(all, near);
+            return true;
+        if (!other.list_overlaps(all, near, most))
+            return false;
         for (std::size_t i = begin; i < end; ++i)
             if (wanted(item_[i]))
                 near.any_overlap(boxes_[i], [&](int j) {
                     visit(item_[i], j);
                     return false;
                 });
+        return true;
+    }
+    /// Calls visit(i) for the boxes of a group.
+    template <class Visit> void for_each_of(std::size_t group, Visit&& visit) const
+    {
+        for (std::size_t i = group * kGroup; i < std::min(item_.size(), (group + 1) * kGroup); ++i)
+            visit(item_[i]);
     }
 
 private:
@@ -185,8 +235,8 @@ private:
     int add_node(int begin, int end);
     void fit_nodes();
 
-    /// Calls visit(place) for every box that is met, leaving out what lies under boxes that are
-    /// not: meets(four boxes) has a bit for each that is.
+    /// Calls visit(place), until it returns false, for every box that is met, leaving out what lies
+    /// under boxes that are not: meets(node, its four boxes) has a bit for each that is.
     template <class Meets, class Visit> void descend(const Meets& meets, Visit&& visit) const
     {
         if (nodes_.empty())
@@ -195,17 +245,39 @@ private:
         int top = 0;
         stack[top++] = 0;
         while (top > 0) {
-            const Node& n = nodes_[static_cast<std::size_t>(stack[--top])];
-            unsigned met = meets(n.box) & ((1U << n.children) - 1U);
+            const auto at = static_cast<std::size_t>(stack[--top]);
+            const Node& n = nodes_[at];
+            unsigned met = meets(at, n.box) & ((1U << n.children) - 1U);
             if (n.leaf) {
                 for (; met != 0; met &= met - 1)
-                    visit(static_cast<std::size_t>(n.child[std::size_t(__builtin_ctz(met))]));
+                    if (!visit(static_cast<std::size_t>(n.child[std::size_t(__builtin_ctz(met))])))
+                        return;
                 continue;
             }
             for (std::size_t lane = kWide; lane-- > 0;)
                 if ((met >> lane & 1U) != 0)
                     stack[top++] = n.child[lane];
         }
+    }
+
+    /// Of the lanes of a node that are met those without these marks.
+    unsigned without(const Marks& marks, std::size_t node, unsigned met) const
+    {
+        for (unsigned left = met & ((1U << nodes_[node].children) - 1U); left != 0;
+             left &= left - 1) {
+            const auto lane = unsigned(__builtin_ctz(left));
+            if (have_common(marks, common_[kWide * node + lane]))
+                met &= ~(1U << lane);
+        }
+        return met;
+    }
+    static unsigned met_by_ray(const FourBoxes& boxes, const openvdb::Vec3d& p,
+                               const openvdb::Vec3d& d, double limit)
+    {
+        unsigned met = 0;
+        for (std::size_t lane = 0; lane < kWide; ++lane)
+            met |= unsigned(boxes.get(lane).meets_ray(p, d, limit)) << lane;
+        return met;
     }
 
     std::vector<int> item_;       ///< in the order of the leaves
@@ -219,6 +291,8 @@ private:
     };
     std::vector<std::size_t> place_;
     std::vector<Lane> lane_of_place_, lane_of_node_;
+    /// Of mark(), kWide to a node: what all boxes under a lane carry.
+    std::vector<Marks> common_;
 };
 
 } // namespace vdb_shell

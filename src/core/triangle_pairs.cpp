@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Pairs of triangles that may have a common point. A triangle that is much longer than wide fills
-// little of its box: of two fans of needles over one rim, as in a cone, each needle's box would
-// overlap half of all others. So needles are cut across into pieces, each with a box of its own,
-// and a pair is one of which two pieces' boxes overlap. The pieces cover their triangle, and their
-// boxes are widened by more than the rounding, so no pair is lost.
+// Pairs of triangles that may have a common point. Boxes alone would give nearly all pairs where
+// many triangles meet in a corner, or lie long and thin beside one another, although they do not
+// touch. So those that meet in a crowded corner are compared as they are seen from there, on a
+// sphere: two triangles with one corner in common that have another point in common are seen in one
+// direction. Those that meet in a crowded edge are compared as they are seen along it, on a circle,
+// for the same reason. Of all others, those in a crowd are halved until the pieces are apart or
+// few (core/crowded_pairs.h). Boxes are widened by more than the rounding, so no pair is lost.
 
 #include "core/triangle_pairs.h"
 
+#include "core/bucket_sort.h"
+#include "core/crowded_pairs.h"
 #include "core/parallel.h"
+#include "core/polled_stop.h"
+#include "core/unit_vector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -23,131 +29,362 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
+using Pair = std::array<std::uint32_t, 2>;
+using Marks = BoxTree::Marks;
 
-// A piece is cut off for each so many widths of length: a surface of good triangles has none.
-constexpr double kWidthsInPiece = 16;
-// So that the boxes stay a multiple of the triangles. Two cones of 16,000 needles each took inspect
-// 4.8 s with 8, 5.9 with 32 and 8.5 with 128; random needles took 1.4, 1.1 and 1.4 s.
-constexpr std::size_t kMostPieces = 16;
+constexpr Marks kNoMarks{BoxTree::kNoMark, BoxTree::kNoMark, BoxTree::kNoMark};
+// Triangles around one corner, or one edge, above which they are compared as seen from there: many
+// more than in the faces of a tet mesh, which have some forty.
+constexpr std::size_t kCrowdedCorner = 128;
+// Boxes near a group of sixteen above which its triangles are looked at one by one: a good surface
+// has some fifty, the faces of a tet mesh some five hundred.
+constexpr std::size_t kMostNearGroup = 1024;
+// Groups that one thread takes at a time: they share the memory of one list of nearby boxes.
+constexpr std::size_t kGroupsInPart = 16;
 
-/// A triangle by its longest edge and what is left.
-struct Needle {
-    Vec3d from, to, tip;
-    double length = 0, width = 0;
+/// A convex part with four corners, in their order around it. It is cut across, in the middle of
+/// the longer two of opposite sides, so a long one becomes shorter and not thinner.
+struct TrianglePiece {
+    std::array<Vec3d, 4> corner;
+    double pad;
+    std::uint32_t item;
+    Marks marks;
 
-    Needle(const std::vector<Vec3s>& points, const Vec3I& t)
+    /// All of a triangle: the corner between its longer sides is there twice.
+    TrianglePiece(const std::vector<Vec3s>& points, const Vec3I& t, std::uint32_t i, Marks m)
+        : pad(0), item(i), marks(m)
     {
+        std::array<Vec3d, 3> p;
         for (int k = 0; k < 3; ++k) {
-            const Vec3d a(points[t[k]]), b(points[t[(k + 1) % 3]]);
-            if ((b - a).length() > length)
-                length = (b - a).length(), from = a, to = b, tip = Vec3d(points[t[(k + 2) % 3]]);
+            p[std::size_t(k)] = Vec3d(points[t[k]]);
+            for (int axis = 0; axis < 3; ++axis)
+                pad = std::max(pad, std::abs(p[std::size_t(k)][axis]));
         }
-        if (length > 0)
-            width = (to - from).cross(tip - from).length() / length;
+        // Each of at most forty middles is off by half a unit in the last place: 5e-15 of it.
+        pad *= 1e-13;
+        std::size_t shortest = 0;
+        for (std::size_t k = 1; k < 3; ++k)
+            if ((p[(k + 1) % 3] - p[k]).lengthSqr() <
+                (p[(shortest + 1) % 3] - p[shortest]).lengthSqr())
+                shortest = k;
+        corner = {p[(shortest + 2) % 3], p[shortest], p[(shortest + 1) % 3], p[(shortest + 2) % 3]};
     }
-    std::size_t pieces() const
+    FloatBox box() const
     {
-        const double wanted = length / (kWidthsInPiece * width);
-        // Neither a triangle without an area nor one without a length has a number here.
-        if (!(wanted >= 2))
-            return 1;
-        return wanted < double(kMostPieces) ? std::size_t(wanted) : kMostPieces;
+        PaddedBox box;
+        for (const Vec3d& p : corner)
+            box.add(p);
+        return box.padded(pad);
     }
-};
-
-/// The part between two shares of the length. Whatever `tip_at` is, the lines across from the edge
-/// to the other two sweep the whole triangle, so it may be rounded.
-class Slices
-{
-public:
-    Slices(const Needle& needle, const FloatBox& box) : needle_(needle), box_(box)
+    bool divisible() const { return longer_of_opposite(longer_side()) > 1e6 * pad * pad; }
+    TrianglePiece halve()
     {
-        const Vec3d along = needle.to - needle.from;
-        tip_at_ = std::clamp((needle.tip - needle.from).dot(along) / along.lengthSqr(), 0.0, 1.0);
-        double greatest = 0;
-        for (int k = 0; k < 3; ++k)
-            for (const Vec3d* p : {&needle.from, &needle.to, &needle.tip})
-                greatest = std::max(greatest, std::abs((*p)[k]));
-        // Some twenty roundings of doubles would be 2e-15 of it.
-        pad_ = 1e-13 * greatest;
-    }
-
-    FloatBox between(double begin, double end) const
-    {
-        Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
-        const auto add = [&](const Vec3d& p) {
-            low = openvdb::math::minComponent(low, p);
-            high = openvdb::math::maxComponent(high, p);
-        };
-        for (const double at : {begin, end}) {
-            add(needle_.from + at * (needle_.to - needle_.from));
-            add(opposite(at));
-        }
-        if (begin <= tip_at_ && tip_at_ <= end)
-            add(needle_.tip);
-        FloatBox piece = box_;
-        for (int k = 0; k < 3; ++k) {
-            piece.lo[k] = std::max(piece.lo[k], below(low[k]));
-            piece.hi[k] = std::min(piece.hi[k], -below(-high[k]));
-        }
-        return piece;
+        // From side k to the opposite one.
+        const std::size_t k = longer_side();
+        TrianglePiece other = *this;
+        corner[(k + 1) % 4] = other.corner[k] = 0.5 * (corner[k] + corner[(k + 1) % 4]);
+        corner[(k + 2) % 4] = other.corner[(k + 3) % 4] =
+            0.5 * (corner[(k + 2) % 4] + corner[(k + 3) % 4]);
+        return other;
     }
 
 private:
-    /// On the two shorter edges.
-    Vec3d opposite(double at) const
+    /// The squared length of side k, from corner k to the next, or of the opposite one.
+    double longer_of_opposite(std::size_t k) const
     {
-        if (at < tip_at_)
-            return needle_.from + (at / tip_at_) * (needle_.tip - needle_.from);
-        return tip_at_ < 1
-                   ? needle_.tip + ((at - tip_at_) / (1 - tip_at_)) * (needle_.to - needle_.tip)
-                   : needle_.to;
+        return std::max((corner[k + 1] - corner[k]).lengthSqr(),
+                        (corner[(k + 3) % 4] - corner[k + 2]).lengthSqr());
     }
-    float below(double x) const
+    std::size_t longer_side() const
     {
-        return std::nextafter(float(x - pad_), -std::numeric_limits<float>::infinity());
+        return longer_of_opposite(0) > longer_of_opposite(1) ? 0 : 1;
     }
-
-    const Needle& needle_;
-    const FloatBox& box_;
-    double tip_at_ = 0, pad_ = 0;
 };
 
-/// Boxes of the pieces, and of which triangle each is, ascending.
-struct Pieces {
-    std::vector<FloatBox> boxes;
-    std::vector<std::uint32_t> triangle;
-};
+/// The directions in which a triangle is seen from one of its corners: the shorter arc between two
+/// of length 1. Without them it is everywhere.
+struct Arc {
+    Vec3d from, to;
+    double pad; ///< how far off the directions may be
+    std::uint32_t item;
+    Marks marks;
 
-Pieces cut_needles(const std::vector<Vec3s>& points, const std::vector<Vec3I>& triangles,
-                   const std::vector<char>& left_out)
+    FloatBox box() const
+    {
+        PaddedBox box;
+        box.add(from);
+        box.add(to);
+        // As far as the arc is from its chord at most, which is in the middle.
+        return box.padded(pad + std::max(0.0, 1 - 0.5 * (from + to).length()));
+    }
+    /// An arc of nearly half a circle has no middle that is certain.
+    bool divisible() const
+    {
+        return (to - from).length() > 1e3 * pad && (from + to).length() > 1e-3;
+    }
+    Arc halve()
+    {
+        Arc other = *this;
+        to = other.from = (from + to).unit();
+        return other;
+    }
+};
+/// Everywhere where one of the directions is none.
+Arc arc_between(const Vec3d& from, const Vec3d& to, double pad, std::uint32_t item,
+                const Marks& marks)
 {
-    const std::vector<FloatBox> whole = triangle_boxes(points, triangles);
-    std::vector<std::size_t> first(triangles.size() + 1);
-    for_each_index(triangles.size(), [&](std::size_t t) {
-        const bool out = !left_out.empty() && left_out[t];
-        first[t + 1] = out ? 0 : Needle(points, triangles[t]).pieces();
-    });
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-        first[t + 1] += first[t];
-    Pieces pieces{std::vector<FloatBox>(first.back()), std::vector<std::uint32_t>(first.back())};
-    for_each_index(triangles.size(), [&](std::size_t t) {
-        const std::size_t count = first[t + 1] - first[t];
-        if (count == 0)
-            return;
-        std::fill_n(pieces.triangle.begin() + std::ptrdiff_t(first[t]), count, std::uint32_t(t));
-        if (count == 1) {
-            pieces.boxes[first[t]] = whole[t];
-            return;
-        }
-        const Needle needle(points, triangles[t]);
-        const Slices slices(needle, whole[t]);
-        for (std::size_t i = 0; i < count; ++i)
-            pieces.boxes[first[t] + i] =
-                slices.between(double(i) / double(count), double(i + 1) / double(count));
-    });
-    return pieces;
+    // The ends of the box around the sphere.
+    const Vec3d end(2.0);
+    const bool both = from.lengthSqr() > 0 && to.lengthSqr() > 0;
+    return both ? Arc{from, to, pad, item, marks} : Arc{-end, end, 0, item, marks};
 }
+// Directions are rounded some times and middles of middles twenty times, by 2e-16 each.
+constexpr double kDirectionPad = 1e-13;
+
+/// How many triangles each point has, or an edge at a point by its other end.
+class Crowds
+{
+public:
+    explicit Crowds(std::size_t points) : triangles_(points) {}
+    void add(std::uint32_t point) { ++triangles_[point]; }
+    bool at(std::uint32_t point) const { return triangles_[point] > kCrowdedCorner; }
+    bool any() const
+    {
+        return std::any_of(triangles_.begin(), triangles_.end(),
+                           [](std::uint32_t n) { return n > kCrowdedCorner; });
+    }
+
+private:
+    std::vector<std::uint32_t> triangles_;
+};
+
+class PairsOfTriangles
+{
+public:
+    PairsOfTriangles(const std::vector<Vec3s>& points, const std::vector<Vec3I>& triangles,
+                     const KeepPair& keep, Interrupter* interrupter,
+                     const std::vector<char>& left_out)
+        : points_(points), triangles_(triangles), keep_(keep), stop_(interrupter),
+          crowds_(points.size())
+    {
+        for (std::uint32_t t = 0; t < triangles.size(); ++t)
+            if (left_out.empty() || !left_out[t])
+                asked_.push_back(t);
+        for (const std::uint32_t t : asked_)
+            for (int k = 0; k < 3; ++k)
+                crowds_.add(triangles[t][k]);
+        any_crowd_ = crowds_.any();
+    }
+
+    std::vector<Pair> all()
+    {
+        look_at_groups();
+        if (any_crowd_)
+            look_from_crowded_corners();
+        stop_.throw_if_wanted();
+        // The smaller triangle of a pair is a number from 0 without gaps, as a bucket sort wants.
+        // The other tells the pairs of a bucket apart, so their order is unique.
+        std::vector<Pair> pairs = bucket_sort<Pair>(
+            parts_, triangles_.size(), [](const Pair& pair) { return pair[0]; },
+            [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
+        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+        return pairs;
+    }
+
+private:
+    Marks marks_of(std::uint32_t t) const
+    {
+        Marks marks = kNoMarks;
+        for (int k = 0; k < 3 && any_crowd_; ++k)
+            if (crowds_.at(triangles_[t][k]))
+                marks[std::size_t(k)] = triangles_[t][k];
+        return marks;
+    }
+    bool meet_in_a_crowd(std::uint32_t s, std::uint32_t t) const
+    {
+        return any_crowd_ && BoxTree::have_common(marks_of(s), marks_of(t));
+    }
+    /// Pairs that share no crowded corner.
+    void look_at_groups()
+    {
+        std::vector<FloatBox> boxes = triangle_boxes(points_, triangles_);
+        for (std::size_t i = 0; i < asked_.size(); ++i)
+            boxes[i] = boxes[asked_[i]];
+        boxes.resize(asked_.size());
+        BoxTree tree;
+        tree.build(boxes);
+        std::vector<char> crowded(asked_.size());
+        const std::size_t groups = tree.groups();
+        const std::size_t parts = (groups + kGroupsInPart - 1) / kGroupsInPart;
+        parts_.resize(parts);
+        for_each_index(
+            parts,
+            [&](std::size_t part) {
+                BoxTree::Near near;
+                const std::size_t end = std::min(groups, (part + 1) * kGroupsInPart);
+                for (std::size_t group = part * kGroupsInPart; group < end && !stop_.wanted();
+                     ++group)
+                    if (!look_at_group(tree, group, near, parts_[part]))
+                        tree.for_each_of(group, [&](int i) { crowded[std::size_t(i)] = 1; });
+            },
+            1);
+        look_at_crowded(boxes, crowded);
+    }
+
+    bool look_at_group(const BoxTree& tree, std::size_t group, BoxTree::Near& near,
+                       std::vector<Pair>& pairs) const
+    {
+        return tree.for_each_overlap_of(
+            group, tree, near, [](int) { return true; },
+            [&](int i, int j) {
+                const std::uint32_t s = asked_[std::size_t(i)], t = asked_[std::size_t(j)];
+                // Each pair is found from both of its boxes, and once is enough. What `keep`
+                // rejects is dropped here, before it takes memory.
+                if (s < t && !meet_in_a_crowd(s, t) && keep_(s, t))
+                    pairs.push_back({s, t});
+            },
+            kMostNearGroup);
+    }
+
+    /// The pairs of triangles of groups that were not looked at: with the other triangles, of which
+    /// they missed the larger ones, and among themselves.
+    void look_at_crowded(const std::vector<FloatBox>& boxes, const std::vector<char>& crowded)
+    {
+        std::vector<std::uint32_t> places, others;
+        std::vector<FloatBox> of_others;
+        std::vector<TrianglePiece> pieces;
+        for (std::uint32_t i = 0; i < crowded.size(); ++i) {
+            const std::uint32_t t = asked_[i];
+            if (crowded[i]) {
+                places.push_back(i);
+                pieces.emplace_back(points_, triangles_[t], t, marks_of(t));
+                continue;
+            }
+            others.push_back(t);
+            of_others.push_back(boxes[i]);
+        }
+        if (pieces.empty())
+            return;
+        BoxTree tree;
+        tree.build(of_others);
+        std::vector<std::vector<Pair>> found(places.size() + 1);
+        for_each_index(places.size(), [&](std::size_t p) {
+            const std::uint32_t s = asked_[places[p]];
+            tree.for_each_overlap(boxes[places[p]], [&](int other) {
+                const std::uint32_t t = others[std::size_t(other)];
+                if (s < t && !stop_.wanted() && !meet_in_a_crowd(s, t) && keep_(s, t))
+                    found[p].push_back({s, t});
+            });
+        });
+        CrowdedPairs<TrianglePiece>(std::move(pieces), stop_).list(keep_, found.back());
+        take(found);
+    }
+
+    void take(std::vector<std::vector<Pair>>& found)
+    {
+        for (std::vector<Pair>& pairs : found)
+            if (!pairs.empty())
+                parts_.push_back(std::move(pairs));
+    }
+
+    void look_from_crowded_corners()
+    {
+        // Corner, triangle.
+        std::vector<Pair> uses;
+        for (const std::uint32_t t : asked_)
+            for (int k = 0; k < 3; ++k)
+                if (crowds_.at(triangles_[t][k]))
+                    uses.push_back({triangles_[t][k], t});
+        std::sort(uses.begin(), uses.end());
+        std::vector<std::size_t> begins;
+        for (std::size_t i = 0; i < uses.size(); ++i)
+            if (i == 0 || uses[i][0] != uses[i - 1][0])
+                begins.push_back(i);
+        begins.push_back(uses.size());
+        std::vector<std::vector<Pair>> found(begins.size() - 1);
+        for_each_index(
+            found.size(),
+            [&](std::size_t i) {
+                look_from_corner(&uses[begins[i]], &uses[begins[i + 1]], found[i]);
+            },
+            1);
+        take(found);
+    }
+
+    /// The pairs of triangles around one corner.
+    void look_from_corner(const Pair* begin, const Pair* end, std::vector<Pair>& pairs) const
+    {
+        const std::uint32_t apex = (*begin)[0];
+        // The other end of an edge, triangle.
+        std::vector<Pair> edges;
+        for (const Pair* use = begin; use != end; ++use)
+            for (const std::uint32_t other : others_of(apex, (*use)[1]))
+                edges.push_back({other, (*use)[1]});
+        std::sort(edges.begin(), edges.end());
+        std::vector<std::uint32_t> crowded;
+        for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+            while (next < edges.size() && edges[next][0] == edges[i][0])
+                ++next;
+            if (next - i <= kCrowdedCorner)
+                continue;
+            crowded.push_back(edges[i][0]);
+            look_along_edge(apex, &edges[i], edges.data() + next, pairs);
+        }
+        std::vector<Arc> arcs;
+        for (const Pair* use = begin; use != end && !stop_.wanted(); ++use) {
+            const std::array<std::uint32_t, 2> others = others_of(apex, (*use)[1]);
+            Marks marks = kNoMarks;
+            for (std::size_t k = 0; k < 2; ++k)
+                if (std::binary_search(crowded.begin(), crowded.end(), others[k]))
+                    marks[k] = others[k];
+            arcs.push_back(arc_between(seen(apex, others[0]), seen(apex, others[1]), kDirectionPad,
+                                       (*use)[1], marks));
+        }
+        CrowdedPairs<Arc>(std::move(arcs), stop_).list(keep_, pairs);
+    }
+
+    /// The pairs of triangles around one edge, of which each has one direction there.
+    void look_along_edge(std::uint32_t apex, const Pair* begin, const Pair* end,
+                         std::vector<Pair>& pairs) const
+    {
+        const Vec3d along = seen(apex, (*begin)[0]);
+        std::vector<Arc> arcs;
+        for (const Pair* use = begin; use != end; ++use) {
+            const std::array<std::uint32_t, 2> others = others_of(apex, (*use)[1]);
+            const std::uint32_t tip = others[0] == (*begin)[0] ? others[1] : others[0];
+            const Vec3d spoke = seen(apex, tip), across = spoke - along * along.dot(spoke);
+            // What is left of a spoke that runs nearly along the edge is mostly rounding.
+            const double length = across.length();
+            const bool certain = along.lengthSqr() > 0 && length > 1e-9;
+            const Vec3d direction = certain ? across / length : Vec3d(0.0);
+            arcs.push_back(
+                arc_between(direction, direction, kDirectionPad / length, (*use)[1], kNoMarks));
+        }
+        CrowdedPairs<Arc>(std::move(arcs), stop_).list(keep_, pairs);
+    }
+
+    /// The corners but for one use of the apex.
+    std::array<std::uint32_t, 2> others_of(std::uint32_t apex, std::uint32_t t) const
+    {
+        const Vec3I& c = triangles_[t];
+        const int k = c[0] == apex ? 0 : c[1] == apex ? 1 : 2;
+        return {c[(k + 1) % 3], c[(k + 2) % 3]};
+    }
+    /// The direction, of length 1; 0 where there is none.
+    Vec3d seen(std::uint32_t from, std::uint32_t point) const
+    {
+        return unit_vector(Vec3d(points_[point]) - Vec3d(points_[from]));
+    }
+
+    const std::vector<Vec3s>& points_;
+    const std::vector<Vec3I>& triangles_;
+    const KeepPair& keep_;
+    PolledStop stop_;
+    std::vector<std::uint32_t> asked_; ///< triangles that may be in pairs, ascending
+    Crowds crowds_;
+    bool any_crowd_ = false;
+    std::vector<std::vector<Pair>> parts_;
+};
 
 } // namespace
 
@@ -157,20 +394,7 @@ std::vector<std::array<std::uint32_t, 2>> overlapping_triangles(const std::vecto
                                                                 Interrupter* interrupter,
                                                                 const std::vector<char>& left_out)
 {
-    const Pieces pieces = cut_needles(points, triangles, left_out);
-    const auto keep_pieces = [&](std::uint32_t i, std::uint32_t j) {
-        const std::uint32_t s = pieces.triangle[i], t = pieces.triangle[j];
-        return s != t && keep(s, t);
-    };
-    auto pairs = overlapping_pairs(pieces.boxes, keep_pieces, interrupter);
-    // Ascending pieces are of ascending triangles, so the smaller one stays in front.
-    for (auto& pair : pairs)
-        pair = {pieces.triangle[pair[0]], pieces.triangle[pair[1]]};
-    if (pieces.boxes.size() > triangles.size()) {
-        std::sort(pairs.begin(), pairs.end());
-        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    }
-    return pairs;
+    return PairsOfTriangles(points, triangles, keep, interrupter, left_out).all();
 }
 
 } // namespace vdb_shell

@@ -32,14 +32,15 @@ Ray inward_from(const TriangleMesh& mesh, const Vec3I& t)
 }
 
 /// Along a sharp edge the other side is always near, however fine the voxels are. So triangles with
-/// a common corner do not count.
-bool share_a_corner(const Vec3I& a, const Vec3I& b)
+/// a common corner do not count, and all that have one are passed over at once: there may be as
+/// many as there are triangles.
+std::vector<BoxTree::Marks> corners_as_marks(const std::vector<Vec3I>& triangles)
 {
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (a[i] == b[j])
-                return true;
-    return false;
+    std::vector<BoxTree::Marks> marks;
+    marks.reserve(triangles.size());
+    for (const Vec3I& t : triangles)
+        marks.push_back({t[0], t[1], t[2]});
+    return marks;
 }
 
 } // namespace
@@ -57,21 +58,19 @@ std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh,
             others.push_back(mesh.triangles[t]);
     BoxTree tree;
     tree.build(triangle_boxes(mesh.points, others));
+    tree.mark(corners_as_marks(others));
     // Each index writes its own slot and the answers are collected in order, so threads do not
     // matter.
     for_each_index(thin.size(), [&](std::size_t t) {
         const Ray ray = inward_from(mesh, mesh.triangles[t]);
         if (left_out[t] || ray.along.lengthSqr() == 0)
             return;
-        double limit = voxel_size;
-        tree.for_each_on_ray(ray.from, ray.along, limit, [&](int other) {
-            const Vec3I& opposite = others[static_cast<std::size_t>(other)];
-            if (thin[t] || share_a_corner(mesh.triangles[t], opposite) ||
-                !(leaves_through(mesh, opposite, ray) < voxel_size))
-                return;
-            thin[t] = 1;
-            limit = -1; // one is enough
-        });
+        const Vec3I& own = mesh.triangles[t];
+        tree.for_each_on_ray_without(
+            {own[0], own[1], own[2]}, ray.from, ray.along, voxel_size, [&](int other) {
+                thin[t] = leaves_through(mesh, others[std::size_t(other)], ray) < voxel_size;
+                return thin[t] == 0; // one is enough
+            });
     });
     std::vector<std::uint32_t> found;
     for (std::uint32_t t = 0; t < thin.size(); ++t)

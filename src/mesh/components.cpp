@@ -5,9 +5,9 @@
 // closed piece within an odd number of others, and has to be oriented the other way round
 // (docs/theory.md, "Remarks"). Whether a piece encloses a point is decided by the parity of exact
 // crossings of an upward ray; the winding number would need the orientation, which is what is to be
-// found out. Volumes are sums in doubles, whose sign is no proof. Each component is compared with
-// each closed other whose box meets its own, so many that lie within each other's boxes take
-// quadratic time.
+// found out. Volumes are sums in doubles, whose sign is no proof. One ray from each component is
+// held against all triangles at once, by a tree over their boxes; only those that cross or touch
+// are compared one by one.
 
 #include "mesh/components.h"
 
@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace vdb_shell
@@ -66,19 +67,27 @@ double volume_of(const TriangleMesh& mesh, const Indices& triangles)
 
 /// Components may have a common point, which counts for each of them: Euler's number is that of a
 /// surface by itself.
-/// How many points each component has.
-std::vector<int> count_points(const TriangleMesh& mesh, const std::vector<Indices>& triangles)
+/// How many points each component has, and which points are of several.
+struct PointFindings {
+    std::vector<int> points;
+    std::vector<char> shared;
+};
+
+PointFindings look_at_points(const TriangleMesh& mesh, const std::vector<Indices>& triangles)
 {
-    std::vector<int> points(triangles.size());
+    PointFindings found{std::vector<int>(triangles.size()), std::vector<char>(mesh.points.size())};
     Indices counted_for(mesh.points.size(), ~0U); // the last component
     for (std::uint32_t c = 0; c < triangles.size(); ++c)
         for (const std::uint32_t t : triangles[c])
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t v = mesh.triangles[t][corner];
-                points[c] += counted_for[v] != c;
+                if (counted_for[v] == c)
+                    continue;
+                ++found.points[c];
+                found.shared[v] = counted_for[v] != ~0U;
                 counted_for[v] = c;
             }
-    return points;
+    return found;
 }
 
 /// What the edges say: which components are closed, which run through each edge as often one way
@@ -169,6 +178,102 @@ bool encloses(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes, cons
     return any_inside;
 }
 
+/// How many closed pieces each piece is in.
+class Nesting
+{
+public:
+    /// `shared`: points of several pieces; `crossing`: the pairs of pieces that cross or touch.
+    Nesting(const TriangleMesh& mesh, const std::vector<FloatBox>& boxes,
+            const std::vector<Piece>& pieces, const Indices& component_of,
+            const std::vector<char>& shared,
+            const std::vector<std::array<std::uint32_t, 2>>& crossing)
+        : mesh_(mesh), boxes_(boxes), pieces_(pieces), component_of_(component_of), shared_(shared),
+          crossed_(pieces.size())
+    {
+        if (pieces.size() > 1)
+            tree_.build(boxes);
+        for (const auto& [a, b] : crossing) {
+            crossed_[a].push_back(b);
+            crossed_[b].push_back(a);
+        }
+        for (Indices& others : crossed_)
+            std::sort(others.begin(), others.end());
+    }
+
+    int depth(std::uint32_t c) const
+    {
+        int depth = 0;
+        // An open piece has no inside.
+        for (const std::uint32_t other : crossed_[c])
+            depth +=
+                pieces_[other].closed && encloses(mesh_, boxes_, pieces_[other], pieces_[c], true);
+        const std::vector<Hit> hits = hits_above(c);
+        for (std::size_t begin = 0, end = 0; begin < hits.size(); begin = end) {
+            bool inside = false, on_surface = false;
+            for (; end < hits.size() && hits[end].piece == hits[begin].piece; ++end) {
+                inside ^= hits[end].crosses;
+                on_surface |= hits[end].on_surface;
+            }
+            // A point on the other piece tells nothing.
+            depth += on_surface
+                         ? encloses(mesh_, boxes_, pieces_[hits[begin].piece], pieces_[c], false)
+                         : inside;
+        }
+        return depth;
+    }
+
+private:
+    struct Hit {
+        std::uint32_t piece;
+        bool crosses, on_surface;
+    };
+
+    /// Of the upward ray from a point of piece c with closed pieces that it does not cross, sorted
+    /// by piece.
+    std::vector<Hit> hits_above(std::uint32_t c) const
+    {
+        const openvdb::Vec3s& point = mesh_.points[own_point(pieces_[c].triangles)];
+        FloatBox ray = FloatBox::around(point);
+        ray.hi[2] = std::numeric_limits<float>::infinity();
+        std::vector<Hit> hits;
+        const Indices& crossed = crossed_[c];
+        tree_.for_each_overlap(ray, [&](int i) {
+            const auto t = static_cast<std::uint32_t>(i);
+            const std::uint32_t other = component_of_[t];
+            if (other == c || !pieces_[other].closed ||
+                std::binary_search(crossed.begin(), crossed.end(), other))
+                return;
+            const openvdb::Vec3I& corner = mesh_.triangles[t];
+            Hit hit{other, false, false};
+            hit.crosses =
+                exact::crossing_above(point, mesh_.points[corner[0]], mesh_.points[corner[1]],
+                                      mesh_.points[corner[2]], hit.on_surface) != 0;
+            hits.push_back(hit);
+        });
+        std::sort(hits.begin(), hits.end(),
+                  [](const Hit& a, const Hit& b) { return a.piece < b.piece; });
+        return hits;
+    }
+
+    /// One that no other piece has by index, if there is one: it may be on the surface of none.
+    std::uint32_t own_point(const Indices& triangles) const
+    {
+        for (const std::uint32_t t : triangles)
+            for (int k = 0; k < 3; ++k)
+                if (!shared_[mesh_.triangles[t][k]])
+                    return mesh_.triangles[t][k];
+        return mesh_.triangles[triangles.front()][0];
+    }
+
+    const TriangleMesh& mesh_;
+    const std::vector<FloatBox>& boxes_;
+    const std::vector<Piece>& pieces_;
+    const Indices& component_of_;
+    const std::vector<char>& shared_;
+    BoxTree tree_; ///< over the triangles
+    std::vector<Indices> crossed_;
+};
+
 } // namespace
 
 Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::size_t triangle_count)
@@ -201,7 +306,7 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
 {
     std::vector<Indices> triangles = triangles_by_component(component_of);
     const std::size_t count = triangles.size();
-    const std::vector<int> points = count_points(mesh, triangles);
+    const PointFindings at_points = look_at_points(mesh, triangles);
     const EdgeFindings found = look_at_edges(sorted_uses, component_of, count);
     const std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
     std::vector<Piece> pieces(count);
@@ -212,33 +317,17 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
         component.first_triangle = triangles[c].front();
         component.volume = volume_of(mesh, triangles[c]);
         component.closed = found.closed[c] != 0;
-        component.euler = points[c] - found.edges[c] + static_cast<int>(triangles[c].size());
+        component.euler =
+            at_points.points[c] - found.edges[c] + static_cast<int>(triangles[c].size());
         // Before the list is moved away in the next line.
         const FloatBox box = box_of(boxes, triangles[c]);
         pieces[c] = {std::move(triangles[c]), box, component.closed};
     });
-    auto cross = [&](std::size_t a, std::size_t b) {
-        const std::array<std::uint32_t, 2> pair{static_cast<std::uint32_t>(std::min(a, b)),
-                                                static_cast<std::uint32_t>(std::max(a, b))};
-        return std::binary_search(crossing.begin(), crossing.end(), pair);
-    };
-    // Only a piece whose box meets that of another can enclose a corner of it.
-    BoxTree tree;
-    std::vector<FloatBox> piece_boxes;
-    piece_boxes.reserve(count);
-    for (const Piece& piece : pieces)
-        piece_boxes.push_back(piece.box);
-    tree.build(std::move(piece_boxes));
+    const Nesting nesting(mesh, boxes, pieces, component_of, at_points.shared, crossing);
     for_each_index(
         count,
         [&](std::size_t c) {
-            int& depth = components[c].nesting_depth;
-            tree.for_each_overlap(pieces[c].box, [&](int i) {
-                const auto other = static_cast<std::size_t>(i);
-                // An open piece has no inside.
-                if (other != c && pieces[other].closed)
-                    depth += encloses(mesh, boxes, pieces[other], pieces[c], cross(c, other));
-            });
+            const int depth = components[c].nesting_depth = nesting.depth(std::uint32_t(c));
             const bool outer = depth % 2 == 0;
             const double volume = components[c].volume;
             components[c].inside_out =

@@ -156,8 +156,10 @@ std::string options_json(const ShellOptions& options)
 
 ShellOptions options_from_json(const std::string& json, ShellOptions base, const std::string& name)
 {
+    // Described after it is parsed: most files that are wrong are no JSON at all.
+    const nlohmann::ordered_json parsed = parse_options(json, name);
     OptionSections sections = describe(base);
-    set_from_json(parse_options(json, name), sections, name);
+    set_from_json(parsed, sections, name);
     return base;
 }
 

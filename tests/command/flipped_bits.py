@@ -9,8 +9,8 @@ passed with the same answer and the same converted files as from the sound one; 
 The last two counts must be 0. Bits are drawn at random over the whole file; in a .vdb the UUID is drawn like the rest.
 An unsealed .vdb has another UUID, as one that another program wrote of the same grids: there the digest of the bytes
 says nothing, and the walk before decoding and the digests of values have to do.
-Prints a table and ends with status 1 at a violation. --results keeps the kinds that are finished, --page writes the table of
-all of them."""
+Prints a table and ends with status 1 at a violation. --results keeps what is finished, by kind and seed, and the table,
+which --page writes, has the sums over all seeds."""
 import argparse
 import concurrent.futures
 import pathlib
@@ -107,6 +107,20 @@ def rows_of(kind, found):
              *(f"{n:,}" for n in found["counts"]["check" if verb == "all three" else verb].values())] for verb in verbs]
 
 
+def sums_by_kind(runs):
+    """What the runs of all seeds found together."""
+    sums = {}
+    for key, run_of_seed in runs.items():
+        kind = key.split()[0]
+        both = sums.setdefault(kind, {"bytes": run_of_seed["bytes"], "flips": 0,
+                                      "counts": {verb: dict.fromkeys(row, 0) for verb, row in run_of_seed["counts"].items()}})
+        both["flips"] += run_of_seed["flips"]
+        for verb, row in run_of_seed["counts"].items():
+            for what, count in row.items():
+                both["counts"][verb][what] += count
+    return sums
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("command")
@@ -121,10 +135,12 @@ def main():
     results = Results(args.results)
     with tempfile.TemporaryDirectory() as work:
         for kind in args.kinds:
-            if kind not in results.runs:
-                results.keep(kind, flip_all(args, kind, work))
+            key = f"{kind} {args.seed}"
+            if key not in results.runs:
+                results.keep(key, flip_all(args, kind, work))
+    sums = sums_by_kind(results.runs)
     lines = table(["file", "bytes", "commands", "flips", REFUSED, SAME, "other values", CRASH],
-                  [row for kind in KINDS if kind in results.runs for row in rows_of(kind, results.runs[kind])])
+                  [row for kind in KINDS if kind in sums for row in rows_of(kind, sums[kind])])
     print("\n".join(lines))
     if args.page:
         replace_tables(args.page, lines, "flipped bits")

@@ -96,31 +96,81 @@ TEST(overlapping_triangles, of_those_left_out_none_is_asked)
     EXPECT_FALSE(pairs.empty());
 }
 
-/// How many pairs of two cones over one rim are asked about that do not share an apex.
-std::size_t asked_across(std::uint32_t half)
+/// Triangles that share corners and edges by index, up to all of them: around point 0, or around
+/// the edge of points 0 and 1, with other points in few places, so that many touch.
+Soup random_stars(std::size_t count, int reach, bool around_an_edge)
+{
+    std::mt19937 random(7);
+    std::uniform_int_distribution<int> place(-reach, reach);
+    Soup soup;
+    soup.points = {Vec3s(0.0F), Vec3s(1.0F, 2.0F, 0.0F)};
+    for (int i = 0; i < 60; ++i)
+        soup.points.emplace_back(float(place(random)), float(place(random)), float(place(random)));
+    std::uniform_int_distribution<std::uint32_t> point(1, std::uint32_t(soup.points.size() - 1));
+    while (soup.triangles.size() < count) {
+        const std::uint32_t a = around_an_edge ? 1 : point(random), b = point(random);
+        if (!exact::collinear(soup.points[0], soup.points[a], soup.points[b]))
+            soup.triangles.emplace_back(0, a, b);
+    }
+    return soup;
+}
+
+TEST(overlapping_triangles, miss_no_contact_around_a_corner_or_an_edge)
+{
+    for (const int reach : {2, 6, 100})
+        for (const bool around_an_edge : {false, true}) {
+            const Soup soup = random_stars(120, reach, around_an_edge);
+            EXPECT_EQ(soup.found(), by_brute_force(soup)) << reach << around_an_edge;
+        }
+}
+
+/// Points on a circle about the z-axis.
+void add_rim(Soup& soup, std::uint32_t count)
+{
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double angle = 2 * M_PI * i / count;
+        soup.points.emplace_back(float(std::cos(angle)), float(std::sin(angle)), 0.0F);
+    }
+}
+
+std::size_t asked(const Soup& soup)
+{
+    std::atomic<std::size_t> count{0};
+    overlapping_triangles(soup.points, soup.triangles,
+                          [&](std::uint32_t, std::uint32_t) { return ++count, false; });
+    return count;
+}
+
+Soup two_cones(std::uint32_t half)
 {
     Soup cones;
-    for (std::uint32_t i = 0; i < half; ++i) {
-        const double angle = 2 * M_PI * i / half;
-        cones.points.emplace_back(float(std::cos(angle)), float(std::sin(angle)), 0.0F);
-    }
+    add_rim(cones, half);
     cones.points.emplace_back(0.0F, 0.0F, 1.0F);
     cones.points.emplace_back(0.0F, 0.0F, -1.0F);
     for (const std::uint32_t apex : {half, half + 1})
         for (std::uint32_t i = 0; i < half; ++i)
             cones.triangles.emplace_back(i, (i + 1) % half, apex);
-    std::atomic<std::size_t> asked{0};
-    overlapping_triangles(cones.points, cones.triangles, [&](std::uint32_t i, std::uint32_t j) {
-        asked += (i < half) != (j < half);
-        return false;
-    });
-    return asked;
+    return cones;
 }
 
-TEST(overlapping_triangles, needles_are_asked_about_where_they_are)
+Soup pages_of_an_edge(std::uint32_t count)
+{
+    Soup pages;
+    add_rim(pages, count);
+    pages.points.emplace_back(0.0F, 0.0F, 1.0F);
+    pages.points.emplace_back(0.0F, 0.0F, -1.0F);
+    for (std::uint32_t i = 0; i < count; ++i)
+        pages.triangles.emplace_back(i, count, count + 1);
+    return pages;
+}
+
+TEST(overlapping_triangles, few_are_asked_about_where_none_touch)
 {
     // Whole boxes overlap for a quarter of all pairs and more.
-    EXPECT_LT(asked_across(2000), 2000u * 2000u / 25);
+    for (const std::uint32_t n : {2000U, 8000U}) {
+        EXPECT_LT(asked(two_cones(n / 2)), 50 * n);
+        EXPECT_LT(asked(pages_of_an_edge(n)), 50 * n);
+    }
 }
 
 } // namespace

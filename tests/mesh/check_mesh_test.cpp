@@ -224,6 +224,69 @@ TEST(check_mesh, nests_by_other_points_where_one_lies_on_the_surface_around)
     EXPECT_EQ(check.components.at(1).nesting_depth, 0);
 }
 
+TEST(check_mesh, nests_pieces_that_share_corners_by_index)
+{
+    // Thirty tetrahedra in a row around an edge, and in each of them one with the same edge and a
+    // third corner of the next; around them all, a box that shares no corner.
+    constexpr std::uint32_t kCount = 30;
+    TriangleMesh mesh = unit_box(Vec3d(0), 8);
+    const auto first = std::uint32_t(mesh.points.size());
+    const auto add_tet = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        for (const Vec3I& t : {Vec3I(a, c, b), Vec3I(a, b, d), Vec3I(b, c, d), Vec3I(a, d, c)})
+            mesh.triangles.push_back(t);
+    };
+    mesh.points.emplace_back(0.f, 0.f, 0.f);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const double angle = 2 * M_PI * i / kCount;
+        const auto at = [&](double turn, double radius, double z) {
+            return Vec3s(float(radius * std::cos(angle + turn)),
+                         float(radius * std::sin(angle + turn)), float(z));
+        };
+        const auto outer = std::uint32_t(mesh.points.size());
+        mesh.points.insert(mesh.points.end(), {at(0, 2, -.5), at(.15, 2, -.5), at(.075, 2, .5)});
+        add_tet(first, outer, outer + 1, outer + 2);
+        // Within it, from the same corner.
+        mesh.points.insert(mesh.points.end(), {at(.05, 1, -.1), at(.1, 1, -.1), at(.075, 1, .1)});
+        add_tet(first, outer + 3, outer + 4, outer + 5);
+    }
+    const MeshCheck check = check_mesh(mesh);
+    ASSERT_EQ(check.components.size(), 1 + 2 * kCount);
+    EXPECT_EQ(check.self_intersections.count, 0u);
+    EXPECT_EQ(check.components[0].nesting_depth, 0);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        EXPECT_EQ(check.components[1 + 2 * i].nesting_depth, 1) << i;
+        EXPECT_EQ(check.components[2 + 2 * i].nesting_depth, 2) << i;
+    }
+}
+
+TEST(check_mesh, nests_a_piece_of_which_every_corner_is_of_another_by_index)
+{
+    TriangleMesh mesh = unit_box(Vec3d(0), 8);
+    const auto first = std::uint32_t(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), {Vec3s(0.f, 0.f, 0.f), Vec3s(1.f, 0.f, 0.f),
+                                           Vec3s(0.f, 1.f, 0.f), Vec3s(0.f, 0.f, 1.f)});
+    const auto add_tet = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+        for (const Vec3I& t : {Vec3I(a, c, b), Vec3I(a, b, d), Vec3I(b, c, d), Vec3I(a, d, c)})
+            mesh.triangles.push_back(t);
+    };
+    add_tet(first, first + 1, first + 2, first + 3);
+    // One beyond each corner.
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        const Vec3s& corner = mesh.points[first + k];
+        const Vec3s away = (corner - Vec3s(.25f)) * .5f;
+        const auto next = std::uint32_t(mesh.points.size());
+        mesh.points.insert(mesh.points.end(), {Vec3s(corner + away + Vec3s(.1f, 0.f, 0.f)),
+                                               Vec3s(corner + away + Vec3s(0.f, .1f, 0.f)),
+                                               Vec3s(corner + away + Vec3s(0.f, 0.f, .1f))});
+        add_tet(first + k, next, next + 1, next + 2);
+    }
+    const MeshCheck check = check_mesh(mesh);
+    ASSERT_EQ(check.components.size(), 6u);
+    EXPECT_EQ(check.self_intersections.count, 0u);
+    for (std::size_t c = 0; c < 6; ++c)
+        EXPECT_EQ(check.components[c].nesting_depth, c == 0 ? 0 : 1) << c;
+}
+
 TEST(check_mesh, keeps_the_sign_of_a_small_component_far_away)
 {
     const TriangleMesh small = test::translated(unit_box(Vec3d(0), 1), Vec3d(1e5, 0, 0));
