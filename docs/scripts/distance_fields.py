@@ -12,16 +12,12 @@ import json
 import pathlib
 import subprocess
 
+from halves import FOLDER, read_halves
 from runs import replace_tables, table
 
-HALVES = pathlib.Path(__file__).resolve().parents[1] / "measurements/shape_meshes.txt"
+LIST = FOLDER / "shape_meshes.txt"
 WAYS = {"own_prism": "own prism", "near_prisms": "near prisms", "exact": "exact", "mesh_to_volume": "meshToVolume",
         "deep_field": "deep field"}
-
-
-def halves():
-    lines = [line.split() for line in HALVES.read_text().splitlines() if line and not line.startswith("#")]
-    return {name: half for half, name in lines}
 
 
 def voxels(value):
@@ -85,7 +81,7 @@ def main():
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--only", nargs="+", help="names without their folder")
     options = parser.parse_args()
-    half_of, kept = halves(), options.page.with_suffix(".json")
+    half_of, kept = read_halves(LIST), options.page.with_suffix(".json")
     old = json.loads(kept.read_text()) if kept.exists() else {}
     known = old.get("meshes", {}) if old.get("resolution") == options.resolution else {}
     results = {}

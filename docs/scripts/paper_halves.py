@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which meshes paper.py measures, where they lie, and the half that each belongs to.
 
-tuned: looked at while a number of the library was chosen. judging: only measured. The lists are docs/measurements/scan_meshes.txt
-and shape_meshes.txt; a mesh that either of them tuned with is tuned here, as is all of paper/.
+Halves are those of halves.py, but that all of paper/ counts as tuned here.
 """
-import pathlib
-
+import halves
 from runs import CLEAN_MESHES
 
-LISTS = [pathlib.Path(__file__).parent.parent / "measurements" / name for name in ("scan_meshes.txt", "shape_meshes.txt")]
 # Of the collection odedstein-meshes (objects/*/NAME.obj at commit 8352132), six of the seven smallest of the judging half of scan_meshes.txt, so that
 # exact counts of millions of overlapping pairs take seconds.
 JUDGING = ["judging/fish_low_resolution", "judging/koala_low_resolution", "judging/scorpion_low_resolution", "judging/hand_closed",
@@ -34,16 +31,8 @@ class Meshes:
 
 def half_of(name):
     folder, _, mesh = name.partition("/")
-    if folder == "paper":
-        return "tuned"
-    halves = set()
-    for path in LISTS:
-        for words in (line.split() for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")):
-            if pathlib.PurePosixPath(words[1]).name == mesh:
-                halves.add(words[0])
-    if not halves:
-        return "not listed"
-    return "tuned" if "tuning" in halves else "judging"
+    half = "tuning" if folder == "paper" else halves.half_of(mesh)
+    return "tuned" if half == "tuning" else half
 
 
 def by_half(names):

@@ -21,8 +21,9 @@ import time
 
 import numpy as np
 
+from halves import HALVES, read_halves
 from runs import replace_tables, table
-from shape_figures import COLUMNS, HALVES, read_list
+from shape_figures import COLUMNS
 from tet_files import read_obj, read_tets
 import tet_makers
 from tet_makers import TETGEN, Failed, Maker
@@ -144,7 +145,7 @@ def write_page(options, runs, halves):
 
 def main():
     options = arguments()
-    halves = read_list(options.meshes)
+    halves = read_halves(options.meshes)
     ours = {name: shlex.split(words) for name, words in (one.split("=", 1) for one in options.ours)}
     maker, runs = Maker(options.command.resolve(), options.cache, options.seconds), {}
     names = [name for name in halves if not options.only or name in options.only]

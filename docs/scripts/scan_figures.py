@@ -19,8 +19,8 @@ import subprocess
 import tempfile
 import time
 
+from halves import read_halves
 from runs import build, replace_tables, table
-from shape_figures import read_list
 
 EXTENSIONS = [".obj", ".off"]
 
@@ -114,7 +114,7 @@ def main():
     if options.before:
         head += ["fill before", "pins before", "time / before"]
     lines, missing, by_half = [], [], {}
-    for name, half in read_list(options.meshes).items():
+    for name, half in read_halves(options.meshes).items():
         mesh = find(name, options.folders)
         if mesh is None:
             missing.append(name)

@@ -16,6 +16,7 @@ import json
 import pathlib
 import shlex
 
+from halves import HALVES, read_halves
 from runs import replace_tables, table
 from tet_files import read_obj, read_tets
 import tet_makers
@@ -23,7 +24,6 @@ from tet_makers import GMSH, TETGEN, Failed, Maker
 from tet_shapes import shape_figures
 
 OTHERS = [*TETGEN, *GMSH]
-HALVES = ["tuning", "judging"]
 QUICK_TRIANGLES = 5000
 # Head, key and how it is written.
 COLUMNS = [("tets / triangle", "tets_per_triangle", "{:.2f}"), ("fill", "fill", "{:.4f}"),
@@ -42,16 +42,6 @@ def arguments():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--keep-others", action="store_true")
     return parser.parse_args()
-
-
-def read_list(path):
-    """{name: half}"""
-    lines = [line.split() for line in path.read_text().splitlines() if line.strip() and not line.startswith("#")]
-    for number, words in enumerate(lines, 1):
-        if len(words) != 2 or words[0] not in HALVES:
-            raise SystemExit(f"{path}: entry {number}: \"{' '.join(words)}\" is not \"tuning NAME\" or "
-                             "\"judging NAME\"")
-    return {name: half for half, name in lines}
 
 
 def ways_of(options):
@@ -132,7 +122,7 @@ def write_page(options, runs, halves, ways):
 
 def main():
     options = arguments()
-    halves, ways = read_list(options.meshes), ways_of(options)
+    halves, ways = read_halves(options.meshes), ways_of(options)
     maker, runs = Maker(options.command.resolve(), options.cache, options.seconds), {}
     known = rows_of_others(options.page) if options.keep_others else {}
     for name in halves:

@@ -19,8 +19,9 @@ import math
 import pathlib
 import subprocess
 
+from halves import HALVES, read_halves
 from runs import replace_tables, table
-from shape_figures import HALVES, read_list, rows_of_others, ways_of
+from shape_figures import rows_of_others, ways_of
 from tet_files import read_tets
 import tet_makers
 from tet_makers import TETGEN, Failed, Maker, digest
@@ -135,7 +136,7 @@ def write_page(options, runs, halves, ways):
 def main():
     options = arguments()
     options.soft_body = options.soft_body.resolve()
-    halves, ways = read_list(options.meshes), ways_of(options)
+    halves, ways = read_halves(options.meshes), ways_of(options)
     maker, runs = Maker(options.command.resolve(), options.cache, options.seconds), {}
     known = rows_of_others(options.page) if options.keep_others else {}
     for name in halves:
