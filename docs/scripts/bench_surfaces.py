@@ -13,7 +13,7 @@ import pathlib
 import struct
 import sys
 
-from robustness import read_obj
+from triangles import read_obj
 
 GEO = 'Merge "surface.stl";\nCreateTopology;\nSurface Loop(1) = Surface{:};\nVolume(1) = {1};\n'
 

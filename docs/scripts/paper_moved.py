@@ -4,33 +4,7 @@ vertices" of the paper's section 2. Called by the parts of paper.py."""
 import math
 import random
 
-
-def read_obj(path):
-    """Points and triangles; equal positions are one point, polygons are fans."""
-    points, index, numbers, triangles = [], {}, [], []
-    for words in (line.split() for line in path.read_text().splitlines()):
-        if words[:1] == ["v"]:
-            p = tuple(float(word) for word in words[1:4])
-            if p not in index:
-                index[p] = len(points)
-                points.append(p)
-            numbers.append(index[p])
-        elif words[:1] == ["f"]:
-            corners = [numbers[int(word.split("/")[0]) - (int(word.split("/")[0]) > 0)] for word in words[1:]]
-            triangles += [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:])]
-    return points, triangles
-
-
-def minus(a, b):
-    return [x - y for x, y in zip(a, b)]
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
+from triangles import cross, dot, minus, read_obj, welded
 
 
 def normals_and_heights(points, triangles):
@@ -73,7 +47,7 @@ def moved(points, triangles, share, seed):
 
 
 def write_moved(source, path, share, seed):
-    points, triangles = read_obj(source)
+    points, triangles = welded(*read_obj(source))
     lines = ["v %.17g %.17g %.17g" % tuple(p) for p in moved(points, triangles, share, seed)]
     path.write_text("\n".join(lines + ["f %d %d %d" % tuple(v + 1 for v in t) for t in triangles]) + "\n")
     return path

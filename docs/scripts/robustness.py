@@ -13,36 +13,17 @@ import random
 import tempfile
 
 from runs import CLEAN_MESHES, METHODS, Results, arguments, build, replace_tables, table
+from triangles import cross, minus, read_obj
 
 FLAGS = ["--resolution", "64", "--samples", "20000"]
 QUICK_TRIANGLES = 5000
 NOISE_SHARE, NOISE_TRIALS = 0.05, 16
 
 
-def read_obj(path):
-    points, triangles = [], []
-    for line in path.read_text().splitlines():
-        words = line.split()
-        if words[:1] == ["v"]:
-            points.append(tuple(map(float, words[1:4])))
-        elif words[:1] == ["f"]:
-            corners = [int(word.split("/")[0]) - 1 for word in words[1:]]
-            triangles += [(corners[0], b, c) for b, c in zip(corners[1:], corners[2:])]
-    return points, triangles
-
-
 def write_obj(path, points, triangles):
     lines = ["v %.17g %.17g %.17g" % point for point in points]
     lines += ["f %d %d %d" % (a + 1, b + 1, c + 1) for a, b, c in triangles]
     path.write_text("\n".join(lines) + "\n")
-
-
-def subtract(a, b):
-    return tuple(x - y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def unit(a):
@@ -105,7 +86,7 @@ def vertex_normals(points, triangles):
     sums = [(0.0, 0.0, 0.0)] * len(points)
     for triangle in triangles:
         a, b, c = (points[corner] for corner in triangle)
-        normal = cross(subtract(b, a), subtract(c, a))
+        normal = cross(minus(b, a), minus(c, a))
         for corner in triangle:
             sums[corner] = tuple(s + n for s, n in zip(sums[corner], normal))
     return [unit(s) for s in sums]

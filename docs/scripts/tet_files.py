@@ -8,6 +8,8 @@ import xml.etree.ElementTree
 
 import numpy as np
 
+from triangles import read_obj as read_triangles
+
 VTK_TET, GMSH_TET = 10, 4
 NUMPY_TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "UInt32": "<u4", "Int64": "<i8", "UInt64": "<u8",
                "UInt8": "u1", "Int8": "i1"}
@@ -118,15 +120,7 @@ def read_tetgen(path):
 
 def read_obj(path):
     """Float32 points, equal ones welded, and triangles; polygons become fans. What the tools of all rows are given."""
-    points, triangles = [], []
-    for line in pathlib.Path(path).read_text(errors="replace").splitlines():
-        words = line.split()
-        if words[:1] == ["v"]:
-            points.append([float(word) for word in words[1:4]])
-        elif words[:1] == ["f"]:
-            corners = [int(word.split("/")[0]) for word in words[1:]]
-            corners = [c - 1 if c > 0 else c + len(points) for c in corners]
-            triangles += [[corners[0], b, c] for b, c in zip(corners[1:], corners[2:])]
+    points, triangles = read_triangles(path)
     # A sum with zero, because -0 and 0 are one place.
     welded, first, index = np.unique(np.array(points, np.float32) + np.float32(0), axis=0, return_index=True,
                                      return_inverse=True)

@@ -11,7 +11,8 @@ import tempfile
 
 sys.path.insert(0, sys.argv[1])
 from paper_halves import JUDGING, half_of  # noqa: E402
-from paper_moved import cross, dot, minus, moved, normals_and_heights, read_obj, write_moved  # noqa: E402
+from paper_moved import moved, normals_and_heights, write_moved  # noqa: E402
+from triangles import cross, dot, minus, read_obj, welded  # noqa: E402
 
 SIZE, SHARE = 6, 0.4
 
@@ -53,7 +54,7 @@ with tempfile.TemporaryDirectory() as folder:
     source, target = pathlib.Path(folder) / "source.obj", pathlib.Path(folder) / "target.obj"
     # A quad and a triangle that name the positions of their common edge twice, with texture coordinates and indices from the end.
     source.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1 4/1\nv 1 0 0\nv 2 0 0\nv 1 1 0\nf -3 -2 -1\n")
-    found, faces = read_obj(source)
+    found, faces = welded(*read_obj(source))
     assert len(found) == 5 and faces == [(0, 1, 2), (0, 2, 3), (1, 4, 2)], (found, faces)
     write_moved(source, target, SHARE, 1)
     again, same = read_obj(target)
