@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Tables of docs/growth.md: what halving and doubling each number of GrowthSchedule does.
 
-    schedule.py PROBE MESHES [--only NAME,...] [--keep FILE] [--write docs/growth.md]
+    schedule.py PROBE MESHES COLLECTION [--only NAME,...] [--keep FILE] [--write docs/growth.md]
 
 PROBE is the program schedule_probe (built with -DVDB_SHELL_BENCHMARKS=ON), MESHES a folder with
-paper/, artist/ and scans/. The numbers were chosen on the meshes of one half and are checked on the
-other. Per half: the mean change of the fill, in thousandths of the solid, and the mean factor on the
+paper/, artist/ and scans/, COLLECTION one with koala_low_resolution.obj and hand_closed.obj of
+odedstein-meshes. The numbers were chosen on the meshes of one half and are checked on the other
+(halves.py). Per half: the mean change of the fill, in thousandths of the solid, and the mean factor on the
 time of growth (CPU time; geometric mean). --keep: the probe's lines, used again if the file is
 there. --write: puts the tables between the marks in that page instead of printing them.
 """
@@ -16,22 +18,26 @@ import pathlib
 import subprocess
 import sys
 
-TUNED = "cow bunny_low_resolution teapot propella bend knot cheburashka rocker-arm".split()
-JUDGED = "dragon_small_resolution lamp funnel glass jack fandisk boot hammer".split()
+from halves import half_of
+
+TUNED = "cow bunny_low_resolution bend knot rocker-arm".split()
+JUDGED = "dragon_small_resolution glass bowl koala_low_resolution hand_closed".split()
 BEGIN, END = "<!-- schedule.py begins -->", "<!-- schedule.py ends -->"
 
 
-def file_of(folder, name):
+def file_of(folders, name):
     """The paper's mesh where there are several of one name."""
     order = {"paper": 0, "artist": 1, "scans": 2}
-    found = [p for p in folder.rglob(name + ".*") if p.suffix in (".obj", ".ply", ".off", ".stl")]
+    found = [p for folder in folders for p in folder.rglob(name + ".obj")]
+    if not found:
+        sys.exit(f"{name}.obj is not in {' or '.join(map(str, folders))}")
     return min(found, key=lambda p: (order.get(p.parent.name, 3), p))
 
 
-def measure(probe, folder, only, keep):
+def measure(probe, folders, only, keep):
     if keep and keep.exists():
         return keep.read_text()
-    files = [str(file_of(folder, name)) for name in TUNED + JUDGED]
+    files = [str(file_of(folders, name)) for name in TUNED + JUDGED]
     text = subprocess.run([probe, *(["--only", only] if only else []), *files], check=True,
                           stdout=subprocess.PIPE, text=True).stdout
     if keep:
@@ -90,11 +96,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("probe")
     parser.add_argument("meshes", type=pathlib.Path)
+    parser.add_argument("collection", type=pathlib.Path)
     parser.add_argument("--only", default="")
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--write", type=pathlib.Path)
     options = parser.parse_args()
-    shells, triangles = read(measure(options.probe, options.meshes, options.only, options.keep))
+    for names, half in ((TUNED, "tuning"), (JUDGED, "judging")):
+        wrong = [name for name in names if half_of(name) != half]
+        if wrong:
+            sys.exit(f"not of the half {half}: {', '.join(wrong)}")
+    shells, triangles = read(measure(options.probe, [options.meshes, options.collection], options.only, options.keep))
     tables = "\n".join([*default_table(shells, triangles), "", *sweep_table(shells)])
     if not options.write:
         print(tables)

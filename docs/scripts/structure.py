@@ -2,17 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures about the structure of the sources, of one checkout or of several side by side.
 
-    structure.py CHECKOUT [CHECKOUT ...]
+    structure.py CHECKOUT [CHECKOUT ...] [--write PAGE]
 
 Counts lines, comments, long files, long functions, constants of growth, includes against the order
 of docs/architecture.md (of the last checkout: earlier ones may not have had one), and folders that
 include each other in a circle. Functions are found by their braces at the level of a namespace:
-exact for sources that clang-format has laid out.
+exact for sources that clang-format has laid out. Files that know an option are those with its flag, or
+the field of its struct, outside of comments. --write puts the table between the marks in PAGE.
 """
+import argparse
 import pathlib
 import re
-import sys
 
+BEGIN, END = "<!-- structure: begin -->", "<!-- structure: end -->"
+# --thickness, as an example of an option that many stages have to do with.
+OPTION = re.compile(r"--thickness(?![-\w])|\b(?:line_step|options|o)\.thickness\b")
 INCLUDE = re.compile(r'^\s*#include "(?:vdb_shell/)?([a-z_]+)/', re.M)
 
 
@@ -68,6 +72,14 @@ def functions(text):
             yield end - k - 1, k
 
 
+def know_the_option(top):
+    """Files of library, command and Houdini's side."""
+    paths = [path for _, path in sources(top)]
+    paths += [p for p in (top / "houdini_compat").rglob("*") if p.suffix in (".h", ".cpp", ".py")]
+    code = ["\n".join(line.split("//")[0] for line in path.read_text().splitlines()) for path in paths]
+    return sum(bool(OPTION.search(text)) for text in code)
+
+
 def figures(top, order):
     code = comments = long_files = long_functions = longest = 0
     for _, path in sources(top):
@@ -94,20 +106,28 @@ def figures(top, order):
         "functions over 40 lines": long_functions,
         "longest function, lines": longest,
         "constants in growth": sum(len(re.findall(r"^\s*(?:static |inline )*constexpr (?!.*\()", p.read_text(), re.M)) for p in constants),
+        "files that know `--thickness`": know_the_option(top),
         "includes against the order": sum(place[b] > place[a] for a, b in known),
         "rooms in a circle of includes": len(in_circles(pairs)),
     }
 
 
 def main():
-    tops = [pathlib.Path(name) for name in sys.argv[1:]]
-    if not tops:
-        sys.exit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkouts", type=pathlib.Path, nargs="+")
+    parser.add_argument("--write", type=pathlib.Path)
+    arguments = parser.parse_args()
+    tops = arguments.checkouts
     page = (tops[-1] / "docs/architecture.md").read_text()
     order = re.search(r"```rooms\n\s*rooms:([^`]*)```", page)[1].split()
     columns = [figures(top, order) for top in tops]
-    for name in columns[0]:
-        print(f"| {name} | " + " | ".join(str(column[name]) for column in columns) + " |")
+    rows = [f"| {name} | " + " | ".join(str(column[name]) for column in columns) + " |" for name in columns[0]]
+    if not arguments.write:
+        print("\n".join(rows))
+        return
+    before, _, rest = arguments.write.read_text().partition(BEGIN)
+    heads = ["| | before | after |", "|---|---|---|"]
+    arguments.write.write_text("\n".join([before + BEGIN, *heads, *rows, END]) + rest.partition(END)[2])
 
 
 if __name__ == "__main__":

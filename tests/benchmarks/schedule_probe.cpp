@@ -5,9 +5,11 @@
 //
 //   schedule_probe [--only NAME,...] [--largest TRIANGLES] MESH...
 //
-// One line a shell: mesh, triangles, name of the number ("default" first), factor, fill, seconds of
-// CPU time, separated by tabs. Meshes of more triangles than --largest (15,000) have the first line
-// alone. docs/scripts/schedule.py makes the tables of docs/growth.md from it.
+// Left out are the numbers that growth does not read with its defaults: those of Method::thickest,
+// of min_quality, and of the report of stops. One line a shell: mesh, triangles, name of the number
+// ("default" first), factor, fill, seconds of CPU time, separated by tabs. Meshes of more triangles
+// than --largest (15,000) have the first line alone. docs/scripts/schedule.py makes the tables of
+// docs/growth.md from it.
 
 #include <vdb_shell/io/read_mesh.h>
 #include <vdb_shell/pipeline.h>
@@ -73,6 +75,8 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(lines, LineSchedule, share_of_room),
     VDB_SHELL_NUMBER(pins, PinSchedule, lengths),
     VDB_SHELL_NUMBER(pins, PinSchedule, longest),
+    VDB_SHELL_NUMBER(pins, PinSchedule, shortenings),
+    VDB_SHELL_NUMBER(pins, PinSchedule, share_of_visibility),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, coarsest_triangles),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, most_coarsest_triangles),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, greatest_ratio),
@@ -99,7 +103,16 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(mend, MendSchedule, weight_of_staying),
     VDB_SHELL_NUMBER(mend, MendSchedule, weight_of_staying_across),
     VDB_SHELL_NUMBER(mend, MendSchedule, newton_steps),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, radius),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, barrier_weight),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, least_void),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, least_gain),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, sweeps),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, least_void_of_solid),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, cuts),
+    VDB_SHELL_NUMBER(groups, GroupSchedule, halvings),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, first_weight_twelve),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, first_weight_three),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, most_weight_over_void),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, least_weight),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, weight_decrease),
@@ -108,10 +121,13 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, stale_gain),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, settled_weight),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, least_gain),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, enough_fill),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, most_rounds),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, twelve_rounds_before_three),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, sweeps),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, planes_weight),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, plane_range),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, cap_factor),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, halvings),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, shortest_move),
     VDB_SHELL_NUMBER(radius, TrustRadiusSchedule, first_edge_share),
