@@ -4,15 +4,15 @@
 //
 //   pose_frames SHELL.vdb FRAME.obj ...
 //
-// Prints a line of JSON for each frame: seconds, what is proven, and the farthest that points of
-// the surface have gone since the frame before, and points inside over that.
+// Prints a line of JSON for each frame: processor seconds, what is proven, and the farthest that
+// points of the surface have gone since the frame before, and points inside over that.
 
 #include <vdb_shell/io/read_mesh.h>
 #include <vdb_shell/pipeline.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <exception>
 #include <iostream>
 
@@ -57,14 +57,14 @@ try {
     Points skin_before;
     for (int i = 2; i < argc; ++i) {
         const Points skin = vdb_shell::read_mesh(argv[i]).mesh.points;
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock();
         const vdb_shell::PoseResult only = vdb_shell::pose_shell(rest, skin);
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
         const vdb_shell::PosedShell posed = vdb_shell::build_posed(rest, skin, {}, argv[i]);
         const vdb_shell::PoseReport& pose = only.report;
         const double skin_jump = before.points.empty() ? 0 : farthest(skin_before, skin);
         const std::vector<double> jumps = inner_jumps(before, posed.tets, skin_jump);
-        std::cout << "{\"frame\": " << i - 1 << ", \"seconds\": " << seconds.count()
+        std::cout << "{\"frame\": " << i - 1 << ", \"seconds\": " << seconds
                   << ", \"certified\": " << posed.report.certificate->certified()
                   << ", \"tets\": " << posed.tets.tets.size() << ", \"certified_tets\": "
                   << (posed.report.overlaps ? posed.report.overlaps->certified_tets()
@@ -72,6 +72,7 @@ try {
                   << ", \"crossings\": " << pose.skin_crossings
                   << ", \"inverted_carried\": " << pose.inverted_carried
                   << ", \"inverted\": " << pose.inverted << ", \"lost\": " << pose.lost_pillars
+                  << ", \"lost_demanded\": " << pose.lost_demanded
                   << ", \"moved\": " << pose.moved_points << ", \"distorted\": " << pose.distorted
                   << ", \"skin_jump\": " << skin_jump
                   << ", \"jump_99\": " << jumps[jumps.size() * 99 / 100]

@@ -12,9 +12,11 @@
 #include "mesh/topology.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -25,8 +27,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
-// The optimum over a star touches at most three normals, so all triples are tried; with more
-// normals than this an iteration is cheaper.
+// All triples of so many normals are tried; of more, only of those that matter.
 constexpr std::size_t kSmallStar = 16;
 
 Vec3d unit_or_zero(const Vec3d& v)
@@ -35,55 +36,70 @@ Vec3d unit_or_zero(const Vec3d& v)
     return length > 0 ? v / length : Vec3d(0.0);
 }
 
-Vec3d most_visible_of_few(const std::vector<Vec3d>& n)
+/// A direction, and the one, two or three normals that have the smallest dot product with it: it is
+/// one of them, or halfway between two, or as far from each of three.
+struct Optimum {
+    Vec3d direction{0.0};
+    double least = -2;
+    std::vector<Vec3d> touching;
+};
+
+Optimum best_of_few(const std::vector<Vec3d>& n)
 {
-    Vec3d best(0.0);
-    double best_dot = -2;
-    // At the best direction one, two or three normals have the smallest dot product together: it is
-    // one of the normals, or halfway between two, or as far from each of three.
-    const auto consider = [&](const Vec3d& candidate) {
+    Optimum best;
+    std::array<std::size_t, 3> touching{};
+    std::size_t count = 0;
+    const auto consider = [&](const Vec3d& candidate, std::array<std::size_t, 3> of,
+                              std::size_t size) {
         const Vec3d d = unit_or_zero(candidate);
         const double dot = smallest_dot(n, d);
-        if (d.lengthSqr() > 0 && dot > best_dot) {
-            best_dot = dot;
-            best = d;
+        if (d.lengthSqr() > 0 && dot > best.least) {
+            best.least = dot;
+            best.direction = d;
+            touching = of;
+            count = size;
         }
     };
     for (std::size_t i = 0; i < n.size(); ++i) {
-        consider(n[i]);
+        consider(n[i], {i}, 1);
         for (std::size_t j = 0; j < i; ++j) {
-            consider(n[i] + n[j]);
+            consider(n[i] + n[j], {i, j}, 2);
             for (std::size_t l = 0; l < j; ++l) {
                 const Vec3d c = (n[j] - n[i]).cross(n[l] - n[i]);
-                consider(c);
-                consider(-c);
+                consider(c, {i, j, l}, 3);
+                consider(-c, {i, j, l}, 3);
             }
         }
     }
+    for (std::size_t k = 0; k < count; ++k)
+        best.touching.push_back(n[touching[k]]);
     return best;
 }
 
-/// The direction sought is that of the point of the normals' hull nearest the origin (Gilbert 1966,
-/// "An iterative procedure for computing the minimum of a quadratic form on a convex set").
+/// Three normals decide, and which ones they are is found by taking in the one that the best
+/// direction so far sees worst, and leaving out those that it does not touch: an LP-type problem
+/// (Sharir and Welzl 1992, "A combinatorial bound for linear programming and related problems").
+/// The value falls with each step, so no three come twice. Where no direction sees all of some
+/// four, the best one for these is given.
 Vec3d most_visible_of_many(const std::vector<Vec3d>& n)
 {
-    // Far more than any star of the meshes tried needed: a bound for termination.
-    constexpr int kIterations = 4000;
-    Vec3d p = n[0];
-    for (int i = 0; i < kIterations; ++i) {
-        const Vec3d lowest =
-            *std::min_element(n.begin(), n.end(),
-                              [&](const Vec3d& x, const Vec3d& y) { return x.dot(p) < y.dot(p); });
-        const Vec3d edge = lowest - p;
-        const double squared = edge.lengthSqr();
-        if (squared <= 0)
+    Optimum best{n[0], 1, {n[0]}};
+    while (best.least > 0) {
+        const Vec3d worst =
+            *std::min_element(n.begin(), n.end(), [&](const Vec3d& x, const Vec3d& y) {
+                return x.dot(best.direction) < y.dot(best.direction);
+            });
+        if (!(worst.dot(best.direction) < best.least))
             break;
-        const double t = std::clamp(-p.dot(edge) / squared, 0.0, 1.0);
-        if (t <= 0)
+        std::vector<Vec3d> taken = best.touching;
+        taken.push_back(worst);
+        Optimum next = best_of_few(taken);
+        // What does not fall is the rounding of the same value.
+        if (!(next.least < best.least))
             break;
-        p += t * edge;
+        best = std::move(next);
     }
-    return unit_or_zero(p);
+    return best.direction;
 }
 
 } // namespace
@@ -100,8 +116,7 @@ Vec3d most_visible(const std::vector<Vec3d>& normals)
 {
     if (normals.empty())
         return Vec3d(0.0);
-    // Both ways give the optimum; they differ in rounding alone.
-    return normals.size() <= kSmallStar ? most_visible_of_few(normals)
+    return normals.size() <= kSmallStar ? best_of_few(normals).direction
                                         : most_visible_of_many(normals);
 }
 

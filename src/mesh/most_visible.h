@@ -9,8 +9,9 @@
 namespace vdb_shell
 {
 
-/// The unit direction whose smallest dot product with the unit normals given is largest; zero
-/// where there are none.
+/// The unit direction whose smallest dot product with the unit normals given is largest, to a few
+/// roundings of a double; zero where there are none. Where that product is not positive, one that
+/// does not see all of them either.
 openvdb::Vec3d most_visible(const std::vector<openvdb::Vec3d>& normals);
 
 /// The smallest dot product of d and one of these; infinite where there are none.

@@ -11,9 +11,8 @@
 #include "growth/mend_prolonged.h"
 #include "growth/prism.h"
 #include "pose/improve_pose.h"
+#include "pose/inflate_lost.h"
 #include "pose/relax_pose.h"
-#include "pose/release_lost.h"
-#include "pose/restart_lost.h"
 #include "vdb_shell/shell/sides.h"
 
 #include <algorithm>
@@ -94,10 +93,25 @@ GrowState state_of(const Parts& parts, const SkinSide& side, const Connectivity&
     return s;
 }
 
+/// By point: the ends of lost pillars, and of those beside them.
+std::vector<std::uint8_t> around_lost(const Parts& parts, const SkinSide& side, const GrowState& s)
+{
+    std::vector<std::uint8_t> around(parts.rest.size(), 0);
+    const auto mark = [&](int v) {
+        if (s.cap[std::size_t(v)] > 0)
+            around[point_at(parts, side.end, std::size_t(v))] = 1;
+    };
+    for (const int v : lost_vertices(s)) {
+        mark(v);
+        for (const int u : growth::neighbours(*s.mesh, v))
+            mark(u);
+    }
+    return around;
+}
+
 void mend_side(const Parts& parts, const SkinSide& side, const std::vector<Vec3s>& skin,
-               const SkinCrossings& crossings, const InvertedTets& inverted,
-               const PoseOptions& options, PoseState& state, PoseReport& report,
-               const StageProgress& progress)
+               const SkinCrossings& crossings, const PoseOptions& options, PoseState& state,
+               PoseReport& report, const StageProgress& progress)
 {
     TriangleMesh mesh{skin, parts.stack.triangles()};
     if (side.outside)
@@ -105,13 +119,10 @@ void mend_side(const Parts& parts, const SkinSide& side, const std::vector<Vec3s
     const Connectivity connectivity = growth::connect(skin.size(), mesh.triangles);
     GrowState s = state_of(parts, side, connectivity, skin, crossings, state);
     growth::mend_placed(s, progress);
-    release_lost(s, mesh, progress);
-    // Where the skin crosses itself some pillars have no place at all, and attempts cost time.
-    if (crossings.pairs == 0)
-        restart_lost(parts, side, state, inverted, options, s, progress);
+    report.lost_demanded += inflate_lost(s, mesh, progress);
     bring_back(parts, side, s, state);
     std::vector<std::uint8_t> valid(skin.size(), 0);
-    const std::size_t lost = lost_pillars(s);
+    const std::size_t lost = lost_vertices(s).size();
     for (std::size_t v = 0; v < skin.size(); ++v) {
         valid[v] = s.cap[v] > 0 && !s.pinned[v];
         if (valid[v])
@@ -132,11 +143,11 @@ bool can_mend_sides(const Parts& parts)
 }
 
 void mend_sides(const Parts& parts, PoseState& state, const std::vector<Vec3s>& skin,
-                const SkinCrossings& crossings, const InvertedTets& inverted,
-                const PoseOptions& options, PoseReport& report, const StageProgress& progress)
+                const SkinCrossings& crossings, const PoseOptions& options, PoseReport& report,
+                const StageProgress& progress)
 {
     for (const SkinSide& side : sides_of(parts.stack))
-        mend_side(parts, side, skin, crossings, inverted, options, state, report, progress);
+        mend_side(parts, side, skin, crossings, options, state, report, progress);
 }
 
 } // namespace vdb_shell

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/stage_progress.h"
-#include "pose/centre_points.h"
 #include "pose/skin_crossings.h"
 
 namespace vdb_shell
@@ -18,7 +17,6 @@ bool can_mend_sides(const RestShell::Parts& parts);
 /// is counted. Precondition: can_mend_sides(parts).
 void mend_sides(const RestShell::Parts& parts, PoseState& state,
                 const std::vector<openvdb::Vec3s>& skin, const SkinCrossings& crossings,
-                const InvertedTets& inverted, const PoseOptions& options, PoseReport& report,
-                const StageProgress& progress);
+                const PoseOptions& options, PoseReport& report, const StageProgress& progress);
 
 } // namespace vdb_shell

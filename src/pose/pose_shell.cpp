@@ -9,7 +9,6 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
-#include "pose/centre_points.h"
 #include "pose/mend_sides.h"
 #include "pose/relax_pose.h"
 #include "pose/rest_parts.h"
@@ -169,15 +168,12 @@ PoseResult pose_shell(const RestShell& rest, const std::vector<Vec3s>& skin,
         report.free_points += colour.size();
     PoseState state = carry(parts, skin);
     report.inverted_carried = inverted_tets(parts, stored_points(parts, state, skin)).size();
-    const InvertedTets inverted = [&](const PoseState& s) {
-        return inverted_tets(parts, stored_points(parts, s, skin));
-    };
     if (can_mend_sides(parts)) {
         const SkinCrossings crossings = find_skin_crossings(parts, state, skin, interrupter);
         report.skin_crossings = crossings.pairs;
         for (const std::uint8_t in : crossings.region)
             report.excused_triangles += in;
-        mend_sides(parts, state, skin, crossings, inverted, options, report, progress);
+        mend_sides(parts, state, skin, crossings, options, report, progress);
     } else {
         report.rounds = static_cast<std::size_t>(
             relax_pose(parts, state, options.most_distortion,

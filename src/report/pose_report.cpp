@@ -26,6 +26,7 @@ ordered_json pose_json(const PoseReport& pose)
             {"inverted", pose.inverted},
             {"inverted_by_skin", pose.inverted_by_skin},
             {"lost_pillars", pose.lost_pillars},
+            {"lost_demanded", pose.lost_demanded},
             {"skin_crossings", pose.skin_crossings},
             {"excused_triangles", pose.excused_triangles},
             {"distorted", pose.distorted},
@@ -49,8 +50,8 @@ void pose_lines(std::ostringstream& out, const PoseReport& pose)
                  " prisms are let be");
     if (pose.lost_pillars > 0)
         line(out, "",
-             number(double(pose.lost_pillars), 12) +
-                 " pillars for which the skin leaves no valid place");
+             number(double(pose.lost_pillars), 12) + " pillars without a valid place; to " +
+                 number(double(pose.lost_demanded), 12) + " of them the skin leaves no direction");
 }
 
 std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)

@@ -46,7 +46,23 @@ TEST(MostVisible, ManyNormalsOfACone)
         normals.emplace_back(std::sqrt(0.75) * std::cos(angle), std::sqrt(0.75) * std::sin(angle),
                              0.5);
     }
-    EXPECT_NEAR(smallest_dot(normals, most_visible(normals)), 0.5, 1e-3);
+    EXPECT_NEAR(smallest_dot(normals, most_visible(normals)), 0.5, 1e-12);
+}
+
+TEST(MostVisible, ManyNormalsThatLeaveANarrowCone)
+{
+    // Each twice, as the two ends of a pillar give them, and all but square to the axis.
+    for (const double sight : {1e-2, 1e-4, 1e-6}) {
+        std::vector<Vec3d> normals;
+        for (int i = 0; i < 17; ++i) {
+            const double angle = 2 * M_PI * (i * 7 % 17) / 17;
+            normals.push_back(Vec3d(std::cos(angle), std::sin(angle), sight).unit());
+            normals.push_back(Vec3d(std::cos(angle), std::sin(angle), 2 * sight).unit());
+        }
+        // Along the axis.
+        const double least = sight / std::hypot(1, sight);
+        EXPECT_NEAR(smallest_dot(normals, most_visible(normals)), least, 1e-9 * least);
+    }
 }
 
 TEST(BlindVertices, ABoxHasNone)

@@ -35,8 +35,11 @@ struct PoseReport {
     std::size_t inverted = 0;         ///< tets that are not positive in the end, exactly
     /// Of them, tets whose corners all lie on the skin: no inner point can mend them.
     std::size_t inverted_by_skin = 0;
-    std::size_t lost_pillars = 0;   ///< for which the exact tests left no length; kept as carried
-    std::size_t skin_crossings = 0; ///< pairs of triangles of the skin that cross or touch
+    std::size_t lost_pillars = 0; ///< for which the exact tests left no length; kept as carried
+    /// Of them, those of vertices whose triangles no direction sees (theory, "Pins that geometry
+    /// demands").
+    std::size_t lost_demanded = 0;
+    std::size_t skin_crossings = 0;    ///< pairs of triangles of the skin that cross or touch
     std::size_t excused_triangles = 0; ///< of whose prisms contacts were not tested because of that
     std::size_t distorted = 0;         ///< positive tets beyond PoseOptions::most_distortion
     double mean_distortion = 1, most_distortion = 1; ///< of positive tets, as in PoseOptions
