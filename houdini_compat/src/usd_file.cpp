@@ -116,6 +116,24 @@ void write_placement(UsdStage& stage, const Samples& samples, bool with_origin)
                (with_origin ? "\"xformOp:translate\", " : "") + "\"xformOp:scale\"]");
 }
 
+/// Where points were at rest, and how fast they move (UsdGeomPointBased::velocities): in the frame
+/// of the points. `of_prim` takes what a prim has from what the shell has.
+template <typename OfPrim>
+void write_motion(UsdStage& stage, const Samples& samples, const OfPrim& of_prim)
+{
+    const auto moving = [](const UsdSample& s) { return !s.shell->rest.velocity.empty(); };
+    const auto posed = [](const UsdSample& s) { return s.shell->rest.posed(); };
+    if (std::any_of(samples.begin(), samples.end(), posed))
+        stage.primvar("point3f[] primvars:rest", [&](const UsdSample& s) {
+            return usd_array(of_prim(s, rest_points(*s.shell)));
+        });
+    // Prims have the same attributes at all times, and a speed that nobody knows is not 0.
+    if (std::all_of(samples.begin(), samples.end(), moving))
+        stage.attribute("vector3f[] velocities", [&](const UsdSample& s) {
+            return usd_array(of_prim(s, s.shell->rest.velocity));
+        });
+}
+
 void write_surface(UsdStage& stage, const Samples& samples)
 {
     stage.open("def Mesh \"surface\"");
@@ -131,6 +149,9 @@ void write_surface(UsdStage& stage, const Samples& samples)
     });
     stage.line("uniform token orientation = \"rightHanded\"");
     stage.attribute("point3f[] points", [](const UsdSample& s) { return usd_array(skin_of(s)); });
+    write_motion(stage, samples, [](const UsdSample& s, const PointVectors& vectors) {
+        return vectors.surface[s.shell->stack.skin];
+    });
     write_stops(stage, samples);
     stage.primvar("float[] primvars:thickness", [](const UsdSample& s) {
         std::vector<float> lengths;
@@ -225,6 +246,9 @@ void write_tets(UsdStage& stage, const Samples& samples)
     stage.line("uniform token orientation = \"rightHanded\"");
     stage.attribute("point3f[] points",
                     [](const UsdSample& s) { return usd_array(s.shell->tets.points); });
+    write_motion(stage, samples, [](const UsdSample& s, const PointVectors& vectors) {
+        return vectors_of_tet_points(s.shell->tets, vectors);
+    });
     write_core_primvars(stage, samples);
     write_tet_primvars(stage);
     stage.attribute("int3[] surfaceFaceVertexIndices", [](const UsdSample& s) {

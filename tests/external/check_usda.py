@@ -44,6 +44,9 @@ LAYERED = {"userProperties:layer": "custom int[]", "userProperties:layers": "cus
 # All of these or none, where there are surfaces inside that the shell was kept off.
 CORES = {"primvars:core": "int[]", "primvars:coreDistance": "float[]",
          "primvars:coreTriangle": "int[]", "primvars:coreUvw": "float3[]"}
+# Each where the shell is posed, and where it is known how fast it moves.
+POSED = {"primvars:rest": "point3f[]"}
+MOVING = {"velocities": "vector3f[]"}
 BOTH_SIDED = {"primvars:stopReasonOuter": "int[]"}
 
 
@@ -78,10 +81,13 @@ class Check:
             known.update(CORES)
         if prim.kind == "Mesh" and set(BOTH_SIDED) & set(prim.types):
             known.update(BOTH_SIDED)
+        for more in (POSED, MOVING):
+            if prim.kind in ("Mesh", "TetMesh") and set(more) & set(prim.types):
+                known.update(more)
         self.that(prim.types == known, f"{prim.name}: attributes {prim.types}, expected {known}")
         for name, declared in prim.types.items():
             values = prim.samples.get(name, {}).values() or [prim.values.get(name)]
-            size = re.search(r"(?:int|float|point)(\d)f?\[\]$", declared)
+            size = re.search(r"(?:int|float|point|vector)(\d)f?\[\]$", declared)
             for value in values:
                 self.that(value is not None, f"{prim.name}.{name}: no value")
                 if size and value is not None:
@@ -165,6 +171,10 @@ class Check:
         self.that(all(0 <= v < len(skin_points) for v in source), "tets: a source vertex is out of range")
         self.that(all(0 <= k <= layers and single(k / layers) == single(d) for k, d in zip(layer, depth)),
                   "tets: a depth is not that of its layer")
+        for name in ("primvars:rest", "velocities"):
+            self.that((name in surface.types) == (name in tets.types), f"one prim alone has {name}")
+            if name in surface.types and name in tets.types:
+                self.moved_alike(name, surface.at(name, time), tets.at(name, time), source, layer, skin)
         if self.failures:
             return
         pillars = collections.defaultdict(list)
@@ -177,6 +187,12 @@ class Check:
         self.prisms(surface, tets, time, layers)
         self.feet(tets, time)
         self.facts.append(f"{layers} layers, the surface is number {skin}")
+
+    def moved_alike(self, name, of_surface, of_tets, source, layer, skin):
+        """Points of the tets that are vertices of the surface have its values."""
+        self.that(len(of_tets) == len(source), f"tets: {len(of_tets)} of {name}, {len(source)} points")
+        for value, v, k in zip(of_tets, source, layer):
+            self.that(k != skin or value == of_surface[v], f"tets: {name} of vertex {v} is not the surface's")
 
     def pillar(self, v, layers, points, thickness, skin, skin_point):
         """Its points from the outermost on; pinned layers have none of their own."""

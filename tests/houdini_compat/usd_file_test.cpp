@@ -216,6 +216,37 @@ TEST_F(Usd, WhatMovesIsTimeSampledAndNothingElse)
     expect_good(folder / "s.usda");
 }
 
+TEST_F(Usd, PosedShellsSayWhereTheyWereAndHowFastTheyMove)
+{
+    const TriangleMesh sphere = icosphere(1.0, 1);
+    const Vec3d step(0.25, 0, 0);
+    const ShellFile rest = hand_made_file(hand_made_shell(sphere, 0.7), 0.1);
+    std::vector<ShellFile> frames{rest};
+    for (int frame = 1; frame < 3; ++frame) {
+        ShellFile posed =
+            hand_made_file(hand_made_shell(translated(sphere, frame * step), 0.7), 0.1);
+        posed.rest = rest_points(rest);
+        for (std::size_t k = 0; k < posed.stack.surfaces(); ++k)
+            posed.rest.velocity.surface.emplace_back(sphere.points.size(), 24 * step);
+        frames.push_back(std::move(posed));
+    }
+    write_usd(folder / "s.usda", {{1.0, &frames[1], {}}, {2.0, &frames[2], {}}});
+    const std::string moving = read_bytes(folder / "s.usda");
+    // At rest they are in the same places at all times.
+    EXPECT_NE(moving.find("point3f[] primvars:rest = "), std::string::npos);
+    EXPECT_NE(moving.find("vector3f[] velocities = [(6, 0, 0), "), std::string::npos);
+    EXPECT_NE(moving.find("points.timeSamples"), std::string::npos);
+    expect_good(folder / "s.usda");
+    // Of a frame at rest nobody knows how fast it moves.
+    write_usd(folder / "s.usda", {{0.0, &frames[0], {}}, {1.0, &frames[1], {}}});
+    const std::string mixed = read_bytes(folder / "s.usda");
+    EXPECT_NE(mixed.find("primvars:rest = "), std::string::npos);
+    EXPECT_EQ(mixed.find("velocities"), std::string::npos);
+    expect_good(folder / "s.usda");
+    write_usd(folder / "s.usda", {{0.0, &rest, {}}});
+    EXPECT_EQ(read_bytes(folder / "s.usda").find("rest"), std::string::npos);
+}
+
 TEST_F(Usd, TetsThatChangeAreTimeSampledToo)
 {
     const TriangleMesh sphere = icosphere(1.0, 1);
