@@ -1,18 +1,24 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures what builds cost, and fits the model behind `vdb_shell estimate`.
+"""Measures what builds, poses and deformations cost, and fits the model behind `vdb_shell estimate`.
 
-    estimate_model.py measure COMMAND MESHES RESULTS.json      builds of all clean meshes; what is there already is kept
-    estimate_model.py fit RESULTS.json NUMBERS.h PAGE.md       numbers for src/command/, the table of errors for the page
+    estimate_model.py measure COMMAND MESHES BUILDS.json       builds of all clean meshes; what is there already is kept
+    estimate_model.py measure-poses FOLDER MESHES POSES.json   poses of them; FOLDER is that of a release build with its samples
+    estimate_model.py fit BUILDS.json NUMBERS.h PAGE.md        numbers for src/command/, the table of errors for the page
+    estimate_model.py fit-poses POSES.json NUMBERS.h PAGE.md   the same
 
 A build is one of a mesh at a resolution, perhaps subdivided, on one thread, with a .vdb written. Seconds are those of the
 processor, so other work on the machine disturbs little. Half of the meshes (every second one of the list) tune the
-model, the other half and the scans judge it."""
+model, the other half and the scans judge it.
+
+A pose is that of a shell twisted by a quarter turn, with a .vdb written; a deformation carries the fog volume "depth" of the shell at rest
+into it. Both on one thread."""
 import datetime
 import itertools
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -90,9 +96,54 @@ def measure(command, meshes, results):
                 print(key, known[key].get("seconds"), flush=True)
 
 
+def timed(words):
+    """Processor seconds and largest memory of a command, which may end with 7: a pose that is not certified throughout."""
+    child = subprocess.Popen([*map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode not in (0, 7):
+        raise SystemExit(f"{words}: ended with {child.returncode}")
+    return {"seconds": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss * 1024}
+
+
+def posed(build, mesh, variant):
+    command = build / "src/vdb_shell"
+    options = [word for key, value in variant.items() for word in (f"--{key}", str(value))]
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        subprocess.run([command, "build", "-q", mesh, "-o", folder / "r.vdb", "--report", folder / "r.json", *options], check=True)
+        subprocess.run([build / "samples/make_motion", mesh, "twist", "3", folder / "frames"], check=True)
+        skin = sorted((folder / "frames").glob("*.obj"))[1]
+        one = [command, "--threads", "1"]
+        pose = timed([*one, "pose", "-q", folder / "r.vdb", skin, "-o", folder / "p.vdb", "--report", folder / "p.json"])
+        deform = timed([*one, "deform", "-q", folder / "r.vdb", "--grid", "depth", "--posed", folder / "p.vdb", "-o", folder / "d.vdb",
+                        "--report", folder / "d.json"])
+        built, report = (json.loads((folder / name).read_text()) for name in ("r.json", "p.json"))
+        faces, area, _ = size_of(skin)
+        carried = json.loads((folder / "d.json").read_text())["grids"][0]
+        common = {"faces": faces, **variant}
+        return [{"command": "pose", **common, "area": area, "solid": report["volume"]["solid"], "voxel_size": built["field"]["voxel_size"],
+                 "vdb": (folder / "p.vdb").stat().st_size, **pose},
+                {"command": "deform", **common, "voxels": carried["active_before"], "vdb": (folder / "d.vdb").stat().st_size, **deform}]
+
+
+def measure_poses(build, meshes, results):
+    known = json.loads(results.read_text()) if results.exists() else {}
+    for name in CLEAN_MESHES + SCANS[:1]:
+        mesh = pathlib.Path(meshes) / (name + ".obj")
+        for variant in ({"resolution": 64}, {"resolution": 128}, {"resolution": 128, "layers": 3}):
+            key = name + json.dumps(variant)
+            if key not in known:
+                known[key] = [{"mesh": name, **run} for run in posed(build, mesh, variant)]
+                results.write_text(json.dumps(known, indent=1))
+                print(key, *(run["seconds"] for run in known[key]), flush=True)
+
+
 def features(run):
     """What time, memory and disk are sums of; cost_model.cpp has the same."""
     faces = run["faces"]
+    if "voxels" in run:
+        return [1, min(faces, COARSE_FROM), max(faces - COARSE_FROM, 0), run["voxels"], 0, faces * (run.get("layers", 1) - 1)]
     return [1, min(faces, COARSE_FROM), max(faces - COARSE_FROM, 0), run["area"] / run["voxel_size"] ** 2,
             run["solid"] / run["voxel_size"] ** 3, faces * (run.get("layers", 1) - 1)]
 
@@ -124,15 +175,16 @@ HEADER = """// SPDX-License-Identifier: Apache-2.0
 
 #include <array>
 
-// Made by docs/scripts/estimate_model.py from {count} builds on {date}, of which every second mesh tuned them, on one
-// thread of a machine with {threads} hardware threads ({processor}), Debian 12, release build. docs/farm.md has their errors.
+// Made by docs/scripts/estimate_model.py, of which every second mesh tuned them; docs/farm.md has
+// their errors. On one thread, Debian 12, release build:
+{sources}
 
 namespace vdb_shell::command
 {{
 
-/// For one; for each triangle up to {coarse}; for each one from there; for each voxel of the surface
-/// (area over the square of the voxel size); for each voxel of the solid; for each triangle in each
-/// layer after the first.
+/// For one; for each triangle up to kCoarseFrom; for each one from there; for each voxel of the
+/// surface (area over the square of the voxel size), of deformations for each one of the volume; for
+/// each voxel of the solid; for each triangle in each layer after the first.
 using CostNumbers = std::array<double, 6>;
 
 inline constexpr double kCoarseFrom = {coarse};
@@ -141,7 +193,9 @@ inline constexpr double kCoarseFrom = {coarse};
 
 }} // namespace vdb_shell::command
 """
-QUANTITIES = {"seconds": "kSecondsNumbers", "memory": "kMemoryNumbers", "vdb": "kVdbNumbers"}
+QUANTITIES = {"seconds": "SecondsNumbers", "memory": "MemoryNumbers", "vdb": "VdbNumbers"}
+SOURCE = "// - {}: {} on {}, a machine with {} hardware threads ({})"
+HEAD = ["what", "meshes", "runs", "median factor", "of 90 %", "largest", "within 1.5, %"]
 
 
 def processor():
@@ -149,27 +203,58 @@ def processor():
     return names[0] if names else "unknown"
 
 
+def lines_and_rows(runs, prefix, words):
+    """Numbers as the header has them, by name; rows of the table of errors."""
+    tuning = numpy.array([run["mesh"] in CLEAN_MESHES[::2] for run in runs])
+    lines, rows = {}, []
+    for quantity, name in QUANTITIES.items():
+        numbers, errors = fitted(runs, quantity, tuning)
+        name = f"k{prefix}{name}"
+        lines[name] = f"inline constexpr CostNumbers {name}{{{', '.join('%.4g' % number for number in numbers)}}};"
+        for kind, chosen in (("tuning", tuning), ("others", ~tuning)):
+            e = errors[chosen]
+            rows.append([words + quantity, kind, str(len(e)), *("%.2f" % numpy.quantile(e, q) for q in (0.5, 0.9, 1)),
+                         "%.0f" % (100 * (e <= 1.5).mean())])
+    return lines, rows
+
+
+def write_numbers(header, made, sources):
+    """Replaces what was fitted and leaves the other numbers, and what they were made from, as they are."""
+    old = header.read_text()
+    lines = {line.split()[3].split("{")[0]: line for line in re.sub(r",\n +", ", ", old).splitlines()
+             if line.startswith("inline constexpr CostNumbers")}
+    lines.update(made)
+    told = {line.split(":")[0]: line for line in re.findall(r"^// - .*$", old, re.M)}
+    told.update({line.split(":")[0]: line for line in sources})
+    header.write_text(HEADER.format(sources="\n".join(told.values()), coarse=COARSE_FROM, lines="\n".join(lines.values())))
+
+
+def source(what, count):
+    return SOURCE.format(what, count, datetime.date.today(), os.cpu_count(), processor())
+
+
 def fit(results, header, page):
     everything = [run for run in json.loads(results.read_text()).values() if "seconds" in run]
     # Outward shells and --thickest are not modelled: they are another kind of work.
     runs = [run for run in everything if "side" not in run and "method" not in run]
-    tuning = numpy.array([run["mesh"] in CLEAN_MESHES[::2] for run in runs])
-    lines, rows = [], []
-    for quantity, name in QUANTITIES.items():
-        numbers, errors = fitted(runs, quantity, tuning)
-        lines.append(f"inline constexpr CostNumbers {name}{{{', '.join('%.4g' % number for number in numbers)}}};")
-        for kind, chosen in (("tuning", tuning), ("others", ~tuning)):
-            e = errors[chosen]
-            rows.append([quantity, kind, str(len(e)), *("%.2f" % numpy.quantile(e, q) for q in (0.5, 0.9, 1)),
-                         "%.0f" % (100 * (e <= 1.5).mean())])
-    header.write_text(HEADER.format(count=len(runs), date=datetime.date.today(), threads=os.cpu_count(), processor=processor(),
-                                    coarse=COARSE_FROM, lines="\n".join(lines)))
-    replace_tables(page, table(["what", "meshes", "builds", "median factor", "of 90 %", "largest", "within 1.5, %"], rows),
-                   "estimate")
+    lines, rows = lines_and_rows(runs, "", "")
+    write_numbers(header, lines, [source("builds", len(runs))])
+    replace_tables(page, table(HEAD, rows), "estimate")
+
+
+def fit_poses(results, header, page):
+    everything = [run for runs in json.loads(results.read_text()).values() for run in runs]
+    made, rows, sources = {}, [], []
+    for command, prefix in (("pose", "Pose"), ("deform", "Deform")):
+        runs = [run for run in everything if run["command"] == command]
+        lines, more = lines_and_rows(runs, prefix, command + ": ")
+        made.update(lines)
+        rows += more
+        sources.append(source({"pose": "poses", "deform": "deformations"}[command], len(runs)))
+    write_numbers(header, made, sources)
+    replace_tables(page, table(HEAD, rows), "estimate-poses")
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "measure":
-        measure(sys.argv[2], sys.argv[3], pathlib.Path(sys.argv[4]))
-    else:
-        fit(*map(pathlib.Path, sys.argv[2:5]))
+    does = {"measure": measure, "measure-poses": measure_poses, "fit": fit, "fit-poses": fit_poses}
+    does[sys.argv[1]](*map(pathlib.Path, sys.argv[2:5]))

@@ -157,7 +157,7 @@ void Call::Parts::add_volume_commands()
 void Call::Parts::add_farm_commands()
 {
     add(
-        "estimate", "Say what a build would cost: seconds, memory, bytes of files",
+        "estimate", "Say what a call would cost: seconds, memory, bytes of files",
         add_estimate_command, a.estimate, [this] { return plan_estimate(a.estimate); },
         [this](Context& context) { return run_estimate(a.estimate, context); });
     add(
@@ -349,6 +349,16 @@ std::string Call::value_of(const std::string& flag) const
 const BuildArguments& Call::build_arguments() const
 {
     return parts_->a.build;
+}
+
+const PoseArguments& Call::pose_arguments() const
+{
+    return parts_->a.pose;
+}
+
+const DeformArguments& Call::deform_arguments() const
+{
+    return parts_->a.deform;
 }
 
 FilePlan Call::plan()

@@ -19,6 +19,8 @@ namespace vdb_shell::command
 {
 
 struct BuildArguments;
+struct DeformArguments;
+struct PoseArguments;
 
 /// What can be said beside any command.
 struct GlobalArguments {
@@ -65,8 +67,10 @@ public:
     std::string options_text() const;
     /// After plan(): the value of the command's option with that flag; empty where it is unset.
     std::string value_of(const std::string& flag) const;
-    /// After plan() of a call of `build`.
+    /// After plan() of a call of that command.
     const BuildArguments& build_arguments() const;
+    const PoseArguments& pose_arguments() const;
+    const DeformArguments& deform_arguments() const;
     /// After plan().
     int run(Context& context);
 

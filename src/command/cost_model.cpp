@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// From a surface and options to seconds, memory and bytes of files: sums of the number of triangles
-// and voxels, each times a measured number (cost_numbers.h). The work of a shell depends on its
-// shape too, which nobody knows before it is done, so this is good for a job's limits and not for a
-// promise.
+// From a call's inputs and options to seconds, memory and bytes of files: sums of the number of
+// triangles and voxels, each times a measured number (cost_numbers.h). The work of a shell depends
+// on its shape too, which nobody knows before it is done, so this is good for a job's limits and
+// not for a promise.
 
 #include "command/cost_model.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/io/volume_file.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include "command/call.h"
 #include "command/cost_numbers.h"
+#include "command/deform_command.h"
+#include "command/file_commands.h"
+#include "command/pose_command.h"
+#include "command/posed_surface.h"
+
+#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -75,13 +83,13 @@ double other_file(const std::string& extension, double triangles, double tets)
     return found == by_triangle.end() ? 0 : found->second * triangles;
 }
 
-double disk_of(const Outputs& outputs, const Size& size)
+double disk_of(const Outputs& outputs, const Size& size, const CostNumbers& vdb)
 {
     const double tets = 3 * size.triangles * (1 + size.more_layers);
     double bytes = 0;
     for (const std::filesystem::path& path : outputs.paths)
         bytes += path.extension() == ".vdb"
-                     ? sum_of(kVdbNumbers, size)
+                     ? sum_of(vdb, size)
                      : other_file(path.extension().string(), size.triangles, tets);
     return bytes;
 }
@@ -108,9 +116,33 @@ std::vector<std::string> not_counted(const BuildArguments& a)
     return names;
 }
 
+/// A shell of a surface in these voxels; 0: without volumes.
+Size size_of(const TriangleMesh& surface, double voxel, std::size_t layers)
+{
+    Size size;
+    size.triangles = double(surface.triangles.size());
+    size.more_layers = double(layers) - 1;
+    if (voxel > 0) {
+        const double volume = std::abs(signed_volume(surface.points, surface.triangles));
+        size.surface_voxels = area_of(surface) / (voxel * voxel);
+        size.solid_voxels = volume / (voxel * voxel * voxel);
+    }
+    return size;
+}
+
+double voxel_size_of(const ShellFile& shell)
+{
+    return shell.surface ? shell.surface->voxelSize()[0] : 0;
+}
+
+std::string name_of(const openvdb::GridBase& grid)
+{
+    return "grid " + grid.getName() + " (" + grid.valueType() + ")";
+}
+
 } // namespace
 
-double BuildCost::seconds(int threads) const
+double CallCost::seconds(int threads) const
 {
     // A second thread makes builds 1.81 times as fast (docs/measurements/benchmarks.md); by
     // Amdahl's law a tenth of the work is serial. More threads were not measured.
@@ -118,7 +150,7 @@ double BuildCost::seconds(int threads) const
     return cpu_seconds * (kSerial + (1 - kSerial) / std::max(threads, 1));
 }
 
-BuildCost estimate_build(const BuildArguments& arguments)
+CallCost estimate_build(const BuildArguments& arguments)
 {
     const std::filesystem::path file = split_grid_name(arguments.mesh.string()).file;
     if (file.extension() == ".vdb")
@@ -128,21 +160,81 @@ BuildCost estimate_build(const BuildArguments& arguments)
     const double unit = read.report.placement.unit;
     const ShellOptions shell = in_unit(arguments.shell, unit);
     const double voxel = resolve_voxel_size(read.mesh, shell.level_set);
-    const double area = area_of(read.mesh);
-    const double volume = std::abs(signed_volume(read.mesh.points, read.mesh.triangles));
-    Size size;
-    size.triangles = triangles_of(shell, read.mesh, area);
-    size.surface_voxels = area / (voxel * voxel);
-    size.solid_voxels = volume / (voxel * voxel * voxel);
-    size.more_layers = std::max(shell.layers.layers - 1, 0);
-    BuildCost cost;
+    Size size = size_of(read.mesh, voxel, std::size_t(std::max(shell.layers.layers, 1)));
+    size.triangles = triangles_of(shell, read.mesh, area_of(read.mesh));
+    CallCost cost;
+    cost.file = arguments.mesh.string();
     cost.triangles = size.triangles;
     cost.voxel_size = voxel * unit;
     cost.cpu_seconds = sum_of(kSecondsNumbers, size);
     cost.memory = sum_of(kMemoryNumbers, size);
-    cost.disk = disk_of(arguments.outputs, size);
+    cost.disk = disk_of(arguments.outputs, size, kVdbNumbers);
     cost.not_counted = not_counted(arguments);
     return cost;
+}
+
+CallCost estimate_pose(const PoseArguments& arguments)
+{
+    const ShellFile shell = read_shell(arguments.shell);
+    const ShellStack rest = rest_stack(shell);
+    const TriangleMesh skin{read_posed_skin({arguments.mesh, arguments.format, arguments.rest_mesh},
+                                            rest, shell.placement, arguments.shell),
+                            rest.triangles()};
+    // Volumes are made for a .vdb only.
+    const double voxel = wants_vdb(arguments.outputs) ? voxel_size_of(shell) : 0;
+    const Size size = size_of(skin, voxel, rest.layers.size());
+    CallCost cost;
+    cost.file = arguments.mesh.string();
+    cost.triangles = size.triangles;
+    cost.voxel_size = voxel * shell.placement.unit;
+    cost.cpu_seconds = sum_of(kPoseSecondsNumbers, size);
+    cost.memory = sum_of(kPoseMemoryNumbers, size);
+    cost.disk = disk_of(arguments.outputs, size, kPoseVdbNumbers);
+    if (!arguments.before.empty() || !arguments.after.empty())
+        cost.not_counted.emplace_back("--mesh-before and --mesh-after");
+    if (rest.tapered)
+        cost.not_counted.emplace_back("a tapered shell");
+    if (!shell.core.empty())
+        cost.not_counted.emplace_back("a filled core");
+    return cost;
+}
+
+CallCost estimate_deform(const DeformArguments& arguments)
+{
+    const ShellFile shell = read_shell(arguments.posed);
+    Size size;
+    size.triangles = double(shell.stack.triangles().size());
+    size.more_layers = double(shell.stack.layers.size()) - 1;
+    CallCost cost;
+    cost.file = arguments.call.volume.string();
+    for (const GridBasePtr& grid :
+         read_volumes(arguments.call.volume, arguments.call.grids, GridKinds::volumes_and_points)) {
+        size.surface_voxels += double(grid->activeVoxelCount());
+        cost.voxel_size = grid->voxelSize()[0];
+        if (!grid->isType<openvdb::FloatGrid>())
+            cost.not_counted.push_back(name_of(*grid));
+    }
+    cost.triangles = size.triangles;
+    cost.cpu_seconds = sum_of(kDeformSecondsNumbers, size);
+    cost.memory = sum_of(kDeformMemoryNumbers, size);
+    cost.disk = sum_of(kDeformVdbNumbers, size);
+    if (arguments.velocity)
+        cost.not_counted.emplace_back("--velocity");
+    return cost;
+}
+
+bool is_modelled(const std::string& command)
+{
+    return std::find(kModelled.begin(), kModelled.end(), command) != kModelled.end();
+}
+
+CallCost estimate_call(const Call& call)
+{
+    if (call.name() == "pose")
+        return estimate_pose(call.pose_arguments());
+    if (call.name() == "deform")
+        return estimate_deform(call.deform_arguments());
+    return estimate_build(call.build_arguments());
 }
 
 } // namespace vdb_shell::command

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The command `estimate`: what a build with these options would cost, before it runs. It has the
-// options of `build`, so that a call is estimated by another first word; outputs are not written,
-// they are what the files' size is told of.
+// The command `estimate`: what a call would cost, before it runs. It has the options of `build`, so
+// that a build is estimated by another first word; or it is given a whole call behind --, as farm
+// is, with its frames. Outputs are not written, they are what the files' size is told of.
 
 #include "command/estimate_command.h"
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/output_set.h"
 
+#include "command/call.h"
 #include "command/cost_model.h"
 #include "command/exit_code.h"
+#include "command/sequence.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -39,13 +41,27 @@ int thread_count()
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
-ordered_json json_of(const std::string& file, const BuildCost& cost)
+/// A call without frames, or all its frames, which are taken to cost what the first one does.
+struct Estimate {
+    std::string command;
+    std::size_t frames = 1;
+    int threads = 1;
+    CallCost cost;
+
+    double seconds() const { return double(frames) * cost.seconds(threads); }
+    double disk() const { return double(frames) * cost.disk; }
+};
+
+ordered_json json_of(const Estimate& estimate)
 {
+    const CallCost& cost = estimate.cost;
     ordered_json json;
-    json["file"] = file;
+    json["command"] = estimate.command;
+    json["file"] = cost.file;
+    json["frames"] = estimate.frames;
     json["triangles"] = std::llround(cost.triangles);
     json["voxel_size"] = cost.voxel_size;
-    json["seconds"] = cost.seconds(thread_count());
+    json["seconds"] = cost.seconds(estimate.threads);
     json["cpu_seconds"] = cost.cpu_seconds;
     json["memory_bytes"] = std::llround(cost.memory);
     json["disk_bytes"] = std::llround(cost.disk);
@@ -53,14 +69,21 @@ ordered_json json_of(const std::string& file, const BuildCost& cost)
     return json;
 }
 
-std::string text_of(const std::string& file, const BuildCost& cost)
+std::string text_of(const Estimate& estimate)
 {
+    const CallCost& cost = estimate.cost;
     std::ostringstream text;
-    text << std::setprecision(3) << file << ": " << std::setprecision(9) << cost.triangles
-         << " triangles, voxel size " << cost.voxel_size << std::setprecision(2) << ", "
-         << cost.seconds(thread_count()) << " s on " << thread_count()
-         << (thread_count() == 1 ? " thread" : " threads") << std::setprecision(3) << ", "
-         << cost.memory / kMib << " MiB of memory, " << cost.disk / kMib << " MiB of files";
+    text << cost.file << ": " << std::setprecision(9) << cost.triangles << " triangles";
+    if (cost.voxel_size > 0)
+        text << ", voxel size " << cost.voxel_size;
+    text << std::setprecision(2) << ", " << cost.seconds(estimate.threads) << " s on "
+         << estimate.threads << (estimate.threads == 1 ? " thread" : " threads")
+         << std::setprecision(3) << ", " << cost.memory / kMib << " MiB of memory, "
+         << cost.disk / kMib << " MiB of files";
+    if (estimate.frames > 1)
+        text << "; all " << estimate.frames << " frames one after the other "
+             << std::setprecision(2) << estimate.seconds() << " s" << std::setprecision(3) << ", "
+             << estimate.disk() / kMib << " MiB";
     std::string more;
     for (const std::string& name : cost.not_counted)
         more += (more.empty() ? "" : ", ") + name;
@@ -69,26 +92,98 @@ std::string text_of(const std::string& file, const BuildCost& cost)
     return text.str();
 }
 
+/// What stands behind -- begins with a command's name, which no surface has: those go by their
+/// extension.
+bool is_call(const EstimateArguments& arguments)
+{
+    return is_modelled(arguments.words.front());
+}
+
+/// Its frames, planned as the command itself would plan them. Inputs need not be there, but for
+/// those of the first frame.
+std::vector<Step> steps_of(const EstimateArguments& arguments, GlobalArguments& global,
+                           const Context& context)
+{
+    const std::vector<std::string> words = words_of(arguments.words);
+    Call call;
+    call.parse(words);
+    global = call.global();
+    global.keep_going = true;
+    return plan_steps(words, global, context);
+}
+
+Estimate estimate_words(const EstimateArguments& arguments, const Context& context)
+{
+    GlobalArguments global;
+    const std::vector<Step> steps = steps_of(arguments, global, context);
+    Call first;
+    first.parse(steps.front().words);
+    first.plan();
+    return {first.name(), steps.size(), global.threads > 0 ? global.threads : thread_count(),
+            estimate_call(first)};
+}
+
+/// CLI11's own messages, for words that it did not get from the user's command line as such.
+template <typename Body> void with_errors_of_call(const Body& body)
+{
+    try {
+        body();
+    } catch (const CLI::ParseError& error) {
+        throw InvalidOption("the call behind --: " + std::string(error.what()));
+    }
+}
+
+std::vector<Estimate> estimates_of(const EstimateArguments& arguments, const Context& context)
+{
+    std::vector<Estimate> estimates;
+    if (is_call(arguments)) {
+        with_errors_of_call([&] { estimates.push_back(estimate_words(arguments, context)); });
+        return estimates;
+    }
+    for (const std::string& mesh : arguments.words) {
+        BuildArguments build = arguments.build;
+        build.mesh = mesh;
+        estimates.push_back({"build", 1, thread_count(), estimate_build(build)});
+    }
+    return estimates;
+}
+
 } // namespace
 
 BoundOptions add_estimate_command(CLI::App& app, EstimateArguments& arguments)
 {
-    app.add_option("mesh", arguments.meshes, std::string("Surfaces: ") + kSurfaceExtensions)
+    app.add_option("mesh", arguments.words,
+                   std::string("Surfaces: ") + kSurfaceExtensions +
+                       "; or behind -- a call of build, pose or deform, as it would be typed")
         ->required();
     return bind(app, describe(arguments.build));
 }
 
 FilePlan plan_estimate(const EstimateArguments& arguments)
 {
-    const std::filesystem::path& report = arguments.build.report;
+    const BuildArguments& build = arguments.build;
     FilePlan plan(Existing::replaced);
-    for (const std::filesystem::path& mesh : arguments.meshes) {
-        require_format(mesh, arguments.build.format);
-        plan.add_input(mesh);
+    if (is_call(arguments)) {
+        if (!build.outputs.paths.empty())
+            throw InvalidOption("the call stands behind --, with all its options: estimate -- " +
+                                arguments.words.front() + " ...");
+        std::ostringstream unheard; // what is to be said is said by the run
+        const Context silent{unheard, unheard, LogLevel::error, MessageFormat::text, {}};
+        GlobalArguments global;
+        with_errors_of_call([&] {
+            const std::vector<Step> steps = steps_of(arguments, global, silent);
+            for (const std::filesystem::path& input : steps.front().inputs)
+                plan.add_input(input);
+        });
+    } else {
+        for (const std::string& mesh : arguments.words) {
+            require_format(mesh, build.format);
+            plan.add_input(mesh);
+        }
     }
-    plan.add_input(arguments.build.preset);
-    if (!report.empty() && !is_standard_output(report))
-        plan.add_output(report);
+    plan.add_input(build.preset);
+    if (!build.report.empty() && !is_standard_output(build.report))
+        plan.add_output(build.report);
     return plan;
 }
 
@@ -97,16 +192,13 @@ int run_estimate(const EstimateArguments& arguments, Context& context)
     const std::filesystem::path& report = arguments.build.report;
     ordered_json meshes = ordered_json::array();
     double seconds = 0, memory = 0, disk = 0;
-    for (const std::filesystem::path& mesh : arguments.meshes) {
-        BuildArguments build = arguments.build;
-        build.mesh = mesh;
-        const BuildCost cost = estimate_build(build);
-        seconds += cost.seconds(thread_count());
-        memory = std::max(memory, cost.memory);
-        disk += cost.disk;
-        meshes.push_back(json_of(mesh.string(), cost));
-        if (!is_standard_output(report) && !build.quiet)
-            context.out << text_of(mesh.string(), cost) << '\n';
+    for (const Estimate& estimate : estimates_of(arguments, context)) {
+        seconds += estimate.seconds();
+        memory = std::max(memory, estimate.cost.memory);
+        disk += estimate.disk();
+        meshes.push_back(json_of(estimate));
+        if (!is_standard_output(report) && !arguments.build.quiet)
+            context.out << text_of(estimate) << '\n';
     }
     ordered_json json{{"schema", kSchema}, {"threads", thread_count()}};
     json["meshes"] = std::move(meshes);

@@ -3,20 +3,20 @@
 
 #include "command/build_command.h"
 
-#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace vdb_shell::command
 {
 
 struct EstimateArguments {
-    std::vector<std::filesystem::path> meshes;
-    BuildArguments build; ///< its mesh is each of them in turn
+    std::vector<std::string> words; ///< surfaces; or, behind --, the words of one call
+    BuildArguments build;           ///< of the surfaces: its mesh is each of them in turn
 };
 
 BoundOptions add_estimate_command(CLI::App& app, EstimateArguments& arguments);
 FilePlan plan_estimate(const EstimateArguments& arguments);
-/// Reads the surfaces and prints what shells of them would cost; makes none.
+/// Reads the inputs and prints what the calls would cost; makes nothing.
 int run_estimate(const EstimateArguments& arguments, Context& context);
 
 } // namespace vdb_shell::command

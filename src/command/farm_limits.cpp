@@ -27,15 +27,15 @@ constexpr double kTimeMargin = 4, kLeastMinutes = 5, kMemoryMargin = 1.25, kMore
 /// Empty where the model knows the call; else why not.
 std::string add_cost(const FarmCall& call, int cpus, StepCost& dearest)
 {
-    if (call.command != "build")
+    if (!is_modelled(call.command))
         return "`" + call.command + "`";
     if (!std::filesystem::exists(call.first_input))
-        return "a surface that is not there yet";
+        return "an input that is not there yet";
     Call first;
     first.parse(call.first_words);
     first.plan();
     try {
-        const BuildCost cost = estimate_build(first.build_arguments());
+        const CallCost cost = estimate_call(first);
         if (!cost.not_counted.empty())
             return cost.not_counted.front();
         dearest.seconds = std::max(dearest.seconds, cost.seconds(cpus));

@@ -71,7 +71,9 @@ const std::vector<Example>& examples_of(const std::string& command)
            "the two cut open side by side"}}},
         {"estimate",
          {{"estimate scan.ply --layers 3 -o scan.vdb", "seconds, memory and bytes of that build"},
-          {"estimate *.obj --report -", "of many, for a program"}}},
+          {"estimate *.obj --report -", "of many, for a program"},
+          {"estimate -- pose rest.vdb walk.####.obj --frames 1-100 -o posed.####.vdb",
+           "of a whole call, which stands behind --"}}},
         {"farm",
          {{"farm --engine slurm -o walk.sbatch -- build walk.####.obj --frames 1-100 --voxel-size "
            "0.01 -o walk.####.vdb",

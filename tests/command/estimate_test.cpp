@@ -97,6 +97,54 @@ TEST_F(Estimate, WhatItDoesNotKnowIsSaid)
                    {"--thickness"});
 }
 
+TEST_F(Estimate, WholeCallsStandBehindTwoDashes)
+{
+    const TriangleMesh sphere = icosphere(1.0, 4);
+    const std::string rest = file("rest.vdb"), posed = mesh_file("p.1.obj", sphere);
+    mesh_file("p.2.obj", sphere);
+    ASSERT_EQ(run("build " + posed + " --resolution 64 -q -o " + rest).status, ExitCode::success);
+    const std::string pose =
+        "pose " + rest + " " + file("p.#.obj") + " --frames 1-2 -o " + file("q.#.vdb");
+    const json frames = estimate("-- " + pose);
+    const json& one = frames.at("meshes").at(0);
+    EXPECT_EQ(one.at("command"), "pose");
+    EXPECT_EQ(one.at("frames"), 2);
+    EXPECT_EQ(one.at("triangles"), sphere.triangles.size());
+    EXPECT_EQ(one.at("not_counted"), json::array());
+    EXPECT_NEAR(frames.at("seconds").get<double>(), 2 * one.at("seconds").get<double>(), 1e-9);
+    EXPECT_NEAR(frames.at("disk_bytes").get<double>(), 2 * one.at("disk_bytes").get<double>(), 2);
+    ASSERT_EQ(run(pose + " -q").status, ExitCode::success);
+    const double disk = double(std::filesystem::file_size(folder / "q.1.vdb"));
+    EXPECT_LT(one.at("disk_bytes").get<double>(), 3 * disk);
+    EXPECT_GT(one.at("disk_bytes").get<double>(), disk / 3);
+    // Without a .vdb no volumes are made.
+    const json tets = of("-- pose " + rest + " " + posed + " -o " + file("q.vtu"));
+    EXPECT_LT(tets.at("seconds").get<double>(), one.at("seconds").get<double>());
+
+    const std::string deform =
+        "deform " + rest + " --grid depth --posed " + file("q.1.vdb") + " -o " + file("d.vdb");
+    const json carried = of("-- " + deform);
+    EXPECT_EQ(carried.at("command"), "deform");
+    ASSERT_EQ(run(deform + " -q").status, ExitCode::success);
+    const double volume = double(std::filesystem::file_size(folder / "d.vdb"));
+    EXPECT_LT(carried.at("disk_bytes").get<double>(), 3 * volume);
+    EXPECT_GT(carried.at("disk_bytes").get<double>(), volume / 3);
+    EXPECT_EQ(of("-- deform " + file("q.1.vdb") + " --grid rest --posed " + file("q.1.vdb") +
+                 " -o " + file("d.vdb"))
+                  .at("not_counted"),
+              json({"grid rest (vec3s)"}));
+    // A build behind -- is what it is without.
+    EXPECT_EQ(of("-- build " + posed + " --layers 2").at("cpu_seconds"),
+              of(posed + " --layers 2").at("cpu_seconds"));
+
+    expect_refusal("estimate pose " + rest + " " + posed + " -o " + file("q.vdb"),
+                   ExitCode::usage_error, {"behind --"});
+    expect_refusal("estimate -- pose " + rest + " --nonsense", ExitCode::usage_error,
+                   {"the call behind --"});
+    expect_refusal("estimate -- pose " + rest + " " + file("none.obj") + " -o " + file("q.vdb"),
+                   ExitCode::read_error, {"none.obj"});
+}
+
 TEST_F(Estimate, AJobAsksForWhatItSays)
 {
     mesh_file("s.1.obj", icosphere(1.0, 2));
@@ -118,6 +166,13 @@ TEST_F(Estimate, AJobAsksForWhatItSays)
     EXPECT_NE(given.find("#SBATCH --mem=1536M\n#SBATCH --time=7\n"), std::string::npos) << given;
     const std::string unknown = job("", " --taper");
     EXPECT_EQ(unknown.find("#SBATCH --mem="), std::string::npos) << unknown;
+    ASSERT_EQ(run("build " + file("s.1.obj") + kCoarse + "-q -o " + file("rest.vdb")).status,
+              ExitCode::success);
+    const Outcome poses =
+        run("farm --engine slurm -o " + file("j") + " -- pose " + file("rest.vdb") + " " +
+            file("s.#.obj") + " --frames 1-2 -o " + file("t.#.vdb"));
+    EXPECT_EQ(poses.status, ExitCode::success) << poses.err;
+    EXPECT_NE(read_bytes(folder / "j").find("#SBATCH --mem="), std::string::npos);
 }
 
 } // namespace
