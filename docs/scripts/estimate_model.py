@@ -6,6 +6,7 @@
     estimate_model.py measure-poses FOLDER MESHES POSES.json   poses of them; FOLDER is that of a release build with its samples
     estimate_model.py fit BUILDS.json NUMBERS.h PAGE.md        numbers for src/command/, the table of errors for the page
     estimate_model.py fit-poses POSES.json NUMBERS.h PAGE.md   the same
+Behind the page may stand which build was measured, if not "release build".
 
 A build is one of a mesh at a resolution, perhaps subdivided, on one thread, with a .vdb written. Seconds are those of the
 processor, so other work on the machine disturbs little. Half of the meshes (every second one of the list) tune the
@@ -153,6 +154,8 @@ def least_squares(a, b):
     best, numbers = numpy.inf, None
     for chosen in itertools.product([False, True], repeat=a.shape[1]):
         columns = numpy.flatnonzero(chosen)
+        if not a[:, columns].any(axis=0).all():
+            continue  # what these runs have not says nothing
         x = numpy.linalg.lstsq(a[:, columns], b, rcond=None)[0] if len(columns) else numpy.zeros(0)
         error = ((a[:, columns] @ x - b) ** 2).sum()
         if (x >= 0).all() and error < best:
@@ -176,7 +179,7 @@ HEADER = """// SPDX-License-Identifier: Apache-2.0
 #include <array>
 
 // Made by docs/scripts/estimate_model.py, of which every second mesh tuned them; docs/farm.md has
-// their errors. On one thread, Debian 12, release build:
+// their errors. On one thread, Debian 12:
 {sources}
 
 namespace vdb_shell::command
@@ -194,7 +197,7 @@ inline constexpr double kCoarseFrom = {coarse};
 }} // namespace vdb_shell::command
 """
 QUANTITIES = {"seconds": "SecondsNumbers", "memory": "MemoryNumbers", "vdb": "VdbNumbers"}
-SOURCE = "// - {}: {} on {}, a machine with {} hardware threads ({})"
+SOURCE = "// - {}: {} on {}, {}, {} hardware threads ({})"
 HEAD = ["what", "meshes", "runs", "median factor", "of 90 %", "largest", "within 1.5, %"]
 
 
@@ -229,20 +232,20 @@ def write_numbers(header, made, sources):
     header.write_text(HEADER.format(sources="\n".join(told.values()), coarse=COARSE_FROM, lines="\n".join(lines.values())))
 
 
-def source(what, count):
-    return SOURCE.format(what, count, datetime.date.today(), os.cpu_count(), processor())
+def source(what, count, build):
+    return SOURCE.format(what, count, datetime.date.today(), build, os.cpu_count(), processor())
 
 
-def fit(results, header, page):
+def fit(results, header, page, build):
     everything = [run for run in json.loads(results.read_text()).values() if "seconds" in run]
     # Outward shells and --thickest are not modelled: they are another kind of work.
     runs = [run for run in everything if "side" not in run and "method" not in run]
     lines, rows = lines_and_rows(runs, "", "")
-    write_numbers(header, lines, [source("builds", len(runs))])
+    write_numbers(header, lines, [source("builds", len(runs), build)])
     replace_tables(page, table(HEAD, rows), "estimate")
 
 
-def fit_poses(results, header, page):
+def fit_poses(results, header, page, build):
     everything = [run for runs in json.loads(results.read_text()).values() for run in runs]
     made, rows, sources = {}, [], []
     for command, prefix in (("pose", "Pose"), ("deform", "Deform")):
@@ -250,11 +253,14 @@ def fit_poses(results, header, page):
         lines, more = lines_and_rows(runs, prefix, command + ": ")
         made.update(lines)
         rows += more
-        sources.append(source({"pose": "poses", "deform": "deformations"}[command], len(runs)))
+        sources.append(source({"pose": "poses", "deform": "deformations"}[command], len(runs), build))
     write_numbers(header, made, sources)
     replace_tables(page, table(HEAD, rows), "estimate-poses")
 
 
 if __name__ == "__main__":
-    does = {"measure": measure, "measure-poses": measure_poses, "fit": fit, "fit-poses": fit_poses}
-    does[sys.argv[1]](*map(pathlib.Path, sys.argv[2:5]))
+    paths = [pathlib.Path(word) for word in sys.argv[2:5]]
+    if sys.argv[1].startswith("fit"):
+        {"fit": fit, "fit-poses": fit_poses}[sys.argv[1]](*paths, sys.argv[5] if len(sys.argv) > 5 else "release build")
+    else:
+        {"measure": measure, "measure-poses": measure_poses}[sys.argv[1]](*paths)

@@ -4,15 +4,17 @@
 #include <array>
 
 // Made by docs/scripts/estimate_model.py, of which every second mesh tuned them; docs/farm.md has
-// their errors. On one thread, Debian 12, release build:
-// - builds: 146 on 2026-11-23, a machine with 2 hardware threads (AMD EPYC)
+// their errors. On one thread, Debian 12:
+// - builds: 146 on 2026-11-23, release build, 2 hardware threads (AMD EPYC)
+// - poses: 70 on 2026-11-24, development build, 2 hardware threads (AMD EPYC)
+// - deformations: 70 on 2026-11-24, development build, 2 hardware threads (AMD EPYC)
 
 namespace vdb_shell::command
 {
 
-/// For one; for each triangle up to 5000; for each one from there; for each voxel of the surface
-/// (area over the square of the voxel size); for each voxel of the solid; for each triangle in each
-/// layer after the first.
+/// For one; for each triangle up to kCoarseFrom; for each one from there; for each voxel of the
+/// surface (area over the square of the voxel size), of deformations for each one of the volume;
+/// for each voxel of the solid; for each triangle in each layer after the first.
 using CostNumbers = std::array<double, 6>;
 
 inline constexpr double kCoarseFrom = 5000;
@@ -21,12 +23,13 @@ inline constexpr CostNumbers kSecondsNumbers{0.1397,    0.0001199, 5.697e-05,
                                              7.166e-07, 2.379e-08, 1.154e-05};
 inline constexpr CostNumbers kMemoryNumbers{5.428e+07, 1369, 1502, 185, 4.4, 1161};
 inline constexpr CostNumbers kVdbNumbers{8.287e+04, 284.7, 199.9, 28.71, 0.425, 299.3};
-
-inline constexpr CostNumbers kPoseSecondsNumbers{};
-inline constexpr CostNumbers kPoseMemoryNumbers{};
-inline constexpr CostNumbers kPoseVdbNumbers{};
-inline constexpr CostNumbers kDeformSecondsNumbers{};
-inline constexpr CostNumbers kDeformMemoryNumbers{};
-inline constexpr CostNumbers kDeformVdbNumbers{};
+inline constexpr CostNumbers kPoseSecondsNumbers{0.0974,    5.456e-05, 2.158e-05,
+                                                 2.416e-06, 0,         1.803e-05};
+inline constexpr CostNumbers kPoseMemoryNumbers{7.535e+07, 0, 1882, 183.2, 64.5, 1587};
+inline constexpr CostNumbers kPoseVdbNumbers{2.478e+05, 203.2, 175.3, 40.72, 9.667, 164.7};
+inline constexpr CostNumbers kDeformSecondsNumbers{0.09121,   2.211e-06, 5.501e-06,
+                                                   8.226e-07, 0,         4.259e-06};
+inline constexpr CostNumbers kDeformMemoryNumbers{7.215e+07, 0, 1095, 31.87, 0, 1162};
+inline constexpr CostNumbers kDeformVdbNumbers{1.042e+05, 2.83, 0, 2.841, 0, 3.646};
 
 } // namespace vdb_shell::command
