@@ -23,7 +23,7 @@ class Estimate : public Command
 protected:
     json estimate(const std::string& words)
     {
-        const Outcome result = run("--threads 1 estimate " + words + " --report -");
+        const Outcome result = run("--threads 1 estimate --report - " + words);
         EXPECT_EQ(result.status, ExitCode::success) << result.err;
         return json::parse(result.out);
     }
