@@ -204,9 +204,9 @@ void require_inputs(const std::vector<Step>& steps)
             frames.push_back(*step.frame);
         }
     if (first)
-        throw ReadError("frames " + frames_text(frames) + " have no input, the first of them not " +
-                        first->missing.front().string() +
-                        "; nothing was done (--keep-going does the others)");
+        throw ReadError(
+            "no input for frames " + frames_text(frames) + ": " + first->missing.front().string() +
+            " is the first that is missing; nothing was done (--keep-going does the others)");
 }
 
 } // namespace

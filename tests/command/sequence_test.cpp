@@ -56,7 +56,7 @@ TEST_F(Sequence, ADryRunTellsFramesAndFilesAndTouchesNone)
         run("build " + file("s.0001.obj") + " -o " + file("t.ele") + " --dry-run");
     EXPECT_EQ(single.status, ExitCode::success) << single.err;
     EXPECT_NE(single.out.find(file("t.node")), std::string::npos) << single.out;
-    expect_refusal(build("1-3", "--dry-run"), ExitCode::read_error, {"frames 2 have no input"});
+    expect_refusal(build("1-3", "--dry-run"), ExitCode::read_error, {"no input for frames 2: "});
 }
 
 TEST_F(Sequence, EveryTokenAndEveryFrameIsACallOfItsOwn)
