@@ -132,6 +132,7 @@ struct Call::Parts {
     void add_commands();
     void add_volume_commands();
     void add_farm_commands();
+    void add_file_commands();
     std::vector<CommandEntry> entries() const;
     Subcommand& given();
 };
@@ -170,26 +171,9 @@ void Call::Parts::add_farm_commands()
         [this](Context& context) { return run_join(a.join, context); });
 }
 
-/// The actions refer to fields of this struct, which outlive them.
-void Call::Parts::add_commands()
+/// Those that take a finished shell, or its frames.
+void Call::Parts::add_file_commands()
 {
-    add(
-        "build", "Build a shell from a triangle surface", add_build_command, a.build,
-        [this] { return plan_build(a.build); },
-        [this](Context& context) { return run_build(a.build, context); });
-    add(
-        "inspect", "Say what stands in the way of a shell, and what mends it", add_inspect_command,
-        a.inspect, [this] { return plan_inspect(a.inspect); },
-        [this](Context& context) { return run_inspect(a.inspect, context); });
-    add(
-        "repair", "Close and mend a surface, keeping what is sound", add_repair_command, a.repair,
-        [this] { return plan_repair(a.repair); },
-        [this](Context& context) { return run_repair(a.repair, context); });
-    add(
-        "pose", "Put a shell onto its surface in another pose", add_pose_command, a.pose,
-        [this] { return plan_pose(a.pose); },
-        [this](Context& context) { return run_pose(a.pose, context); });
-    add_volume_commands();
     add(
         "page", "Write a page that shows a shell, or its frames, in a browser", add_page_command,
         a.page, [this] { return plan_page(a.page); },
@@ -216,6 +200,29 @@ void Call::Parts::add_commands()
         "compare", "Say how two shells differ, and draw them side by side", add_compare_command,
         a.compare, [this] { return plan_compare(a.compare); },
         [this](Context& context) { return run_compare(a.compare, context); });
+}
+
+/// The actions refer to fields of this struct, which outlive them.
+void Call::Parts::add_commands()
+{
+    add(
+        "build", "Build a shell from a triangle surface", add_build_command, a.build,
+        [this] { return plan_build(a.build); },
+        [this](Context& context) { return run_build(a.build, context); });
+    add(
+        "inspect", "Say what stands in the way of a shell, and what mends it", add_inspect_command,
+        a.inspect, [this] { return plan_inspect(a.inspect); },
+        [this](Context& context) { return run_inspect(a.inspect, context); });
+    add(
+        "repair", "Close and mend a surface, keeping what is sound", add_repair_command, a.repair,
+        [this] { return plan_repair(a.repair); },
+        [this](Context& context) { return run_repair(a.repair, context); });
+    add(
+        "pose", "Put a shell onto its surface in another pose", add_pose_command, a.pose,
+        [this] { return plan_pose(a.pose); },
+        [this](Context& context) { return run_pose(a.pose, context); });
+    add_volume_commands();
+    add_file_commands();
     add_farm_commands();
     add(
         "doctor", "Say what is installed, and what a file needs", add_doctor_command, a.doctor,

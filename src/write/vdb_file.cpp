@@ -225,6 +225,24 @@ AllPoints find_points(OpenFile& main, const ShellInfo& info, std::size_t& digest
     });
 }
 
+/// The volumes of a file as they are written, in their order there.
+openvdb::GridPtrVec volumes_of(const ShellFile& file, bool half)
+{
+    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, half, file.placement),
+                                named_copy(file.depth, kDepthGrid, half, file.placement)};
+    volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
+    for (const GridBase::Ptr& vectors : {file.rest_volume, file.velocity_volume}) {
+        if (!vectors)
+            continue;
+        const GridBase::Ptr volume = vectors->copyGrid();
+        volume->setCreator(creator_name());
+        volume->setSaveFloatAsHalf(half);
+        put_in_place(*volume, file.placement.shift());
+        volumes.push_back(volume);
+    }
+    return volumes;
+}
+
 } // namespace
 
 const NameTable<PointPlacement>& names(PointPlacement)
@@ -261,19 +279,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     run_together(
         [&] { metadata = shell_metadata(path, file, options.points); },
         [&] { made = make_point_grids(file.stack, file.tets, file.core_feet, file.rest); });
-    openvdb::GridPtrVec volumes{
-        named_copy(file.surface, kSurfaceGrid, options.half, file.placement),
-        named_copy(file.depth, kDepthGrid, options.half, file.placement)};
-    volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
-    for (const GridBase::Ptr& vectors : {file.rest_volume, file.velocity_volume}) {
-        if (!vectors)
-            continue;
-        const GridBase::Ptr volume = vectors->copyGrid();
-        volume->setCreator(creator_name());
-        volume->setSaveFloatAsHalf(options.half);
-        put_in_place(*volume, file.placement.shift());
-        volumes.push_back(volume);
-    }
+    openvdb::GridPtrVec volumes = volumes_of(file, options.half);
     openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
                                std::move(made.tets)};
     if (!file.core.empty()) {
