@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # lint.sh format: every C++ file is as clang-format leaves it.
-# lint.sh tidy:   clang-tidy finds nothing in the library and the command (needs the dev build's compile commands), several
+# lint.sh tidy:   clang-tidy finds nothing in the library and the command, several
 #                 sources as one. lint.sh tidy --alone takes each by itself, without precompiled headers: each then proves
 #                 to include what it needs.
 set -euo pipefail
@@ -10,9 +10,9 @@ format)
     git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
     ;;
 tidy)
-    # Without the precompiled headers, which are GCC's.
-    mkdir -p build/tidy
-    sed -E 's# -Winvalid-pch -include [^ ]*cmake_pch.hxx##' build/dev/compile_commands.json >build/tidy/compile_commands.json
+    # Configured anew, with each source by itself, and without the precompiled headers, which are GCC's.
+    cmake --preset dev -B build/tidy >/dev/null
+    sed -i -E 's# -Winvalid-pch -include [^ ]*cmake_pch.hxx##' build/tidy/compile_commands.json
     git ls-files 'src/*.cpp' 'houdini_compat/*.cpp' | xargs python3 .ci/tidy.py "${@:2}" build/tidy/compile_commands.json build/tidy/groups
     ;;
 *) echo "usage: $0 format|tidy" >&2; exit 2 ;;

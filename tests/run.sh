@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 bash .ci/install_packages.sh test
 bash .ci/lint.sh format
-cmake --preset dev
+cmake --preset dev -DVDB_SHELL_UNITY=ON
 cmake --build --preset dev
 ctest --preset dev -j "$(nproc)"
 bash .ci/lint.sh tidy

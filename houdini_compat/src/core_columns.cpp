@@ -17,7 +17,6 @@ constexpr const char* kCore = "core";
 constexpr const char* kTriangle = "core_triangle";
 constexpr const char* kUvw = "core_uvw";
 constexpr const char* kDistance = "core_distance";
-constexpr const char* kIndex = "nonarithmetic_integer";
 
 } // namespace
 

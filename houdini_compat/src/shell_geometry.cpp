@@ -33,9 +33,6 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
-/// Tells Houdini that these integers are names and not amounts: a blend of two of them would mean
-/// nothing.
-constexpr const char* kIndex = "nonarithmetic_integer";
 constexpr const char* kOrientationText =
     "polygons clockwise seen from outside; tetrahedra (a,b,c,d) with det(b-a,c-a,d-a) < 0 unless "
     "inverted";

@@ -9,6 +9,10 @@
 namespace vdb_shell::houdini
 {
 
+/// Tells Houdini that these integers are names and not amounts: a blend of two of them would mean
+/// nothing.
+inline constexpr const char* kIndex = "nonarithmetic_integer";
+
 inline constexpr const char* kSchema = "vdb_shell_schema";
 inline constexpr const char* kVertices = "vdb_shell_vertices";
 inline constexpr const char* kPrisms = "vdb_shell_prisms";

@@ -13,13 +13,12 @@ namespace
 
 using openvdb::Vec3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kAround = 12;    // corners of a ring
 constexpr int kCapRings = 4;   // of each half ball at an end, its pole counted
 constexpr int kShaftRings = 5; // between the ends
 
 /// From one end to the other; the shaft is thinner than the ends by `waist`.
-struct Bone {
+struct BoneShape {
     Vec3d from, to;
     double radius_from, radius_to, waist;
 };
@@ -29,7 +28,7 @@ struct Ring {
     double along, radius;
 };
 
-std::vector<Ring> rings_of(const Bone& bone)
+std::vector<Ring> rings_of(const BoneShape& bone)
 {
     const double length = (bone.to - bone.from).length();
     std::vector<Ring> rings;
@@ -50,7 +49,7 @@ std::vector<Ring> rings_of(const Bone& bone)
     return rings;
 }
 
-void add_bone(const Bone& bone, PolygonMesh& mesh)
+void add_bone(const BoneShape& bone, PolygonMesh& mesh)
 {
     const Vec3d along = (bone.to - bone.from).unit();
     const Vec3d side = (std::abs(along[0]) < 0.7 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)).cross(along);

@@ -16,8 +16,6 @@ using openvdb::Vec3d;
 using openvdb::Vec3s;
 using Matrix = openvdb::math::Mat3<double>;
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// At rest from one joint to the next; a child turns about its `from`, carried by its parent.
 struct Bone {
     int parent;

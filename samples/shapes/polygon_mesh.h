@@ -13,6 +13,8 @@
 namespace vdb_shell::samples
 {
 
+constexpr double kPi = 3.14159265358979323846;
+
 using Polygon = std::vector<std::uint32_t>; ///< 0-based corners, three or four
 
 struct PolygonMesh {

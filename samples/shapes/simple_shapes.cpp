@@ -12,7 +12,6 @@ namespace
 {
 
 using openvdb::Vec3d;
-constexpr double kPi = 3.14159265358979323846;
 
 std::uint32_t wrap(int i, int n)
 {

@@ -191,7 +191,7 @@ void print_figures(const BuildArguments& arguments, const ShellReport& report, s
 }
 
 /// The files are there all the same: the raw method is asked for what it makes.
-int status_of(const ShellReport& report, const Context& context)
+int status_of_build(const ShellReport& report, const Context& context)
 {
     const std::string faults = faults_of(report);
     if (!faults.empty()) {
@@ -285,7 +285,7 @@ int run_build(const BuildArguments& arguments, Context& context)
     write_report(arguments, result.report, files);
     files.commit();
     print_figures(arguments, result.report, context.out);
-    return status_of(result.report, context);
+    return status_of_build(result.report, context);
 }
 
 } // namespace vdb_shell::command

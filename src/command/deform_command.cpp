@@ -49,7 +49,7 @@ OptionSections describe(DeformArguments& a)
         output_options(a.call, "The volumes and points in the pose: .vdb")};
 }
 
-std::string text_of(const DeformFigures& f, bool points)
+std::string figures_of_deform(const DeformFigures& f, bool points)
 {
     char line[256];
     std::snprintf(line, sizeof line, "%s: %zu %s, %zu before", f.grid.c_str(), f.active_after,
@@ -82,6 +82,24 @@ nlohmann::json json_of(const DeformFigures& f)
             {"limited_samples", f.limited_samples}};
 }
 
+/// The shell that the volume lies in as it is. Never null.
+std::unique_ptr<ShellMap> map_before(const DeformArguments& arguments, const MappedShell& posed,
+                                     FilePlan& plan)
+{
+    std::unique_ptr<ShellMap> from;
+    if (!arguments.rest.empty()) {
+        MappedShell rest = map_shell(arguments.rest, plan);
+        require_same_tets(rest, posed);
+        from = std::move(rest.map);
+    } else {
+        from = map_at_rest(posed);
+    }
+    if (!from)
+        throw InvalidOption(arguments.posed.string() +
+                            ": it is at rest; give --posed a shell that pose wrote, or --rest");
+    return from;
+}
+
 } // namespace
 
 BoundOptions add_deform_command(CLI::App& app, DeformArguments& arguments)
@@ -103,17 +121,7 @@ int run_deform(const DeformArguments& arguments, Context& context)
     FilePlan plan = plan_deform(arguments);
     SignalInterrupter interrupter(context);
     MappedShell posed = map_shell(arguments.posed, plan);
-    std::unique_ptr<ShellMap> from;
-    if (!arguments.rest.empty()) {
-        MappedShell rest = map_shell(arguments.rest, plan);
-        require_same_tets(rest, posed);
-        from = std::move(rest.map);
-    } else {
-        from = map_at_rest(posed);
-    }
-    if (!from)
-        throw InvalidOption(arguments.posed.string() +
-                            ": it is at rest; give --posed a shell that pose wrote, or --rest");
+    const std::unique_ptr<ShellMap> from = map_before(arguments, posed, plan);
     make_linear_alike(*from, *posed.map);
     std::unique_ptr<ShellMap> velocity;
     if (arguments.velocity && !(velocity = map_of_velocities(posed)))
@@ -135,7 +143,7 @@ int run_deform(const DeformArguments& arguments, Context& context)
         DeformFigures figures;
         made.push_back(deform(*grid, figures));
         report.push_back(json_of(figures));
-        text += text_of(figures, is_point_grid(*grid));
+        text += figures_of_deform(figures, is_point_grid(*grid));
     }
     if (velocity) {
         const auto volume = std::find_if(made.begin(), made.end(), [](const GridBasePtr& grid) {

@@ -11,19 +11,18 @@
 
 #include "command/exit_code.h"
 #include "command/help.h"
+#include "core/parallel.h"
 #include "fill/outside_program.h"
 
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 
 #include <CLI/CLI.hpp>
-#include <tbb/global_control.h>
 
 #include <unistd.h>
 
 #include <algorithm>
 #include <sstream>
-
 #include <thread>
 
 namespace vdb_shell::command
@@ -68,9 +67,8 @@ void print_machine(std::ostream& out)
 {
     out << version_text() << '\n';
     print_row(out, "threads",
-              std::to_string(
-                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) +
-                  " of " + std::to_string(std::thread::hardware_concurrency()));
+              std::to_string(thread_count()) + " of " +
+                  std::to_string(std::thread::hardware_concurrency()));
     print_program(out, "gmsh");
     print_program(out, "tetgen");
     std::error_code none;

@@ -13,10 +13,10 @@
 #include "command/cost_model.h"
 #include "command/exit_code.h"
 #include "command/sequence.h"
+#include "core/parallel.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,14 +32,8 @@ namespace
 using nlohmann::ordered_json;
 
 /// Raised when keys of the document change their meaning.
-constexpr int kSchema = 1;
+constexpr int kEstimateSchema = 1;
 constexpr double kMib = 1024.0 * 1024.0;
-
-int thread_count()
-{
-    return static_cast<int>(
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-}
 
 /// A call without frames, or all its frames, which are taken to cost what the first one does.
 struct Estimate {
@@ -69,7 +63,7 @@ ordered_json json_of(const Estimate& estimate)
     return json;
 }
 
-std::string text_of(const Estimate& estimate)
+std::string cost_text(const Estimate& estimate)
 {
     const CallCost& cost = estimate.cost;
     std::ostringstream text;
@@ -119,7 +113,7 @@ Estimate estimate_words(const EstimateArguments& arguments, const Context& conte
     Call first;
     first.parse(steps.front().words);
     first.plan();
-    return {first.name(), steps.size(), global.threads > 0 ? global.threads : thread_count(),
+    return {first.name(), steps.size(), global.threads > 0 ? global.threads : int(thread_count()),
             estimate_call(first)};
 }
 
@@ -143,7 +137,7 @@ std::vector<Estimate> estimates_of(const EstimateArguments& arguments, const Con
     for (const std::string& mesh : arguments.words) {
         BuildArguments build = arguments.build;
         build.mesh = mesh;
-        estimates.push_back({"build", 1, thread_count(), estimate_build(build)});
+        estimates.push_back({"build", 1, int(thread_count()), estimate_build(build)});
     }
     return estimates;
 }
@@ -198,9 +192,9 @@ int run_estimate(const EstimateArguments& arguments, Context& context)
         disk += estimate.disk();
         meshes.push_back(json_of(estimate));
         if (!is_standard_output(report) && !arguments.build.quiet)
-            context.out << text_of(estimate) << '\n';
+            context.out << cost_text(estimate) << '\n';
     }
-    ordered_json json{{"schema", kSchema}, {"threads", thread_count()}};
+    ordered_json json{{"schema", kEstimateSchema}, {"threads", thread_count()}};
     json["meshes"] = std::move(meshes);
     json["seconds"] = seconds;
     json["memory_bytes"] = std::llround(memory);

@@ -18,7 +18,7 @@ namespace
 using nlohmann::ordered_json;
 
 /// Raised when keys change their meaning.
-constexpr int kSchema = 1;
+constexpr int kTopsSchema = 1;
 
 ordered_json words_of(const FarmJob& job, const FarmRun& run)
 {
@@ -54,7 +54,7 @@ ordered_json join_words(const FarmJob& job, std::size_t c)
 std::string tops_list(const FarmJob& job)
 {
     ordered_json json;
-    json["schema"] = kSchema;
+    json["schema"] = kTopsSchema;
     json["version"] = VDB_SHELL_VERSION;
     json["name"] = job.name;
     json["home"] = job.home.string();

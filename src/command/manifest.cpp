@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 /// Raised when keys of the document change their meaning.
-constexpr int kSchema = 1;
+constexpr int kManifestSchema = 1;
 
 fs::path folder_of(const fs::path& file)
 {
@@ -108,9 +108,9 @@ ordered_json parsed(const fs::path& file)
     if (!in)
         throw ReadError(file.string() + ": cannot be read");
     ordered_json json = ordered_json::parse(in);
-    if (json.at("schema").get<int>() != kSchema)
+    if (json.at("schema").get<int>() != kManifestSchema)
         throw ReadError(file.string() + ": schema is " + json.at("schema").dump() + ", must be " +
-                        std::to_string(kSchema));
+                        std::to_string(kManifestSchema));
     return json;
 }
 
@@ -254,7 +254,7 @@ std::string Manifest::lost_output(const ManifestEntry& entry) const
 void Manifest::write() const
 {
     ordered_json json;
-    json["schema"] = kSchema;
+    json["schema"] = kManifestSchema;
     json["program"] = "vdb_shell";
     json["version"] = VDB_SHELL_VERSION;
     json["command"] = command_;

@@ -38,7 +38,7 @@ OptionSections describe(MapArguments& a)
             output_options(a.call, "The texture in the shell: .vdb")};
 }
 
-std::string text_of(const MapFigures& f)
+std::string figures_of_map(const MapFigures& f)
 {
     char line[256];
     std::snprintf(line, sizeof line, "%s: %zu voxels; stretch %.3f (1 is none)", f.grid.c_str(),
@@ -94,7 +94,7 @@ int run_map(const MapArguments& arguments, Context& context)
             map_volume(*grid, *shell.map, texture.corner, options, figures, &interrupter));
         made.back()->transform().postTranslate(shell.file.placement.shift());
         report.push_back(json_of(figures));
-        text += text_of(figures);
+        text += figures_of_map(figures);
     }
     const std::size_t others = texture.corner.size() - texture.same;
     if (others > 0)

@@ -144,7 +144,7 @@ std::vector<std::uint8_t> certified_flags(const PosedShell& posed)
 
 /// Where the skin crosses itself parts of the shell have to overlap: no fault of the shell's, if
 /// every tet is positive.
-int status_of(const ShellReport& report, const Context& context)
+int status_of_pose(const ShellReport& report, const Context& context)
 {
     const std::string faults = faults_of(report);
     if (faults.empty())
@@ -221,7 +221,7 @@ int run_pose(const PoseArguments& arguments, Context& context)
     files.commit();
     if (to_output || !arguments.quiet)
         context.out << (to_output ? json : posed_report_text(report));
-    return status_of(report, context);
+    return status_of_pose(report, context);
 }
 
 } // namespace vdb_shell::command

@@ -16,8 +16,8 @@
 #include "command/manifest.h"
 #include "command/progress.h"
 #include "command/signals.h"
+#include "core/parallel.h"
 
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -53,11 +53,6 @@ std::string seconds_text(std::chrono::steady_clock::time_point start)
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.2f s", seconds.count());
     return text.data();
-}
-
-std::size_t thread_count()
-{
-    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
 /// In bytes, as Linux reports it.

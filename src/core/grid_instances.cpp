@@ -4,5 +4,4 @@
 
 #include "core/grid_instances.h"
 
-template class openvdb::Grid<openvdb::FloatTree>;
-template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;
+VDB_SHELL_TREE(, openvdb::FloatTree)

@@ -5,6 +5,4 @@
 
 #include "core/grid_instances.h"
 
-template class openvdb::tree::InternalNode<
-    openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType, 5>;
-template class openvdb::tree::InternalNode<openvdb::FloatTree::LeafNodeType, 4>;
+VDB_SHELL_NODES(, openvdb::FloatTree)

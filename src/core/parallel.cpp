@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -13,7 +14,15 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace vdb_shell::parallel
+namespace vdb_shell
+{
+
+std::size_t thread_count()
+{
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+namespace parallel
 {
 
 namespace
@@ -76,4 +85,6 @@ void run(const Job* jobs, std::size_t count)
     end.awaited();
 }
 
-} // namespace vdb_shell::parallel
+} // namespace parallel
+
+} // namespace vdb_shell

@@ -33,6 +33,9 @@ template <typename Body> Job job(const Body& body)
 
 } // namespace parallel
 
+/// How many threads loops may use here.
+std::size_t thread_count();
+
 /// body(begin, end) over disjoint ranges of [0, count): for bodies that need an accessor per range.
 template <typename Body>
 void for_each_range(std::size_t count, const Body& body, std::size_t grain = 64)

@@ -8,6 +8,7 @@
 
 #include "vdb_shell/field/level_set.h"
 
+#include "core/fail.h"
 #include "core/stage_progress.h"
 #include "field/cavities.h"
 #include "field/level_set_checks.h"
@@ -23,7 +24,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <string>
 
 namespace vdb_shell
@@ -44,13 +44,6 @@ constexpr double kSmallestExteriorVoxels = 3.0;
 constexpr double kLargestExteriorVoxels = 1e4;
 // With fewer voxels along its longest side an object has no field that lines could step through.
 constexpr double kFewestVoxels = 8.0;
-
-template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
-{
-    std::ostringstream message;
-    (message << ... << parts);
-    throw Error("level set: " + message.str());
-}
 
 double longest_side(const Bounds& bounds)
 {
@@ -76,7 +69,7 @@ BandVoxels band_of(const TriangleMesh& mesh, double voxel, const LevelSetOptions
 void check_mesh_and_options(const TriangleMesh& mesh, const LevelSetOptions& options)
 {
     if (mesh.points.empty() || mesh.triangles.empty())
-        fail<GeometryError>("the mesh has ", mesh.points.size(), " points and ",
+        fail<GeometryError>("level set: the mesh has ", mesh.points.size(), " points and ",
                             mesh.triangles.size(), " triangles");
     require_in_range(options, "level set");
 }
@@ -86,8 +79,8 @@ void check_voxel_size(const TriangleMesh& mesh, double voxel)
     const Bounds bounds = bounds_of(mesh.points);
     const double size = longest_side(bounds);
     if (voxel >= size)
-        fail<GeometryError>("voxel larger than the object: voxel size ", voxel, ", longest side ",
-                            size);
+        fail<GeometryError>("level set: voxel larger than the object: voxel size ", voxel,
+                            ", longest side ", size);
     if (voxel < kSmallestVoxelSize)
         fail<GeometryError>(
             "voxel size ", voxel, " is below ", kSmallestVoxelSize,
@@ -118,8 +111,8 @@ void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions&
     const double estimate = estimate_level_set_bytes(mesh, voxel, options);
     const double limit = options.max_memory_gib ? *options.max_memory_gib * kGib : free_memory();
     if (!(estimate <= limit))
-        fail<GeometryError>("voxel size ", voxel, " needs an estimated ", estimate / kGib,
-                            " GiB, over the limit of ", limit / kGib,
+        fail<GeometryError>("level set: voxel size ", voxel, " needs an estimated ",
+                            estimate / kGib, " GiB, over the limit of ", limit / kGib,
                             " GiB; enlarge the voxels or bound the depth of the band, ",
                             band_of(mesh, voxel, options).exterior,
                             " voxels outside (--exterior-depth, --thickness)");
@@ -213,10 +206,10 @@ double resolve_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& optio
     if (options.voxel_size)
         return *options.voxel_size;
     if (mesh.points.empty())
-        fail<GeometryError>("the mesh has no points");
+        fail<GeometryError>("level set: the mesh has no points");
     const double size = longest_side(bounds_of(mesh.points));
     if (!(std::isfinite(size) && size > 0))
-        fail<GeometryError>("the mesh's longest side is ", size,
+        fail<GeometryError>("level set: the mesh's longest side is ", size,
                             ", must be positive and finite to derive a voxel size from");
     // Objects of less than a few millimetres get fewer voxels than the options say, rather than
     // none.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
+#include "core/grid_instances.h"
+
 #include <openvdb/tree/NodeManager.h>
 
 namespace vdb_shell

@@ -5,7 +5,8 @@
 
 #include "field/value_range.h"
 
-#include <openvdb/openvdb.h>
+#include "core/grid_instances.h"
+
 #include <openvdb/tools/Count.h>
 
 namespace vdb_shell

@@ -9,6 +9,7 @@
 
 #include "vdb_shell/field/wrap.h"
 
+#include "core/fail.h"
 #include "core/stage_progress.h"
 #include "field/contour_mapped.h"
 #include "field/value_range.h"
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 namespace vdb_shell
@@ -37,24 +37,17 @@ constexpr double kMostWrapVoxels = 1e3;
 constexpr double kMostVoxelsAlong = 4096.0;
 constexpr double kDistanceSpacingVoxels = 1.0;
 
-template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
-{
-    std::ostringstream message;
-    (message << ... << parts);
-    throw Error("wrap: " + message.str());
-}
-
 double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
 {
     const Vec3d size = bounds.high - bounds.low;
     const double longest = std::max({size[0], size[1], size[2]});
     if (!(longest > 0 && std::isfinite(longest)))
-        fail<GeometryError>("the mesh's longest side is ", longest, ", must be positive");
+        fail<GeometryError>("wrap: the mesh's longest side is ", longest, ", must be positive");
     const double voxel = options.voxel_size.value_or(longest / options.resolution);
     // The range of the options bounds the resolution only, not what a voxel size comes to for this
     // mesh.
     if (longest / voxel > kMostVoxelsAlong)
-        fail<InvalidOption>("voxel size ", voxel, " gives ", longest / voxel,
+        fail<InvalidOption>("wrap: voxel size ", voxel, " gives ", longest / voxel,
                             " voxels along the longest side ", longest, ", over the limit ",
                             kMostVoxelsAlong);
     return voxel;
@@ -140,7 +133,7 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     const StageProgress progress(interrupter, "wrap");
     require_in_range(options, "wrap");
     if (mesh.points.empty() || mesh.triangles.empty())
-        fail<GeometryError>("the mesh has ", mesh.points.size(), " points and ",
+        fail<GeometryError>("wrap: the mesh has ", mesh.points.size(), " points and ",
                             mesh.triangles.size(), " triangles");
     const Bounds bounds = bounds_of(mesh.points);
     const Vec3d centre = 0.5 * (bounds.low + bounds.high);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "core/stage_progress.h"
 #include "field/winding_number.h"
-
-#include <openvdb/openvdb.h>
 
 #include <vector>
 

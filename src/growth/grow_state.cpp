@@ -20,7 +20,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-Box bounds_of(const std::vector<Vec3d>& points)
+Box box_around(const std::vector<Vec3d>& points)
 {
     Box b;
     for (const Vec3d& p : points)
@@ -75,7 +75,7 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
         256);
     // Outer triangles never move: their tree is built once, that of the inner ones in each round.
     s.outer_tree.build(std::move(boxes));
-    const Box all = bounds_of(s.a);
+    const Box all = box_around(s.a);
     s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
     double largest = 0;
     for (const Vec3d& p : s.a)

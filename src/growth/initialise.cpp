@@ -24,8 +24,6 @@ namespace vdb_shell::growth
 namespace
 {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 double smallest_altitude(const Corners& c)
 {
     const double longest =
@@ -100,7 +98,7 @@ std::vector<double> half_rays(const GrowState& s, const Directions& directions)
 
 std::vector<double> thin_heights(const GrowState& s)
 {
-    std::vector<double> h(s.a.size(), kInfinity);
+    std::vector<double> h(s.a.size(), std::numeric_limits<double>::infinity());
     for (int f = 0; f < s.mesh->face_count(); ++f) {
         // However its pillars tilt, a low prism over a wide triangle is sound.
         const double height =

@@ -10,12 +10,12 @@
 
 #include "vdb_shell/io/vdb_header.h"
 
+#include "core/grid_instances.h"
 #include "io/vdb_seal.h"
 #include "io/vdb_walk.h"
 #include "vdb_shell/io/read_file.h"
 
 #include <openvdb/io/Compression.h>
-#include <openvdb/openvdb.h>
 
 #include <cctype>
 #include <string>

@@ -5,6 +5,7 @@
 
 #include "vdb_shell/io/volume_file.h"
 
+#include "core/grid_instances.h"
 #include "core/point_grid_instances.h"
 #include "io/vdb_archive.h"
 #include "io/vdb_seal.h"
@@ -15,7 +16,6 @@
 #include "vdb_shell/io/vdb_header.h"
 
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 
 #include <new>
 #include <set>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "vdb_shell/core/error.h"
-
-#include <openvdb/openvdb.h>
 
 #include <string>
 

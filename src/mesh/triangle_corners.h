@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace vdb_shell
 {
@@ -16,6 +17,12 @@ inline std::array<openvdb::Vec3d, 3> triangle_corners(const TriangleMesh& mesh,
     const openvdb::Vec3I& t = mesh.triangles[triangle];
     return {openvdb::Vec3d(mesh.points[t[0]]), openvdb::Vec3d(mesh.points[t[1]]),
             openvdb::Vec3d(mesh.points[t[2]])};
+}
+
+/// The corner that follows v, one of the triangle's.
+inline std::uint32_t corner_after(const openvdb::Vec3I& triangle, std::uint32_t v)
+{
+    return triangle[0] == v ? triangle[1] : triangle[1] == v ? triangle[2] : triangle[0];
 }
 
 } // namespace vdb_shell

@@ -7,14 +7,13 @@
 
 #include "obstacles/offset_surface.h"
 
+#include "core/grid_instances.h"
 #include "field/map_values.h"
 #include "field/mesh_distances.h"
 #include "obstacles/nearest_core.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/level_set.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

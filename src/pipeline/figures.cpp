@@ -8,12 +8,11 @@
 
 #include "pipeline/figures.h"
 
+#include "core/grid_instances.h"
 #include "core/parallel.h"
 #include "field/value_range.h"
 #include "mesh/most_visible.h"
 #include "mesh/surface_defects.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <numeric>

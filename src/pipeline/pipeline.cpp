@@ -12,6 +12,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/repair/split_fans.h"
 
+#include "core/grid_instances.h"
 #include "pipeline/core_stages.h"
 #include "pipeline/figures.h"
 #include "pipeline/resample.h"
@@ -19,8 +20,6 @@
 #include "pipeline/taper_to_bounds.h"
 #include "report/stage_clock.h"
 #include "step/thickness.h"
-
-#include <openvdb/openvdb.h>
 
 #include <utility>
 #include <vector>

@@ -6,12 +6,11 @@
 
 #include "vdb_shell/pipeline.h"
 
+#include "core/grid_instances.h"
 #include "report/stage_clock.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/narrow_band.h"
 #include "vdb_shell/volume/rest_volume.h"
-
-#include <openvdb/openvdb.h>
 
 #include <utility>
 

@@ -9,11 +9,10 @@
 
 #include "pipeline/sides.h"
 
+#include "core/grid_instances.h"
 #include "field/value_range.h"
 #include "mesh/triangle_area.h"
 #include "step/thickness.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <utility>

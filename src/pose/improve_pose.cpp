@@ -30,15 +30,15 @@ constexpr double kRadius = 0.05;
 /// Of what is left of the way back: the second pass finds what the first has made room for.
 constexpr int kPasses = 4;
 constexpr double kLeastShare = 0.1;
-constexpr int kSweeps = 4, kHalvings = 6;
+constexpr int kSweepsOfPass = 4, kStepHalvings = 6;
 /// What a move has to leave of its energy at most.
 constexpr double kLeastGain = 0.999;
 
 /// Moves below that are not worth a look.
 bool near_carried(const Parts& parts, const PoseState& state, std::uint32_t point)
 {
-    constexpr double kNear = 1e-3;
-    return (state.place[point] - state.carried[point]).length() <= kNear * parts.spacing[point];
+    constexpr double kNearShare = 1e-3;
+    return (state.place[point] - state.carried[point]).length() <= kNearShare * parts.spacing[point];
 }
 
 /// A step towards what the point wants that the exact tests allow.
@@ -54,7 +54,7 @@ bool propose(const GrowState& s, const growth::SeparatingPlanes& planes, int v,
     if (step.length() > most)
         step *= most / step.length();
     const double now = energy.at(Vec3d(0.0));
-    for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
+    for (int halving = 0; halving < kStepHalvings; ++halving, step *= 0.5) {
         out = growth::rounded(s.b[v] + step);
         if (energy.at(out - s.b[v]) < kLeastGain * now && growth::move_allowed(s, planes, v, out))
             return true;
@@ -149,7 +149,7 @@ void improve_pose(const Parts& parts, const SkinSide& side, const PoseOptions& o
         progress.stop_if_interrupted(100 * round / options.rounds);
         growth::separate_triangles(s, inactive, planes);
         std::vector<std::uint8_t> moved(inactive.size(), 0);
-        for (int i = 0; i < kSweeps; ++i)
+        for (int i = 0; i < kSweepsOfPass; ++i)
             growth::sweep(s, planes, inactive, [&](int v, Vec3d& x) {
                 const std::uint32_t point = point_at(parts, side.end, std::size_t(v));
                 const PointEnergy energy(parts, state, point, options.most_distortion);

@@ -9,6 +9,7 @@
 #include "vdb_shell/resample/decimate.h"
 
 #include "core/stage_progress.h"
+#include "resample/attempts.h"
 #include "resample/simplify.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
@@ -25,14 +26,7 @@ namespace vdb_shell
 namespace
 {
 
-constexpr double kFewestTriangles = 4; // a tetrahedron
 constexpr int kMostAttempts = 12;
-// By what the tolerance of the collapses is multiplied where the measured distance is too large.
-// The last of twelve attempts then has a fiftieth of the tolerance that was wanted.
-constexpr double kStricter = 0.7;
-// Bounds the work for small tolerances: the spacing of samples is never under the diagonal over
-// this.
-constexpr double kSamplesAlongDiagonal = 256.0;
 
 void measure(DecimateReport& report, const TriangleMesh& input, const TriangleMesh& result,
              double spacing, Interrupter* interrupter)

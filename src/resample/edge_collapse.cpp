@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/topology.h"
+#include "mesh/triangle_corners.h"
 #include "resample/quadric.h"
 
 #include <algorithm>
@@ -48,12 +49,6 @@ struct Collapse {
 Vec3d cross_of(const Vec3d& a, const Vec3d& b, const Vec3d& c)
 {
     return (b - a).cross(c - a);
-}
-
-/// The corner that follows v.
-std::uint32_t corner_after(const Vec3I& triangle, std::uint32_t v)
-{
-    return triangle[0] == v ? triangle[1] : triangle[1] == v ? triangle[2] : triangle[0];
 }
 
 /// Longest edge over height, squared.

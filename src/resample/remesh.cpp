@@ -11,6 +11,7 @@
 
 #include "core/stage_progress.h"
 #include "mesh/triangle_area.h"
+#include "resample/attempts.h"
 #include "resample/remesh_rounds.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -27,7 +28,6 @@ namespace vdb_shell
 namespace
 {
 
-constexpr double kFewestTriangles = 4; // a tetrahedron
 constexpr double kPi = 3.141592653589793;
 // Just under half a turn, by which only triangles folded onto each other are apart.
 constexpr double kLargestAngle = 3.14;
@@ -47,14 +47,12 @@ constexpr double kSlope = 0.5;
 constexpr double kRegrowth = 1.2;
 // Of the wanted length: curves of features that end in nothing count from there on.
 constexpr double kLeastCurve = 2.0;
-constexpr int kMostAttempts = 5;
+constexpr int kMostRemeshings = 5;
 // Share of the tolerance that the operations are held to: they see less than is measured
 // afterwards.
-constexpr double kFirstShare = 0.9, kStricter = 0.7;
+constexpr double kFirstShare = 0.9;
 // Points of the input at which operations look are no farther apart than that share of the length.
 constexpr double kSpacing = 0.5;
-// As in decimation, bounds the work for small tolerances: the diagonal over the spacing of samples.
-constexpr double kSamplesAlongDiagonal = 256.0;
 
 /// The edge length at which equilateral triangles of the surface's area are so many.
 double length_for(double area, double triangles)
@@ -241,7 +239,7 @@ RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
                   progress};
     RemeshResult out;
     double tried = kFirstShare * tolerance;
-    for (int repeats = 0; repeats < kMostAttempts; ++repeats, tried *= kStricter) {
+    for (int repeats = 0; repeats < kMostRemeshings; ++repeats, tried *= kStricter) {
         double length = wanted;
         out = attempt(job, tried, length);
         out.report.edge_length = length;
@@ -254,7 +252,7 @@ RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
     out = unchanged(mesh);
     out.report.edge_length = wanted;
     out.report.tolerance = tolerance;
-    out.report.repeats = kMostAttempts;
+    out.report.repeats = kMostRemeshings;
     measure(out.report, job, out.mesh, diagonal, interrupter);
     return out;
 }

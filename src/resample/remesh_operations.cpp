@@ -10,6 +10,7 @@
 #include "resample/remesh_surface.h"
 
 #include "mesh/nearest_on_triangle.h"
+#include "mesh/triangle_corners.h"
 
 #include <algorithm>
 #include <cassert>
@@ -29,11 +30,6 @@ constexpr double kSameSheet = 0.17;
 
 // The cosine of one degree: what comes after a split mends angles, but needs some to begin with.
 constexpr double kSplitsMayLeave = 0.99985;
-
-std::uint32_t corner_after(const Vec3I& c, std::uint32_t v)
-{
-    return c[0] == v ? c[1] : c[1] == v ? c[2] : c[0];
-}
 
 Vec3I with(Vec3I c, std::uint32_t from, std::uint32_t to)
 {

@@ -11,6 +11,7 @@
 #include "core/counter_random.h"
 #include "core/parallel.h"
 #include "field/field_sampler.h"
+#include "step/most_radians.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/options/option.h"
@@ -25,9 +26,6 @@ using openvdb::Vec3d;
 
 namespace
 {
-
-// A little less than a right angle, whose tangent is finite.
-constexpr double kMostRadians = 1.5;
 
 /// The upper 53 bits, all that a double holds, as a number from -1 up to but not including 1. The
 /// standard library's distributions are not used, because each library may compute them in another

@@ -13,6 +13,7 @@
 #include "field/deep_field.h"
 #include "field/field_sampler.h"
 #include "step/march.h"
+#include "step/most_radians.h"
 #include "step/skip_ahead.h"
 #include "step/thickness.h"
 #include "vdb_shell/core/error.h"
@@ -35,8 +36,6 @@ constexpr double kIntervalVoxels = 1.0 / 1024;
 // A line that is not inside after this many voxels never will be.
 constexpr double kEntryVoxels = 1.5;
 constexpr double kSmallestStepVoxels = 1e-3;
-// A little less than a right angle, whose cosine is well above 0.
-constexpr double kMostRadians = 1.5;
 // On a crease of the field the interpolated slope swings with the position in the cell (between
 // 0.65 and 0.87 on a box's diagonal). Along one cell diagonal every phase has been seen.
 constexpr double kPeriodVoxels = 1.7320508;

@@ -6,11 +6,11 @@
 
 #include "vdb_shell/volume/deform_volume.h"
 
+#include "field/level_set_again.h"
 #include "io/volume_types.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 #include "volume/extend_volume.h"
-#include "volume/level_set_again.h"
 #include "volume/plain_lattice.h"
 #include "volume/pull_back.h"
 #include "volume/sample_volume.h"

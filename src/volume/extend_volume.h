@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
-#include <openvdb/tools/Morphology.h>
+#include "core/grid_instances.h"
 
 #include <type_traits>
 #include <vector>
 
 namespace vdb_shell
 {
+
+/// The inactive voxels next to active ones, also over edges and corners. Not of tiles.
+std::vector<openvdb::Coord> rim_of(const openvdb::Int32Grid& inside);
 
 /// A copy whose inactive voxels next to what is `inside` have the mean of their neighbours there,
 /// so that samples just inside do not mix with the emptiness outside: a volume that reaches the
@@ -19,15 +21,10 @@ typename Grid::Ptr extended_beyond(const Grid& source, const openvdb::Int32Grid&
     using Value = typename Grid::ValueType;
     using Sum = std::conditional_t<std::is_same_v<Value, float>, double, openvdb::Vec3d>;
     typename Grid::Ptr extended = source.deepCopy();
-    openvdb::MaskTree rim(inside.tree(), false, true, openvdb::TopologyCopy());
-    openvdb::tools::dilateActiveValues(rim, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
-                                       openvdb::tools::IGNORE_TILES);
-    rim.topologyDifference(inside.tree());
     auto is_inside = inside.getConstAccessor();
     auto value_of = source.getConstAccessor();
     auto made = extended->getAccessor();
-    for (auto voxel = rim.cbeginValueOn(); voxel; ++voxel) {
-        const openvdb::Coord place = voxel.getCoord();
+    for (const openvdb::Coord& place : rim_of(inside)) {
         if (value_of.isValueOn(place))
             continue;
         Sum sum(0.0);

@@ -8,10 +8,10 @@
 
 #include "vdb_shell/volume/map_volume.h"
 
+#include "field/level_set_again.h"
 #include "io/volume_types.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
-#include "volume/level_set_again.h"
 #include "volume/sample_volume.h"
 #include "volume/tet_index_grid.h"
 #include "volume/voxel_leaves.h"
@@ -217,57 +217,61 @@ Value carried(const Value& value, const Mat3d& to_shell, const GridBase& texture
     }
 }
 
-template <typename Grid>
-GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
-                     const std::vector<std::array<Vec2d, 3>>& corner, const MapOptions& options,
-                     MapFigures& figures, const StageProgress& progress)
+/// Axes of the texture's index space, in its world.
+Mat3d axes_of(const openvdb::math::Transform& transform)
 {
-    const openvdb::CoordBBox tile = texture.evalActiveVoxelBoundingBox();
-    if (tile.empty() || texture.activeVoxelCount() == 0)
-        throw InvalidOption("grid \"" + texture.getName() + "\" has no active voxels");
-    const ToTexture to_texture(map, corner, tile, options);
-    // Axes of the texture's index space, in its world.
     Mat3d axes;
     for (int axis = 0; axis < 3; ++axis) {
         Vec3d unit(0.0);
         unit[axis] = 1;
-        axes.setCol(axis, texture.transform().indexToWorld(unit) -
-                              texture.transform().indexToWorld(Vec3d(0.0)));
+        axes.setCol(axis, transform.indexToWorld(unit) - transform.indexToWorld(Vec3d(0.0)));
     }
+    return axes;
+}
+
+/// What is the same for all voxels.
+template <typename Grid> struct Mapping {
+    const Grid& texture;
+    openvdb::CoordBBox tile;
+    ToTexture to_texture;
+    Mat3d axes;
+    const MapOptions& options;
+    bool level_set;
+};
+
+template <typename Grid>
+void map_leaf(const Mapping<Grid>& mapping, std::size_t i, const TetIndexLeaf& leaf,
+              VoxelLeaves<Grid>& leaves, Sums& sums)
+{
+    const MapOptions& options = mapping.options;
     const double voxel = options.voxel_size;
-    const Int32Grid::Ptr tets = tet_index_grid(map.tets(), voxel, "map", progress);
-    // Of a level set all voxels are kept, also those far from its surface, whose signs say where
-    // the inside is. What is cut off by the end of the shell is closed there: beyond is outside.
-    const bool level_set =
-        std::is_same_v<Grid, FloatGrid> && texture.getGridClass() == openvdb::GRID_LEVEL_SET;
-    const auto background =
-        level_set ? typename Grid::ValueType(kHalfWidth * float(voxel)) : texture.background();
-    VoxelLeaves<Grid> leaves(texture.getName(), background, tets->tree().leafCount());
-    std::vector<Sums> sums(tets->tree().leafCount());
-    for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
-        TiledSampler<Grid> sampler(texture, tile, options.most_samples);
-        leaves.begin(i, leaf, false);
-        for (auto at = leaf.cbeginValueOn(); at; ++at) {
-            TexturePlace place;
-            bool singular = false;
-            if (!to_texture.find(std::uint32_t(*at), voxel * at.getCoord().asVec3d(), place,
-                                 singular)) {
-                sums[i].singular += singular;
-                continue;
-            }
-            const Mat3d to_world = axes * place.by_world;
-            const double share = std::abs(to_world.det());
-            const Mat3d to_shell = to_world.inverse(0.0);
-            sums[i].texture += share;
-            sums[i].shell += 1;
-            sums[i].stretch += share * squared_norm(to_shell) / 3;
-            sums[i].mirrored += to_world.det() < 0;
-            typename Grid::ValueType value;
-            if (sampler.mean(place.index, voxel * place.by_world, value) || level_set)
-                leaves.set_on(i, at.pos(), carried(value, to_shell, texture, options.keep_mass));
+    TiledSampler<Grid> sampler(mapping.texture, mapping.tile, options.most_samples);
+    leaves.begin(i, leaf, false);
+    for (auto at = leaf.cbeginValueOn(); at; ++at) {
+        TexturePlace place;
+        bool singular = false;
+        if (!mapping.to_texture.find(std::uint32_t(*at), voxel * at.getCoord().asVec3d(), place,
+                                     singular)) {
+            sums.singular += singular;
+            continue;
         }
-        sums[i].limited = sampler.limited();
-    });
+        const Mat3d to_world = mapping.axes * place.by_world;
+        const double share = std::abs(to_world.det());
+        const Mat3d to_shell = to_world.inverse(0.0);
+        sums.texture += share;
+        sums.shell += 1;
+        sums.stretch += share * squared_norm(to_shell) / 3;
+        sums.mirrored += to_world.det() < 0;
+        typename Grid::ValueType value;
+        if (sampler.mean(place.index, voxel * place.by_world, value) || mapping.level_set)
+            leaves.set_on(i, at.pos(),
+                          carried(value, to_shell, mapping.texture, options.keep_mass));
+    }
+    sums.limited = sampler.limited();
+}
+
+void add_up(const std::vector<Sums>& sums, MapFigures& figures)
+{
     Sums all;
     for (const Sums& s : sums) {
         all.texture += s.texture, all.shell += s.shell, all.stretch += s.stretch;
@@ -277,6 +281,33 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
     }
     if (all.texture > 0)
         figures.stretch = std::sqrt(all.stretch / all.texture) / std::cbrt(all.shell / all.texture);
+}
+
+template <typename Grid>
+GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
+                     const std::vector<std::array<Vec2d, 3>>& corner, const MapOptions& options,
+                     MapFigures& figures, const StageProgress& progress)
+{
+    const openvdb::CoordBBox tile = texture.evalActiveVoxelBoundingBox();
+    if (tile.empty() || texture.activeVoxelCount() == 0)
+        throw InvalidOption("grid \"" + texture.getName() + "\" has no active voxels");
+    // Of a level set all voxels are kept, also those far from its surface, whose signs say where
+    // the inside is. What is cut off by the end of the shell is closed there: beyond is outside.
+    const bool level_set =
+        std::is_same_v<Grid, FloatGrid> && texture.getGridClass() == openvdb::GRID_LEVEL_SET;
+    const Mapping<Grid> mapping{
+        texture, tile,     {map, corner, tile, options}, axes_of(texture.transform()),
+        options, level_set};
+    const Int32Grid::Ptr tets = tet_index_grid(map.tets(), options.voxel_size, "map", progress);
+    const auto background = level_set
+                                ? typename Grid::ValueType(kHalfWidth * float(options.voxel_size))
+                                : texture.background();
+    VoxelLeaves<Grid> leaves(texture.getName(), background, tets->tree().leafCount());
+    std::vector<Sums> sums(tets->tree().leafCount());
+    for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
+        map_leaf(mapping, i, leaf, leaves, sums[i]);
+    });
+    add_up(sums, figures);
     typename Grid::Ptr made = leaves.grid(tets->transform());
     if constexpr (std::is_same_v<Grid, FloatGrid>) {
         if (level_set && made->activeVoxelCount() > 0)

@@ -30,7 +30,7 @@ namespace
 // Coordinates are at most M in size about the middle, hence rounded by 6e-8 M; a foot on a side is
 // off by a handful of roundings along each axis, 4e-7 M, which makes 7e-7 M in space; and two
 // distances are compared. This is more than twice that.
-constexpr double kSlack = 4e-6;
+constexpr double kDistanceSlack = 4e-6;
 constexpr double kHalfLeaf = 3.5; // from a leaf's first voxel to its middle
 
 Coord corner_of_block(const Coord& corner, int side, std::size_t i)
@@ -51,7 +51,7 @@ DistanceSurface::DistanceSurface(const TriangleMesh& mesh, double voxel_size)
 {
     const Bounds bounds = bounds_of(mesh.points);
     middle_ = 0.5 / voxel_ * (bounds.low + bounds.high);
-    slack_ = kSlack * diagonal_of(bounds) / voxel_;
+    slack_ = kDistanceSlack * diagonal_of(bounds) / voxel_;
     for_each_index(prepared_.size(), [&](std::size_t t) {
         std::array<Vec3d, 3> corner = triangle_corners(mesh, t);
         for (Vec3d& c : corner)

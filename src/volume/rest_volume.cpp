@@ -5,10 +5,9 @@
 
 #include "vdb_shell/volume/rest_volume.h"
 
+#include "core/grid_instances.h"
 #include "core/parallel.h"
 #include "volume/tet_values_grid.h"
-
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cassert>

@@ -21,7 +21,7 @@ static_assert(kLeafSize == 1 << kLeafBits);
 /// Added to the barycentric coordinates, which have no unit. Without it a voxel centre on a face
 /// could fall between the two tets of that face by rounding, and leave a hole in the grid. It is
 /// far above the rounding error of doubles and far below what shows in a voxel.
-constexpr double kSlack = 1e-9;
+constexpr double kBarycentricSlack = 1e-9;
 /// Voxel coordinates below 2^30 leave room in 32 bits for the box of a tet, for rounding to leaves,
 /// and for the one voxel that depth_lines.cpp goes beyond the box.
 constexpr double kLargestCoordinate = double(1 << 30);
@@ -77,7 +77,7 @@ TetLines lines_through(const IndexTet& tet)
 {
     TetLines lines;
     lines.origin_x = tet.origin[0], lines.origin_y = tet.origin[1];
-    lines.slack = kSlack;
+    lines.slack = kBarycentricSlack;
     lines.low_z = tet.low.z(), lines.high_z = tet.high.z();
     for (const Affine& weight : tet.barycentric) {
         const double slope = weight.slope[2];
@@ -85,8 +85,8 @@ TetLines lines_through(const IndexTet& tet)
             lines.side[lines.sides++] = {weight.value, weight.slope[0], weight.slope[1]};
         else
             (slope > 0.0 ? lines.floor[lines.floors++] : lines.ceiling[lines.ceilings++]) = {
-                tet.origin[2] - (weight.value + kSlack) / slope, -weight.slope[0] / slope,
-                -weight.slope[1] / slope};
+                tet.origin[2] - (weight.value + kBarycentricSlack) / slope,
+                -weight.slope[0] / slope, -weight.slope[1] / slope};
     }
     return lines;
 }
@@ -107,7 +107,7 @@ bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
     for (const Affine& weight : tet.barycentric) {
         const Vec3d& slope = weight.slope;
         const double slack =
-            2 * kSlack +
+            2 * kBarycentricSlack +
             kRounding * size * (std::abs(slope[0]) + std::abs(slope[1]) + std::abs(slope[2]));
         // A linear function has its maximum over a rectangle in a corner, and the signs of its
         // slopes say in which.

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "volume/depth_lines.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <array>

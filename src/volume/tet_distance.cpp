@@ -11,13 +11,12 @@
 
 #include "vdb_shell/volume/tet_distance.h"
 
+#include "core/grid_instances.h"
 #include "core/parallel.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "volume/nearest_in_leaf.h"
 #include "volume/tet_index_grid.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cassert>

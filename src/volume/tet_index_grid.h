@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "volume/tet_columns.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cstdint>
 #include <vector>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
-
-#include <openvdb/openvdb.h>
 
 #include <cstddef>
 #include <memory>

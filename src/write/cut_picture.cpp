@@ -10,6 +10,7 @@
 #include "write/cut_picture.h"
 
 #include "core/parallel.h"
+#include "write/picture_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,6 @@ using openvdb::Vec3f;
 
 /// A band at the largest width of 16384 pixels is 24 rows of 49152 samples of 16 bytes, 19 MB for
 /// each thread. Without bands the samples of the whole picture would take 39 GB.
-constexpr int kSamples = 3;    ///< per pixel and direction
 constexpr int kBandPixels = 8; ///< rows drawn at once: bounds the memory of the samples
 constexpr double kEdgeWidth = 0.9, kOuterWidth = 2.4, kInnerWidth = 1.6; ///< pixels
 /// Tets smaller than this many pixels across fade out their edges, which would cover them.
@@ -37,8 +37,7 @@ constexpr float kLeastRed = 0.6f;
 
 const Vec3f background_colour(1.0f, 1.0f, 1.0f), void_colour(0.90f, 0.90f, 0.90f),
     overlap_colour(0.88f, 0.07f, 0.07f);
-const Vec3f edge_colour(0.16f, 0.20f, 0.26f), outer_colour(0.07f, 0.09f, 0.13f),
-    inner_colour(0.05f, 0.25f, 0.60f);
+const Vec3f outer_colour(0.07f, 0.09f, 0.13f), inner_colour(0.05f, 0.25f, 0.60f);
 /// By prism, and the core's.
 const std::array<Vec3f, kTintCount + 1> tint_colours{
     Vec3f(0.62f, 0.79f, 0.90f), Vec3f(0.98f, 0.87f, 0.62f), Vec3f(0.70f, 0.87f, 0.72f),
@@ -239,7 +238,7 @@ Vec3f colour_of(const Sample& sample)
         colour = tint_colours[sample.tint];
     else if (sample.tets > 1)
         colour = overlap_colour;
-    colour = blend(colour, edge_colour, sample.edge);
+    colour = blend(colour, kEdgeColour, sample.edge);
     colour = blend(colour, inner_colour, sample.inner);
     return blend(colour, outer_colour, sample.outer);
 }

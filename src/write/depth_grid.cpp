@@ -5,9 +5,8 @@
 
 #include "vdb_shell/write/vdb_file.h"
 
+#include "core/grid_instances.h"
 #include "volume/tet_values_grid.h"
-
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <vector>

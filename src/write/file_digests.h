@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "write/grid_digest.h"
-
-#include <openvdb/openvdb.h>
 
 #include <filesystem>
 #include <vector>

@@ -11,6 +11,10 @@ namespace vdb_shell
 /// stays visible.
 inline constexpr int kSmallestWidth = 16, kLargestWidth = 16384;
 
+/// What all pictures of tets have in common: samples per pixel and direction, the colour of edges.
+constexpr int kSamples = 3;
+inline const openvdb::Vec3f kEdgeColour(0.16f, 0.20f, 0.26f);
+
 /// World units to pixels, y downwards.
 struct PictureFrame {
     openvdb::Vec2d low{0.0, 0.0};

@@ -25,18 +25,16 @@ using openvdb::Vec2d;
 using openvdb::Vec3d;
 using openvdb::Vec3f;
 
-constexpr int kSamples = 3;          ///< per pixel and direction
-constexpr int kBandPixels = 16;      ///< rows drawn at once
-constexpr double kEdgePixels = 0.45; ///< of an edge's width, on each of its two sides
+constexpr int kShadedBandPixels = 16; ///< rows drawn at once
+constexpr double kEdgePixels = 0.45;  ///< of an edge's width, on each of its two sides
 /// Triangles smaller than this many pixels across fade out their edges, which would cover them.
-constexpr double kEdgesFadeBelow = 12.0;
-constexpr float kEdgeStrength = 0.6f;
+constexpr double kShadedEdgesFadeBelow = 12.0;
+constexpr float kShadedEdgeStrength = 0.6f;
 /// Light from the upper left, and from everywhere: nothing is black.
 const Vec3d light = Vec3d(-0.4, 0.6, 0.7).unit();
 constexpr float kAmbient = 0.45f;
-const Vec3f edge_colour(0.16f, 0.20f, 0.26f);
 
-struct Sample {
+struct DepthSample {
     double depth = -std::numeric_limits<double>::infinity();
     Vec3f colour{1.0f};
 };
@@ -91,7 +89,7 @@ Flat flat_of(const ShadedTriangle& t, const PictureFrame& frame)
     }
     flat.colour = t.colour * brightness(t);
     const double across = std::sqrt(0.5 * std::abs(twice_area)) / kSamples;
-    flat.edge_strength = kEdgeStrength * float(std::min(1.0, across / kEdgesFadeBelow));
+    flat.edge_strength = kShadedEdgeStrength * float(std::min(1.0, across / kShadedEdgesFadeBelow));
     return flat;
 }
 
@@ -102,16 +100,16 @@ int first_centre(double low, int least, int most)
     return int(std::ceil(std::clamp(low - 0.5, double(least), double(most))));
 }
 
-class Band
+class DepthBand
 {
 public:
-    Band(int width, int first_row, int rows)
+    DepthBand(int width, int first_row, int rows)
         : width_(width), first_(first_row), end_(first_row + rows),
           samples_(std::size_t(width) * std::size_t(rows))
     {
     }
 
-    const Sample& at(int x, int row) const { return samples_[place(x, row)]; }
+    const DepthSample& at(int x, int row) const { return samples_[place(x, row)]; }
 
     void draw(const ShadedTriangle& t, const Flat& flat)
     {
@@ -142,7 +140,7 @@ private:
             depth += weight[k] * t.corner[k].z();
             in_front += weight[k] * t.in_front[k];
         }
-        Sample& sample = samples_[place(x, row)];
+        DepthSample& sample = samples_[place(x, row)];
         if (in_front > 0 || depth <= sample.depth)
             return;
         sample.depth = depth;
@@ -150,17 +148,17 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const bool drawn = (t.edges >> ((k + 1) % 3)) & 1;
             if (drawn && weight[k] * flat.edge_samples[k] < kEdgePixels * kSamples) {
-                sample.colour += flat.edge_strength * (edge_colour - flat.colour);
+                sample.colour += flat.edge_strength * (kEdgeColour - flat.colour);
                 return;
             }
         }
     }
 
     int width_, first_, end_;
-    std::vector<Sample> samples_;
+    std::vector<DepthSample> samples_;
 };
 
-void write_row(const Band& band, int y, int width, std::uint8_t* rgb)
+void write_row(const DepthBand& band, int y, int width, std::uint8_t* rgb)
 {
     for (int x = 0; x < width; ++x) {
         Vec3f sum(0.0f);
@@ -179,7 +177,7 @@ std::vector<std::vector<std::uint32_t>> by_band(const std::vector<Flat>& flats, 
                                                 int bands)
 {
     std::vector<std::vector<std::uint32_t>> list(static_cast<std::size_t>(bands));
-    constexpr int kBandSamples = kBandPixels * kSamples;
+    constexpr int kBandSamples = kShadedBandPixels * kSamples;
     for (std::uint32_t i = 0; i < flats.size(); ++i) {
         if (flats[i].empty)
             continue;
@@ -204,14 +202,14 @@ Image draw_shaded(const std::vector<ShadedTriangle>& triangles, const ShadedFram
     const auto row_bytes = 3 * std::size_t(frame.width);
     Image image{frame.width, frame.height,
                 std::vector<std::uint8_t>(row_bytes * std::size_t(frame.height))};
-    const int bands = (frame.height + kBandPixels - 1) / kBandPixels;
+    const int bands = (frame.height + kShadedBandPixels - 1) / kShadedBandPixels;
     const auto lists = by_band(flats, frame.height * kSamples, bands);
     for_each_index(
         std::size_t(bands),
         [&](std::size_t index) {
-            const int top = int(index) * kBandPixels;
-            const int rows = std::min(kBandPixels, frame.height - top);
-            Band band(frame.width * kSamples, top * kSamples, rows * kSamples);
+            const int top = int(index) * kShadedBandPixels;
+            const int rows = std::min(kShadedBandPixels, frame.height - top);
+            DepthBand band(frame.width * kSamples, top * kSamples, rows * kSamples);
             for (const std::uint32_t i : lists[index])
                 band.draw(triangles[i], flats[i]);
             for (int y = top; y < top + rows; ++y)

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "vdb_shell/write/vdb_file.h"
-
-#include <openvdb/openvdb.h>
 
 namespace vdb_shell
 {

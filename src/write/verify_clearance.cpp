@@ -30,7 +30,7 @@ using nlohmann::json;
 constexpr const char* kWhat = "shell keeps off the cores as stated";
 
 /// Nothing where the report does not say it.
-std::optional<double> stated(const json& report, const char* key)
+std::optional<double> stated_of_cores(const json& report, const char* key)
 {
     const json::json_pointer place(std::string("/cores/") + key);
     if (!report.contains(place) || !report.at(place).is_number())
@@ -56,7 +56,7 @@ Verification verify_clearance(const ShellFile& file, std::vector<CoreMesh> cores
 {
     const json report = json::parse(file.report_json, nullptr, false);
     CoreOptions options;
-    options.distance = stated(report, "distance").value_or(0);
+    options.distance = stated_of_cores(report, "distance").value_or(0);
     const TriangleMesh surface{file.stack.surface(0), file.stack.triangles()};
     if (file.stack.skin != 0)
         return {kWhat, false, "a shell outside its surface has no cores"};
@@ -65,7 +65,7 @@ Verification verify_clearance(const ShellFile& file, std::vector<CoreMesh> cores
             prepare_cores(surface, "the surface", std::move(cores), options, interrupter);
         const bool clear = certified_with(file.stack, prepared.kept_out, interrupter);
         const double least = report_cores(file.stack, prepared, options, {}).least_distance;
-        const std::optional<double> claimed = stated(report, "least_distance");
+        const std::optional<double> claimed = stated_of_cores(report, "least_distance");
         std::ostringstream detail;
         detail.imbue(std::locale::classic());
         detail.precision(17);

@@ -4,6 +4,7 @@
 #include "support/broken_shells.h"
 #include "support/certificates.h"
 #include "support/files.h"
+#include "support/stacks.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
 #include "vdb_shell/certify/tet_signs.h"
@@ -367,16 +368,10 @@ TEST(Certificate, SameFindingsForAnyNumberOfThreads)
     EXPECT_FALSE(alone.empty());
 }
 
-struct StopAtOnce : Interrupter {
-    void start(const char*) override {}
-    void end() override {}
-    bool wasInterrupted(int) override { return true; }
-};
-
 TEST(Certificate, CanBeCancelled)
 {
     const SplitShell made = scaled_shell(icosphere(1, 1), 0.5f);
-    StopAtOnce interrupter;
+    test::StopAtOnce interrupter;
     EXPECT_THROW(certify_shell(made.shell, made.split, PrismTest::twelve_tets, &interrupter),
                  Cancelled);
 }

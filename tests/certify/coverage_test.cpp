@@ -3,6 +3,7 @@
 
 #include "support/shapes.h"
 #include "support/shells.h"
+#include "support/stacks.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/shell/tessellate.h"
 
@@ -19,7 +20,7 @@ namespace
 using namespace vdb_shell;
 using openvdb::Vec3d;
 
-TetMesh tets_of(const PrismShell& shell)
+TetMesh default_tets(const PrismShell& shell)
 {
     return make_tets(shell, split_prisms(shell, {}));
 }
@@ -38,7 +39,7 @@ TEST(Coverage, AgreesWithTheExactVolumeOfASphereShell)
 {
     const TriangleMesh sphere = test::icosphere(2, 3);
     const PrismShell shell = test::radial_shell(sphere, [](std::size_t) { return 0.6; });
-    const TetMesh tets = tets_of(shell);
+    const TetMesh tets = default_tets(shell);
     const double exact = tet_volume(tets) / volume_of(sphere);
     EXPECT_NEAR(exact, 1 - std::pow(0.7, 3), 1e-6); // similar polyhedra
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
@@ -94,7 +95,7 @@ TEST(Coverage, FindsTheKnownOverlapOfTwoLimbs)
     const Bounds a{Vec3d(0, 0, 0), Vec3d(4, 1, 1)}, b{Vec3d(2.5, -2, 0.25), Vec3d(3.5, 3, 1.5)};
     const double h = 0.25;
     const TriangleMesh mesh = test::joined(test::box(a.low, a.high), test::box(b.low, b.high));
-    const TetMesh tets = tets_of(box_shell(mesh, {a, b}, h));
+    const TetMesh tets = default_tets(box_shell(mesh, {a, b}, h));
     const Bounds ai = shrunk(a, h), bi = shrunk(b, h);
     const double solid = volume_of(mesh) - common_volume(a, b);
     const double overlap =
@@ -115,7 +116,7 @@ TEST(Coverage, MeasuresAShellOutsideTheSolid)
     const TriangleMesh sphere = test::icosphere(1, 2);
     const PrismShell shell = test::shell_along(
         sphere, [](const Vec3d& p) { return p.unit(); }, [](std::size_t) { return 0.5; });
-    const TetMesh tets = tets_of(shell);
+    const TetMesh tets = default_tets(shell);
     const double exact = -tet_volume(tets) / volume_of(sphere);
     EXPECT_NEAR(exact, std::pow(1.5, 3) - 1, 1e-6);
     const Coverage c = estimate_coverage(sphere, tets, {100000, 5});
@@ -131,7 +132,7 @@ TEST(Coverage, DoesNotCountACavityAsSolid)
     const TriangleMesh outer = test::icosphere(2, 2), hollow = test::icosphere(1, 2);
     const TriangleMesh wall = test::joined(outer, test::reversed(hollow));
     const PrismShell shell = test::radial_shell(outer, [](std::size_t) { return 1.5; });
-    const Coverage c = estimate_coverage(wall, tets_of(shell), {50000, 2});
+    const Coverage c = estimate_coverage(wall, default_tets(shell), {50000, 2});
     EXPECT_EQ(c.in_one + c.in_none, c.samples);
     EXPECT_LE(c.in_none, 5U);             // points exactly on a face
     const double exact = (1 - 0.125) / 7; // radii 2, 1 and 0.5 of similar polyhedra
@@ -149,7 +150,7 @@ TEST(Coverage, HandlesASolidThatFillsLittleOfItsBox)
         plate, [&](const Vec3d& p) { return p.dot(u) > 0 ? -u : u; },
         [](std::size_t) { return 0.005; });
     // Neither shell of the two sides reaches the middle; the prisms of the rim are flat.
-    const TetMesh tets = tets_of(shell);
+    const TetMesh tets = default_tets(shell);
     const Coverage c = estimate_coverage(plate, tets, {50000, 3});
     EXPECT_EQ(c.samples, 50000U);
     EXPECT_NEAR(c.covered_share, 0.5, 4 * c.standard_error + 1e-5);
@@ -158,8 +159,8 @@ TEST(Coverage, HandlesASolidThatFillsLittleOfItsBox)
 TEST(Coverage, IsTheSameForAnyNumberOfThreads)
 {
     const TriangleMesh torus = test::torus(3, 1, 30, 15);
-    const TetMesh tets =
-        tets_of(test::torus_shell(torus, 3, [](std::size_t v) { return v % 7 == 0 ? 1.6 : 0.5; }));
+    const TetMesh tets = default_tets(
+        test::torus_shell(torus, 3, [](std::size_t v) { return v % 7 == 0 ? 1.6 : 0.5; }));
     std::vector<Coverage> results;
     for (const std::size_t threads : {1, 2, 7}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
@@ -214,7 +215,7 @@ TEST(Coverage, FewLargeTetsAndManySmallOnesHoldEachPointOfTheSolidOnce)
 TEST(Coverage, DoesNotDependOnHowATetIsTurned)
 {
     const TriangleMesh sphere = test::icosphere(1, 2);
-    TetMesh tets = tets_of(test::radial_shell(sphere, [](std::size_t) { return 0.3; }));
+    TetMesh tets = default_tets(test::radial_shell(sphere, [](std::size_t) { return 0.3; }));
     const Coverage before = estimate_coverage(sphere, tets, {20000, 4});
     for (openvdb::Vec4I& tet : tets.tets)
         std::swap(tet[1], tet[2]);
@@ -241,13 +242,9 @@ TEST(Coverage, RefusesASolidWithoutVolume)
     }
 }
 
-struct StopAtOnce : Interrupter {
-    bool wasInterrupted(int) override { return true; }
-};
-
 TEST(Coverage, CanBeCancelled)
 {
-    StopAtOnce interrupter;
+    test::StopAtOnce interrupter;
     EXPECT_THROW(
         estimate_coverage(test::box({0, 0, 0}, {1, 1, 1}), TetMesh(), {1000, 1}, &interrupter),
         Cancelled);

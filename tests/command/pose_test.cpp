@@ -2,9 +2,8 @@
 #include "command_fixture.h"
 #include "support/bends.h"
 
+#include "core/grid_instances.h"
 #include "vdb_shell/write/vdb_file.h"
-
-#include <openvdb/openvdb.h>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

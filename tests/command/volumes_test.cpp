@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "command_fixture.h"
 
+#include "core/grid_instances.h"
 #include "support/files.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>

@@ -6,12 +6,12 @@
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/resample/surface_distance.h"
 
+#include "core/grid_instances.h"
 #include "field/marching_tets.h"
 #include "resample/simplify.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +71,7 @@ TriangleMesh tets_of(const FloatGrid& field)
     return mesh;
 }
 
-FloatGrid::Ptr sphere_field(double radius, double voxel)
+FloatGrid::Ptr sphere_by_formula(double radius, double voxel)
 {
     LevelSetOptions options;
     options.voxel_size = voxel;
@@ -131,7 +131,7 @@ TEST(Contour, IsSoundWhereVolumeToMeshIsNot)
 TEST(Contour, ASphereHasItsVolumeAndStaysWithinTheAdaptivity)
 {
     const double voxel = 0.05;
-    const auto grid = sphere_field(1.0, voxel);
+    const auto grid = sphere_by_formula(1.0, voxel);
     for (const double adaptivity : {0.0, 0.25, 1.0}) {
         ContourReport report;
         const TriangleMesh mesh = contour(*grid, {adaptivity, false}, &report);
@@ -148,7 +148,7 @@ TEST(Contour, ASphereHasItsVolumeAndStaysWithinTheAdaptivity)
 
 TEST(Contour, FollowsAnyLinearTransform)
 {
-    const auto grid = sphere_field(1.0, 0.1);
+    const auto grid = sphere_by_formula(1.0, 0.1);
     const auto squeezed = grid->deepCopy();
     squeezed->transform().postScale(Vec3d(1, 2, 0.5));
     squeezed->transform().postRotate(0.7, openvdb::math::Y_AXIS);
@@ -162,7 +162,7 @@ TEST(Contour, FollowsAnyLinearTransform)
 
 TEST(Contour, AMirroredTransformStillFacesOutward)
 {
-    const auto grid = sphere_field(1.0, 0.1);
+    const auto grid = sphere_by_formula(1.0, 0.1);
     grid->transform().postScale(Vec3d(-1, 1, 1));
     const TriangleMesh mesh = contour(*grid);
     expect_sound(mesh);
@@ -189,7 +189,7 @@ TEST(Contour, OuterOnlyFillsVoidsAndDropsWhatIsInThem)
 TEST(Contour, RefusesWhatHasNoSurfaceOrAnOpenOne)
 {
     EXPECT_THROW(contour(*FloatGrid::create(1.0f)), GeometryError);
-    EXPECT_THROW(contour(*sphere_field(1.0, 0.1), {-1.0, false}), InvalidOption);
+    EXPECT_THROW(contour(*sphere_by_formula(1.0, 0.1), {-1.0, false}), InvalidOption);
 }
 
 TEST(Simplify, KeepsPointsWhereTheyWereAndWallsApart)

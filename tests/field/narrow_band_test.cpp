@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/field/narrow_band.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
 #include <openvdb/math/Proximity.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cmath>

@@ -13,7 +13,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 TEST(Box, InFloatsHoldsAllOfItAndHardlyMore)
 {
@@ -29,8 +29,8 @@ TEST(Box, InFloatsHoldsAllOfItAndHardlyMore)
         for (int k = 0; k < 3; ++k) {
             EXPECT_LE(double(floats.lo[k]), box.lo[k]);
             EXPECT_GE(double(floats.hi[k]), box.hi[k]);
-            EXPECT_GT(double(std::nextafter(floats.lo[k], kInfinity)), box.lo[k]);
-            EXPECT_LT(double(std::nextafter(floats.hi[k], -kInfinity)), box.hi[k]);
+            EXPECT_GT(double(std::nextafter(floats.lo[k], kFloatInfinity)), box.lo[k]);
+            EXPECT_LT(double(std::nextafter(floats.hi[k], -kFloatInfinity)), box.hi[k]);
         }
     }
 }

@@ -2,6 +2,7 @@
 #include "vdb_shell/growth/grow.h"
 #include "vdb_shell/mesh/normals.h"
 
+#include "growth/grown.h"
 #include "growth/move_tests.h"
 #include "growth/predicates.h"
 #include "support/shapes.h"
@@ -28,8 +29,8 @@ using namespace vdb_shell;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 using test::bumpy_sphere;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::fill_of;
+using test::kInfinity;
 
 struct Case {
     TriangleMesh mesh;
@@ -53,12 +54,6 @@ Case case_of(const TriangleMesh& mesh, double cap = kInfinity)
 GrowResult grown(const Case& c, const GrowOptions& options = {}, Interrupter* interrupter = nullptr)
 {
     return grow_shell(c.mesh, c.directions, c.start, c.cap, options, {}, interrupter);
-}
-
-double fill_of(const PrismShell& shell)
-{
-    return 1 - signed_volume(shell.inner, shell.triangles) /
-                   signed_volume(shell.outer, shell.triangles);
 }
 
 void expect_all_positive(const PrismShell& shell, const PrismSplit& split)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/move_groups.h"
 
+#include "growth/grown.h"
 #include "growth/move_tests.h"
 #include "growth/violations.h"
 #include "support/shapes.h"
@@ -17,8 +18,7 @@ namespace
 
 using namespace vdb_shell;
 using namespace vdb_shell::growth;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 /// A shell over part of the way to a point or a sheet, on a surface of many triangles.
 struct Partial {

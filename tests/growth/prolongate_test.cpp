@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/prolongate.h"
 
+#include "growth/grown.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
 #include "vdb_shell/shell/sides.h"
@@ -18,12 +19,7 @@ namespace
 using namespace vdb_shell;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
-
-double fill_of(const PrismShell& shell)
-{
-    return 1 - signed_volume(shell.inner, shell.triangles) /
-                   signed_volume(shell.outer, shell.triangles);
-}
+using test::fill_of;
 
 std::vector<growth::CoarsePoint> nearest(const TriangleMesh& mesh, const TriangleMesh& coarse)
 {

@@ -2,6 +2,7 @@
 #include "growth/untangle.h"
 
 #include "core/counter_random.h"
+#include "growth/grown.h"
 #include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
 #include "support/shapes.h"
@@ -19,8 +20,7 @@ namespace
 
 using namespace vdb_shell;
 using namespace vdb_shell::growth;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using test::kInfinity;
 
 int invalid_prisms(const GrowState& s)
 {

@@ -5,6 +5,8 @@
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <set>
 #include <sstream>
@@ -158,6 +160,26 @@ inline ShellFile layered_shell_file(const TriangleMesh& surface, const std::vect
     file.parameters_json = "{\"a\": 1}";
     file.report_json = "{\"volume\": {\"fill\": 0.25}}";
     return file;
+}
+
+template <typename T>
+const std::vector<T>& held(const std::vector<houdini::Attribute>& list, const char* name)
+{
+    return std::get<std::vector<T>>(houdini::find(list, name)->values);
+}
+
+template <typename T>
+std::vector<T>& values_of(std::vector<houdini::Attribute>& list, const char* name)
+{
+    const houdini::Attribute* found = houdini::find(list, name);
+    return std::get<std::vector<T>>(list[static_cast<std::size_t>(found - list.data())].values);
+}
+
+/// A refusal that names the file and has those words.
+inline void has(const std::string& message, const std::string& words)
+{
+    EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
+    EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
 }
 
 } // namespace vdb_shell::test

@@ -2,7 +2,6 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/pipeline.h"
-#include "vdb_shell/write/verify_file.h"
 
 #include "houdini_compat/geometries.h"
 #include "houdini_compat/round_trip.h"
@@ -25,8 +24,10 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 using test::expect_round_trips;
-using test::expect_same_shell;
+using test::has;
+using test::held;
 using test::layered_shell_file;
+using test::values_of;
 
 TriangleMesh centred_box()
 {
@@ -95,12 +96,6 @@ TEST(LayeredGeometry, OneLayerSaysNothingOfLayers)
     EXPECT_EQ(find(g.point_attributes, "surface"), nullptr);
     EXPECT_EQ(find(g.point_groups, "skin"), nullptr);
     EXPECT_EQ(find(g.primitive_groups, "skin"), nullptr);
-}
-
-template <typename T>
-const std::vector<T>& held(const std::vector<Attribute>& list, const char* name)
-{
-    return std::get<std::vector<T>>(find(list, name)->values);
 }
 
 TEST(LayeredGeometry, AttributesSayWhereAPointLies)
@@ -199,7 +194,7 @@ TEST(LayeredGeometry, CollapsedPrismsAreTriangles)
     EXPECT_EQ(held<std::int32_t>(box.primitive_attributes, "prism").back(), 0);
 }
 
-template <typename Change> std::string refusal_after(const Change& change)
+template <typename Change> std::string refusal_of_layers(const Change& change)
 {
     const openvdb::Vec3I t = centred_box().triangles[0];
     HoudiniGeometry g = shell_geometry(
@@ -213,24 +208,11 @@ template <typename Change> std::string refusal_after(const Change& change)
     return "it was read";
 }
 
-std::vector<std::int32_t>& integers(std::vector<Attribute>& list, const char* name)
-{
-    const Attribute* found = find(list, name);
-    return std::get<std::vector<std::int32_t>>(
-        list[static_cast<std::size_t>(found - list.data())].values);
-}
-
-/// A refusal that names the file and has those words.
-void has(const std::string& message, const std::string& words)
-{
-    EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
-    EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
-}
-
 TEST(LayeredGeometry, SaysWhichNumberOfLayersContradicts)
 {
     const auto detail = [&](const char* name, std::int32_t value) {
-        return refusal_after([&](auto& g) { integers(g.detail_attributes, name)[0] = value; });
+        return refusal_of_layers(
+            [&](auto& g) { values_of<std::int32_t>(g.detail_attributes, name)[0] = value; });
     };
     has(detail("vdb_shell_layers", 0), "\"vdb_shell_layers\" is 0");
     has(detail("vdb_shell_layers", 251), "\"vdb_shell_layers\" is 251, which is not in [0, 250]");
@@ -243,24 +225,30 @@ TEST(LayeredGeometry, SaysWhichNumberOfLayersContradicts)
 
 TEST(LayeredGeometry, SaysWhichElementContradicts)
 {
-    has(refusal_after([](auto& g) { integers(g.point_attributes, "surface")[3] = 1; }),
+    has(refusal_of_layers(
+            [](auto& g) { values_of<std::int32_t>(g.point_attributes, "surface")[3] = 1; }),
         "\"surface\" of point 3 is 1, expected 0 to 0");
-    has(refusal_after([](auto& g) { integers(g.point_attributes, "surface").back() = 4; }),
+    has(refusal_of_layers(
+            [](auto& g) { values_of<std::int32_t>(g.point_attributes, "surface").back() = 4; }),
         "is 4, expected 1 to 3");
-    has(refusal_after([](auto& g) {
-            integers(g.point_attributes, "source_vertex")[9] =
-                integers(g.point_attributes, "source_vertex")[8];
+    has(refusal_of_layers([](auto& g) {
+            values_of<std::int32_t>(g.point_attributes, "source_vertex")[9] =
+                values_of<std::int32_t>(g.point_attributes, "source_vertex")[8];
         }),
         "\"source_vertex\" of point 9 is 0, as of point 8");
-    has(refusal_after([](auto& g) { integers(g.point_attributes, "surface").back() = 2; }),
+    has(refusal_of_layers(
+            [](auto& g) { values_of<std::int32_t>(g.point_attributes, "surface").back() = 2; }),
         "of point 25 is 7, as of point 20 on the same surface");
-    has(refusal_after([](auto& g) { integers(g.primitive_attributes, "layer")[0] = 3; }),
+    has(refusal_of_layers(
+            [](auto& g) { values_of<std::int32_t>(g.primitive_attributes, "layer")[0] = 3; }),
         "\"layer\" of primitive 0 is 3 of 3");
-    has(refusal_after([](auto& g) { integers(g.primitive_attributes, "layer").back() = 0; }),
+    has(refusal_of_layers(
+            [](auto& g) { values_of<std::int32_t>(g.primitive_attributes, "layer").back() = 0; }),
         "prism 0: point 8 is not below point 0");
-    has(refusal_after([](auto& g) { integers(g.primitive_attributes, "layer")[0] = 1; }),
+    has(refusal_of_layers(
+            [](auto& g) { values_of<std::int32_t>(g.primitive_attributes, "layer")[0] = 1; }),
         "checksum");
-    has(refusal_after([](auto& g) {
+    has(refusal_of_layers([](auto& g) {
             for (auto& attribute : g.primitive_attributes)
                 std::visit(
                     [&](auto& values) {
@@ -292,22 +280,7 @@ TEST(LayeredGeometry, CheckCertifiesWhatWasReadBack)
         options.layers.layers = layers;
         options.level_set.resolution = 16;
         options.coverage.samples = 0;
-        const ShellResult built = build_shell(test::icosphere(1.0, 2), options);
-        const ShellFile file{nullptr,
-                             nullptr,
-                             built.stack,
-                             built.tets,
-                             options_json(options),
-                             report_json(built.report, false)};
-        for (const char* name : {"s.geo", "s.bgeo", "s.bgeo.sc"}) {
-            write_shell_geometry(folder / name, file);
-            const ShellFile read = read_shell_geometry(folder / name);
-            expect_same_shell(read, file);
-            const auto findings = verify_shell(read);
-            EXPECT_EQ(findings.size(), 7u);
-            for (const Verification& finding : findings)
-                EXPECT_TRUE(finding.holds) << finding.what << ": " << finding.detail;
-        }
+        test::expect_verified_files(folder, test::file_of_built(options, test::icosphere(1.0, 2)));
     }
 }
 

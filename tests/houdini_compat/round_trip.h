@@ -2,8 +2,11 @@
 #pragma once
 
 #include "vdb_shell/houdini/shell_geometry.h"
+#include "vdb_shell/pipeline.h"
+#include "vdb_shell/write/verify_file.h"
 
 #include "houdini_compat/geometries.h"
+#include "support/files.h"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +52,32 @@ inline void expect_round_trips(const ShellFile& file)
         expect_same_shell(back, file);
         EXPECT_EQ(written(houdini::shell_geometry(back), format), bytes)
             << houdini::name_of(format);
+    }
+}
+
+/// The file of a shell that was built as the options say.
+inline ShellFile file_of_built(const ShellOptions& options, const TriangleMesh& mesh)
+{
+    const ShellResult built = build_shell(mesh, options);
+    return {nullptr,
+            nullptr,
+            built.stack,
+            built.tets,
+            options_json(options),
+            report_json(built.report, false)};
+}
+
+/// In files of all three forms the shell comes back, and all that can be checked of it holds.
+inline void expect_verified_files(const TemporaryFolder& folder, const ShellFile& file)
+{
+    for (const char* name : {"s.geo", "s.bgeo", "s.bgeo.sc"}) {
+        houdini::write_shell_geometry(folder / name, file);
+        const ShellFile read = houdini::read_shell_geometry(folder / name);
+        expect_same_shell(read, file);
+        const auto findings = verify_shell(read);
+        EXPECT_EQ(findings.size(), 7u);
+        for (const Verification& finding : findings)
+            EXPECT_TRUE(finding.holds) << finding.what << ": " << finding.detail;
     }
 }
 

@@ -5,7 +5,6 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
-#include "vdb_shell/write/verify_file.h"
 
 #include "houdini_compat/geometries.h"
 #include "houdini_compat/round_trip.h"
@@ -24,8 +23,10 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 using test::expect_round_trips;
-using test::expect_same_shell;
+using test::has;
+using test::held;
 using test::scaled_shell_file;
+using test::values_of;
 
 /// With pinned corners, of which triangle 0 has all, and zeros of both signs.
 ShellFile pinned_shell()
@@ -112,12 +113,6 @@ std::size_t members(const std::vector<Group>& groups, const char* name)
                  : SIZE_MAX;
 }
 
-template <typename T>
-const std::vector<T>& held(const std::vector<Attribute>& list, const char* name)
-{
-    return std::get<std::vector<T>>(find(list, name)->values);
-}
-
 TEST(ShellGeometry, AttributesAndGroupsSayWhatThePillarsAre)
 {
     const HoudiniGeometry g = shell_geometry(pinned_shell());
@@ -181,19 +176,6 @@ template <typename Change> std::string refusal_after(const Change& change)
     return "it was read";
 }
 
-template <typename T> std::vector<T>& values_of(std::vector<Attribute>& list, const char* name)
-{
-    const Attribute* found = find(list, name);
-    return std::get<std::vector<T>>(list[static_cast<std::size_t>(found - list.data())].values);
-}
-
-/// A refusal that names the file and has those words.
-void has(const std::string& message, const std::string& words)
-{
-    EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
-    EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
-}
-
 TEST(ShellGeometry, SaysWhichCountContradicts)
 {
     has(refusal_after([](auto& g) { g.detail_attributes.clear(); }), "holds no shell");
@@ -251,22 +233,7 @@ TEST(ShellGeometry, CheckCertifiesWhatWasReadBack)
     ShellOptions options;
     options.level_set.resolution = 16;
     options.coverage.samples = 0;
-    const ShellResult built = build_shell(test::icosphere(1.0, 2), options);
-    ShellFile file{nullptr,
-                   nullptr,
-                   built.stack,
-                   built.tets,
-                   options_json(options),
-                   report_json(built.report, false)};
-    for (const char* name : {"s.geo", "s.bgeo", "s.bgeo.sc"}) {
-        write_shell_geometry(folder / name, file);
-        const ShellFile read = read_shell_geometry(folder / name);
-        expect_same_shell(read, file);
-        const auto findings = verify_shell(read);
-        EXPECT_EQ(findings.size(), 7u);
-        for (const Verification& finding : findings)
-            EXPECT_TRUE(finding.holds) << finding.what << ": " << finding.detail;
-    }
+    test::expect_verified_files(folder, test::file_of_built(options, test::icosphere(1.0, 2)));
 }
 
 TEST(ShellGeometry, RoundTripsOnEveryCleanMesh)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/obstacles/core_feet.h"
 
+#include "core/grid_instances.h"
 #include "mesh/nearest_on_triangle.h"
 #include "support/cores.h"
 #include "support/files.h"
@@ -9,7 +10,6 @@
 #include "vdb_shell/write/vdb_file.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <limits>

@@ -2,6 +2,7 @@
 #include "vdb_shell/pipeline.h"
 
 #include "core/exact.h"
+#include "core/grid_instances.h"
 #include "support/files.h"
 #include "support/grids.h"
 #include "support/shapes.h"
@@ -11,7 +12,6 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <string>

@@ -2,12 +2,12 @@
 #include "vdb_shell/pipeline.h"
 
 #include "core/exact.h"
+#include "core/grid_instances.h"
 #include "support/files.h"
 #include "support/shapes.h"
 #include "vdb_shell/io/read_mesh.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 

@@ -4,6 +4,7 @@
 #include "certify/points_in_planes.h"
 #include "core/counter_random.h"
 #include "core/fan.h"
+#include "core/grid_instances.h"
 #include "field/eight_distances.h"
 #include "growth/barrier.h"
 #include "growth/prism_lanes.h"
@@ -14,7 +15,6 @@
 #include "volume/depth_lines.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
+#include "resample/sound.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +17,6 @@ namespace vdb_shell::test
 {
 namespace
 {
-
-void expect_sound(const TriangleMesh& mesh)
-{
-    const MeshCheck check = check_mesh(mesh);
-    EXPECT_TRUE(check.closed() && check.manifold() && check.embedded());
-    EXPECT_EQ(check.inconsistent_edges.count + check.degenerate_triangles.count, 0U);
-    EXPECT_GT(check.volume, 0);
-}
 
 TEST(Decimate, ReachesTheNumberAndMeasuresBothWays)
 {

@@ -4,13 +4,13 @@
 #include "shapes/simple_shapes.h"
 #include "support/files.h"
 
+#include "core/grid_instances.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/obstacles/cores.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "vdb_shell/shell/sides.h"
 
 #include "core/exact.h"
+#include "core/grid_instances.h"
 #include "support/broken_shells.h"
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
@@ -13,7 +14,6 @@
 #include "vdb_shell/shell/tessellate.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>

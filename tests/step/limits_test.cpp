@@ -2,12 +2,12 @@
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/step/limits.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/step/line_step.h"
 
+#include "core/grid_instances.h"
 #include "field/field_sampler.h"
 #include "step/march.h"
 #include "support/shapes.h"
@@ -9,7 +10,6 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cmath>

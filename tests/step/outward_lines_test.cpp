@@ -2,13 +2,13 @@
 // Lines outward: those of the reversed surface in the negated level set.
 #include "vdb_shell/step/line_step.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/shell/sides.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 

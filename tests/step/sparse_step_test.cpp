@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/grid_instances.h"
 #include "field/deep_field.h"
 #include "mesh/nearest_on_triangle.h"
 #include "step/march.h"
@@ -11,7 +12,6 @@
 #include "vdb_shell/step/line_step.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ const std::vector<StopTest> kTests{StopTest::normal, StopTest::start_gradient, S
                                    StopTest::relative_normal, StopTest::own_sheet};
 
 /// A mesh, its narrow band and its directions.
-struct Stage {
+struct SparseStage {
     TriangleMesh mesh;
     openvdb::FloatGrid::Ptr band;
     Directions directions;
@@ -47,11 +47,11 @@ struct Stage {
     }
 };
 
-Stage stage_of(const TriangleMesh& mesh, int resolution)
+SparseStage sparse_stage_of(const TriangleMesh& mesh, int resolution)
 {
     LevelSetOptions options;
     options.resolution = resolution;
-    Stage stage{mesh, mesh_to_narrow_band(mesh, options), {}, 0};
+    SparseStage stage{mesh, mesh_to_narrow_band(mesh, options), {}, 0};
     stage.directions = compute_directions(mesh, *stage.band, {});
     stage.voxel = stage.band->voxelSize()[0];
     return stage;
@@ -59,7 +59,7 @@ Stage stage_of(const TriangleMesh& mesh, int resolution)
 
 TEST(SparseStep, StepsFromTheVerticesAskedForAlone)
 {
-    const Stage stage = stage_of(test::torus(2.0, 0.8, 24, 12), 96);
+    const SparseStage stage = sparse_stage_of(test::torus(2.0, 0.8, 24, 12), 96);
     const std::vector<std::uint32_t> only{3, 4, 100, 287};
     for (const bool sparse : {true, false}) {
         LevelSetOptions deep;
@@ -98,7 +98,7 @@ Differences differences(const std::vector<double>& a, const std::vector<double>&
     return {all[all.size() / 2], all.back()};
 }
 
-LineLengths dense_lengths(const Stage& stage, int resolution, StopTest test)
+LineLengths dense_lengths(const SparseStage& stage, int resolution, StopTest test)
 {
     LevelSetOptions dense;
     dense.resolution = resolution;
@@ -111,14 +111,14 @@ LineLengths dense_lengths(const Stage& stage, int resolution, StopTest test)
 TEST(SparseStep, LinesEndWhereTheMedialAxisIs)
 {
     const double r = 0.4;
-    const Stage sphere = stage_of(test::icosphere(r, 3), 256);
+    const SparseStage sphere = sparse_stage_of(test::icosphere(r, 3), 256);
     for (const double length : sphere.step(StopTest::normal).length)
         EXPECT_NEAR(length, r, 4 * sphere.voxel);
-    const Stage torus = stage_of(test::torus(1, r, 96, 64), 256);
+    const SparseStage torus = sparse_stage_of(test::torus(1, r, 96, 64), 256);
     for (const double length : torus.step(StopTest::normal).length)
         EXPECT_NEAR(length, r, 4 * torus.voxel);
 
-    const Stage box = stage_of(test::gridded_box(Vec3d(0), Vec3d(1, 1, 0.5), 8), 256);
+    const SparseStage box = sparse_stage_of(test::gridded_box(Vec3d(0), Vec3d(1, 1, 0.5), 8), 256);
     const LineLengths lengths = box.step(StopTest::normal);
     int inner = 0;
     for (std::size_t v = 0; v < box.mesh.points.size(); ++v) {
@@ -141,7 +141,7 @@ TEST(SparseStep, LinesEndWhereTheMedialAxisIs)
 TEST(SparseStep, LengthsAreThoseOfTheDenseField)
 {
     for (const TriangleMesh& mesh : {test::icosphere(0.4, 3), test::torus(1, 0.4, 48, 32)}) {
-        const Stage stage = stage_of(mesh, 96);
+        const SparseStage stage = sparse_stage_of(mesh, 96);
         for (const StopTest test :
              {StopTest::normal, StopTest::start_gradient, StopTest::distance}) {
             const Differences found = differences(
@@ -153,7 +153,7 @@ TEST(SparseStep, LengthsAreThoseOfTheDenseField)
 }
 
 /// Steps through the same voxels one by one.
-LineLengths look_at_every_step(const Stage& stage, StopTest test)
+LineLengths look_at_every_step(const SparseStage& stage, StopTest test)
 {
     MarchRules rules;
     rules.test = test;
@@ -186,7 +186,7 @@ TEST(SparseStep, SkippingAheadChangesNothing)
          {test::icosphere(0.4, 3), test::torus(1, 0.4, 30, 12),
           test::gridded_box(Vec3d(0), Vec3d(1, 1, 0.5), 6),
           test::turned(test::extruded(notched, {0, 0.3, 1}), Vec3d(1, 2, 3).unit(), 0.7)}) {
-        const Stage stage = stage_of(mesh, 80);
+        const SparseStage stage = sparse_stage_of(mesh, 80);
         for (const StopTest test : kTests) {
             const LineLengths all = look_at_every_step(stage, test), skipped = stage.step(test);
             EXPECT_EQ(skipped.length, all.length) << int(test);
@@ -212,7 +212,7 @@ TEST(SparseStep, DeepVoxelsAreTheDistanceWhateverWasAskedBefore)
     for (const TriangleMesh& mesh : {test::icosphere(0.4, 4), test::torus(1, 0.4, 90, 31),
                                      test::turned(test::gridded_box(Vec3d(0), Vec3d(1, 1, 0.5), 9),
                                                   Vec3d(1, 2, 3).unit(), 0.7)}) {
-        const Stage stage = stage_of(mesh, 64);
+        const SparseStage stage = sparse_stage_of(mesh, 64);
         const DeepField deep(stage.mesh, *stage.band);
         std::vector<openvdb::Coord> voxels;
         for (openvdb::Coord at(-40); at[0] < 40; at[0] += 3)
@@ -235,7 +235,7 @@ TEST(SparseStep, DeepVoxelsAreTheDistanceWhateverWasAskedBefore)
 
 TEST(SparseStep, KeepsToTheThickness)
 {
-    const Stage stage = stage_of(test::icosphere(0.4, 3), 128);
+    const SparseStage stage = sparse_stage_of(test::icosphere(0.4, 3), 128);
     LineStepOptions options;
     options.thickness = 0.2341;
     auto grid = openvdb::FloatGrid::create(0.123F);
@@ -247,7 +247,7 @@ TEST(SparseStep, KeepsToTheThickness)
 
 TEST(SparseStep, SameBitsForAnyNumberOfThreads)
 {
-    const Stage stage = stage_of(test::torus(1, 0.4, 60, 30), 128);
+    const SparseStage stage = sparse_stage_of(test::torus(1, 0.4, 60, 30), 128);
     for (const StopTest test : kTests) {
         const LineLengths all = stage.step(test);
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -263,7 +263,7 @@ TEST(SparseStep, StopsAtTheWallsOfACavity)
     const double outer = 1, hole = 0.4;
     const TriangleMesh mesh =
         test::joined(test::icosphere(outer, 3), test::reversed(test::icosphere(hole, 3)));
-    const Stage stage = stage_of(mesh, 192);
+    const SparseStage stage = sparse_stage_of(mesh, 192);
     for (const double length : stage.step(StopTest::normal).length)
         EXPECT_NEAR(length, (outer - hole) / 2, 4 * stage.voxel);
 }

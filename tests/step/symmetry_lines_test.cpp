@@ -4,6 +4,7 @@
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/step/line_step.h"
 
+#include "core/grid_instances.h"
 #include "support/certificates.h"
 #include "support/shapes.h"
 #include "vdb_shell/field/level_set.h"
@@ -11,7 +12,6 @@
 
 #include <gmock/gmock-matchers.h>
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 

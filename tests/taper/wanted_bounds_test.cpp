@@ -20,7 +20,7 @@ using openvdb::Vec3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-ShellOptions tapered()
+ShellOptions tapered_with_samples()
 {
     ShellOptions options;
     options.level_set.resolution = 48;
@@ -44,7 +44,7 @@ TEST(WantedBounds, AConedBoxHasTheShapesThatItsGeometrySays)
 {
     // Twelve tets from the middle of the box, each on half a face: dihedral angles of 45 degrees at
     // the box's edges, and of 60 degrees at the edges to the middle, next to which the point is.
-    const ShellResult box = build_shell(test::box(Vec3d(-1), Vec3d(1)), tapered());
+    const ShellResult box = build_shell(test::box(Vec3d(-1), Vec3d(1)), tapered_with_samples());
     ASSERT_EQ(box.tets.tets.size(), 12U);
     WantedBounds wanted;
     wanted.dihedral = M_PI / 4 - 2e-3;
@@ -70,7 +70,8 @@ TEST(WantedBounds, AConedBoxHasTheShapesThatItsGeometrySays)
 
 TEST(WantedBounds, TrianglesThatAreTooLongAreNamed)
 {
-    const ShellResult rod = build_shell(test::box(Vec3d(0), Vec3d(21, 1, 1)), tapered());
+    const ShellResult rod =
+        build_shell(test::box(Vec3d(0), Vec3d(21, 1, 1)), tapered_with_samples());
     WantedBounds wanted;
     wanted.edge_ratio = 10;
     wanted.amips = 3.0001;
@@ -84,7 +85,7 @@ TEST(WantedBounds, TrianglesThatAreTooLongAreNamed)
 
 TEST(WantedBounds, ThicknessIsTheCauseWhereItHoldsThePillars)
 {
-    ShellOptions options = tapered();
+    ShellOptions options = tapered_with_samples();
     options.taper.wanted = false;
     options.line_step.thickness = 0.02;
     options.wanted.dihedral = 0.3;
@@ -101,7 +102,7 @@ TEST(WantedBounds, ThicknessIsTheCauseWhereItHoldsThePillars)
 TEST(WantedBounds, TaperingRunsTowardsABudget)
 {
     const TriangleMesh mesh = test::torus(2, 0.7, 32, 16);
-    ShellOptions options = tapered();
+    ShellOptions options = tapered_with_samples();
     options.taper.tet_cost = 0;
     const std::size_t plain = build_shell(mesh, options).tets.tets.size();
     const std::size_t budget = (plain + mesh.triangles.size()) / 2;
@@ -120,11 +121,11 @@ TEST(WantedBounds, TaperingRunsTowardsABudget)
 TEST(WantedBounds, WhatNoShellHasIsRefused)
 {
     const TriangleMesh sphere = test::icosphere(1, 2);
-    ShellOptions options = tapered();
+    ShellOptions options = tapered_with_samples();
     options.wanted.tets = sphere.triangles.size() - 1;
     EXPECT_THROW(build_shell(sphere, options), InvalidOption);
 
-    options = tapered();
+    options = tapered_with_samples();
     options.wanted.dihedral = 71 * M_PI / 180; // a regular tet has 70.53 degrees
     EXPECT_THROW(require_sensible(options), InvalidOption);
     options = {};

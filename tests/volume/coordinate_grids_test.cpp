@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/coordinate_grids.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
 #include "volume/ramp.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <map>
@@ -24,19 +24,19 @@ using openvdb::Vec3SGrid;
 
 constexpr double kVoxel = 0.04, kInner = 0.5;
 
-struct Ball {
+struct CoordinateBall {
     ShellStack stack;
     TetMesh tets;
     ShellMap map;
 
-    Ball() : Ball(test::hand_made_shell(test::icosphere(1.0, 3), kInner)) {}
-    explicit Ball(const test::HandMade& made)
+    CoordinateBall() : CoordinateBall(test::hand_made_shell(test::icosphere(1.0, 3), kInner)) {}
+    explicit CoordinateBall(const test::HandMade& made)
         : stack(one_layer(made.shell, made.split)), tets(made.tets), map(stack, tets)
     {
     }
 };
 
-std::map<std::string, GridBasePtr> grids_of(const Ball& ball, const std::string& volumes,
+std::map<std::string, GridBasePtr> grids_of(const CoordinateBall& ball, const std::string& volumes,
                                             const std::vector<CornerTexture>* texture = nullptr)
 {
     CoordinateOptions options;
@@ -59,7 +59,7 @@ template <typename Grid> const Grid& as(const GridBasePtr& grid)
 
 TEST(CoordinateGrids, DepthThicknessAndPlaceOfABall)
 {
-    const Ball ball;
+    const CoordinateBall ball;
     auto grids = grids_of(ball, "rest,depth,thickness,density,layer");
     EXPECT_EQ(grids.size(), 6u); // layer_0 too
     const auto& depth = as<FloatGrid>(grids["depth"]);
@@ -84,7 +84,7 @@ TEST(CoordinateGrids, DepthThicknessAndPlaceOfABall)
 
 TEST(CoordinateGrids, PrismAndNearestTriangleGiveBackThePoint)
 {
-    const Ball ball;
+    const CoordinateBall ball;
     auto grids = grids_of(ball, "prism,nearest,depth");
     const auto& prism = as<Int32Grid>(grids["prism"]);
     auto weights = as<Vec3SGrid>(grids["prism_weights"]).getConstAccessor();
@@ -118,7 +118,7 @@ TEST(CoordinateGrids, PrismAndNearestTriangleGiveBackThePoint)
 
 TEST(CoordinateGrids, TextureCoordinatesAreInterpolatedInTheirTriangle)
 {
-    const Ball ball;
+    const CoordinateBall ball;
     std::vector<CornerTexture> texture(ball.stack.triangles().size());
     for (std::size_t t = 0; t < texture.size(); ++t)
         texture[t] = {openvdb::Vec2d(double(t), 0), openvdb::Vec2d(double(t) + 1, 0),
@@ -139,7 +139,7 @@ TEST(CoordinateGrids, TextureCoordinatesAreInterpolatedInTheirTriangle)
 
 TEST(CoordinateGrids, RefusesListsAndRampsThatAreNone)
 {
-    const Ball ball;
+    const CoordinateBall ball;
     EXPECT_THROW(grids_of(ball, "depth,nonsense"), InvalidOption);
     EXPECT_THROW(grids_of(ball, "depth,depth"), InvalidOption);
     EXPECT_THROW(grids_of(ball, ""), InvalidOption);

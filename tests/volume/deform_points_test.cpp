@@ -23,7 +23,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3s;
 using openvdb::points::PointDataGrid;
 
-constexpr double kVoxel = 0.1;
+constexpr double kPointsVoxel = 0.1;
 
 using test::as_it_is;
 using test::Ball;
@@ -46,7 +46,7 @@ std::vector<Vec3s> places()
 /// Points that know where they were, as "start".
 PointDataGrid::Ptr points_at(const std::vector<Vec3s>& positions)
 {
-    const PointDataGrid::Ptr grid = test::point_grid(positions, kVoxel);
+    const PointDataGrid::Ptr grid = test::point_grid(positions, kPointsVoxel);
     grid->setName("particles");
     test::append_attribute(grid->tree(), "start", Vec3s(0.0f));
     for (auto leaf = grid->tree().beginLeaf(); leaf; ++leaf) {
@@ -116,7 +116,7 @@ TEST(DeformPoints, StayInTheSamePose)
     const auto made = carried(*points_at(places()), rest, rest, figures);
     const std::size_t count =
         for_each_point(*made, [](const Vec3d& start, const Vec3d& now, const auto&, auto) {
-            EXPECT_LT((now - start).length(), 1e-6 * kVoxel);
+            EXPECT_LT((now - start).length(), 1e-6 * kPointsVoxel);
         });
     EXPECT_EQ(count, 500U);
 }
@@ -209,7 +209,7 @@ TEST(DeformPoints, RefuseWhatTheyCannotTake)
     const ShellMap rest = ball(as_it_is).map();
     DeformFigures figures;
     EXPECT_THROW(carried(*openvdb::FloatGrid::create(), rest, rest, figures), InvalidOption);
-    const PointDataGrid::Ptr none = test::point_grid({}, kVoxel);
+    const PointDataGrid::Ptr none = test::point_grid({}, kPointsVoxel);
     EXPECT_THROW(carried(*none, rest, rest, figures), InvalidOption);
     const PointDataGrid::Ptr nameless = points_at(places());
     test::rename_attribute(nameless->tree(), "P", "Q");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/deform_volume.h"
 
+#include "core/grid_instances.h"
 #include "vdb_shell/core/error.h"
 #include "volume/ball.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
@@ -24,7 +24,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3s;
 using openvdb::Vec3SGrid;
 
-constexpr double kVoxel = 0.025;
+constexpr double kDeformVoxel = 0.025;
 
 using test::as_it_is;
 
@@ -39,12 +39,12 @@ template <typename Grid, typename Value>
 typename Grid::Ptr filled(const Vec3d& low, const Vec3d& high, const Value& value)
 {
     auto grid = Grid::create();
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(kDeformVoxel));
     grid->setName("density");
     auto write = grid->getAccessor();
     for (const Coord& at :
-         openvdb::CoordBBox(Coord::ceil(low / kVoxel), Coord::floor(high / kVoxel)))
-        write.setValueOn(at, value(kVoxel * at.asVec3d()));
+         openvdb::CoordBBox(Coord::ceil(low / kDeformVoxel), Coord::floor(high / kDeformVoxel)))
+        write.setValueOn(at, value(kDeformVoxel * at.asVec3d()));
     return grid;
 }
 
@@ -82,7 +82,7 @@ TEST(DeformVolume, TheSamePoseGivesTheSameVoxels)
 TEST(DeformVolume, MovesWithTheShellByWholeVoxels)
 {
     const ShellMap rest = map_of(as_it_is);
-    const ShellMap posed = map_of([](const Vec3d& p) { return p + Vec3d(8 * kVoxel, 0, 0); });
+    const ShellMap posed = map_of([](const Vec3d& p) { return p + Vec3d(8 * kDeformVoxel, 0, 0); });
     const auto source = filled<FloatGrid>(kLow, kHigh, [](const Vec3d& p) { return float(p[0]); });
     DeformFigures figures;
     const auto moved = deformed(*source, rest, posed, figures);
@@ -104,12 +104,13 @@ TEST(DeformVolume, KeepsTheMassOfFog)
     EXPECT_NEAR(figures.mass_after / figures.mass_before, 1, 0.01);
     // Well inside, density is that of the volume ratio.
     const Vec3d inside(0.8 * 0.7 * 0.45, 0.6 * 0.7 * 0.45, 0);
-    EXPECT_NEAR(made->tree().getValue(Coord::round(inside / kVoxel)), 2 / (0.7 * 0.8 * 1.5), 1e-4);
+    EXPECT_NEAR(made->tree().getValue(Coord::round(inside / kDeformVoxel)), 2 / (0.7 * 0.8 * 1.5),
+                1e-4);
     DeformOptions keep;
     keep.mass = MassRule::none;
     EXPECT_NEAR(deformed(*source, rest, posed, figures, keep)
                     ->tree()
-                    .getValue(Coord::round(inside / kVoxel)),
+                    .getValue(Coord::round(inside / kDeformVoxel)),
                 2, 1e-5);
 }
 
@@ -131,7 +132,7 @@ TEST(DeformVolume, ACheckerboardMadeSmallIsGrey)
     const ShellMap rest = map_of(as_it_is);
     const ShellMap posed = map_of([](const Vec3d& p) { return 0.1 * p; });
     const auto board = filled<FloatGrid>(kLow, kHigh, [](const Vec3d& p) {
-        const Coord at = Coord::round(p / kVoxel);
+        const Coord at = Coord::round(p / kDeformVoxel);
         return float((at[0] + at[1] + at[2]) & 1);
     });
     board->setName("pattern");
@@ -140,11 +141,11 @@ TEST(DeformVolume, ACheckerboardMadeSmallIsGrey)
     EXPECT_GT(made->activeVoxelCount(), 5u);
     for (auto voxel = made->cbeginValueOn(); voxel; ++voxel) {
         // Where all that a voxel covers lies in the board.
-        const Vec3d centre = 10 * kVoxel * voxel.getCoord().asVec3d();
+        const Vec3d centre = 10 * kDeformVoxel * voxel.getCoord().asVec3d();
         bool within = true;
         for (int k = 0; k < 3; ++k)
-            within =
-                within && centre[k] - 6 * kVoxel > kLow[k] && centre[k] + 6 * kVoxel < kHigh[k];
+            within = within && centre[k] - 6 * kDeformVoxel > kLow[k] &&
+                     centre[k] + 6 * kDeformVoxel < kHigh[k];
         if (within) {
             EXPECT_NEAR(*voxel, 0.5, 0.01);
         }
@@ -156,7 +157,7 @@ TEST(DeformVolume, VectorsGoByTheirType)
     const ShellMap rest = map_of(as_it_is);
     // A quarter turn about z after doubling y.
     const ShellMap posed = map_of([](const Vec3d& p) { return Vec3d(-2 * p[1], p[0], p[2]); });
-    const Coord at = Coord::round(Vec3d(0, 0.45, 0) / kVoxel);
+    const Coord at = Coord::round(Vec3d(0, 0.45, 0) / kDeformVoxel);
     DeformFigures figures;
     const auto grid = filled<Vec3SGrid>(kLow, kHigh, [](const Vec3d&) { return Vec3s(1, 1, 0); });
     const auto there = [&](openvdb::VecType type, VectorRule rule) {
@@ -182,20 +183,20 @@ TEST(DeformVolume, LevelSetsAreDistancesAgain)
     const ShellMap rest = map_of(as_it_is);
     const ShellMap posed = map_of([](const Vec3d& p) { return Vec3d(1.5 * p[0], p[1], p[2]); });
     const auto ball = openvdb::tools::createLevelSetSphere<FloatGrid>(
-        0.2f, openvdb::Vec3f(0.5f, 0, 0), float(kVoxel), 3.0f);
+        0.2f, openvdb::Vec3f(0.5f, 0, 0), float(kDeformVoxel), 3.0f);
     DeformFigures figures;
     const auto made = deformed(*ball, rest, posed, figures);
     EXPECT_EQ(made->getGridClass(), openvdb::GRID_LEVEL_SET);
-    EXPECT_NEAR(made->background(), 3 * kVoxel, 1e-6);
+    EXPECT_NEAR(made->background(), 3 * kDeformVoxel, 1e-6);
     // An ellipsoid: zero where its axes end, negative in the middle, slope 1 beside.
     const auto value = [&](const Vec3d& p) {
-        return openvdb::tools::BoxSampler::sample(made->tree(), Vec3d(p / kVoxel));
+        return openvdb::tools::BoxSampler::sample(made->tree(), Vec3d(p / kDeformVoxel));
     };
     EXPECT_LT(value(Vec3d(0.75, 0, 0)), 0);
     for (const Vec3d& pole : {Vec3d(0.45, 0, 0), Vec3d(1.05, 0, 0), Vec3d(0.75, 0.2, 0)})
-        EXPECT_NEAR(value(pole), 0, 0.25 * kVoxel);
-    EXPECT_NEAR(value(Vec3d(1.05 + kVoxel, 0, 0)) - value(Vec3d(1.05 - kVoxel, 0, 0)), 2 * kVoxel,
-                0.2 * kVoxel);
+        EXPECT_NEAR(value(pole), 0, 0.25 * kDeformVoxel);
+    EXPECT_NEAR(value(Vec3d(1.05 + kDeformVoxel, 0, 0)) - value(Vec3d(1.05 - kDeformVoxel, 0, 0)),
+                2 * kDeformVoxel, 0.2 * kDeformVoxel);
 }
 
 TEST(DeformVolume, WholeNumbersAreNotMixed)

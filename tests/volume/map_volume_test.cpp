@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/map_volume.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
@@ -8,7 +9,6 @@
 #include "vdb_shell/volume/shell_sampler.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/VolumeToMesh.h>
 #include <tbb/global_control.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/motion_volume.h"
 
+#include "core/grid_instances.h"
 #include "volume/ball.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 namespace vdb_shell
 {
@@ -13,7 +13,7 @@ namespace
 
 using openvdb::Vec3d;
 
-constexpr double kVoxel = 0.1;
+constexpr double kMotionVoxel = 0.1;
 
 TEST(MotionVolume, HasTheShellsVelocityAtEachVoxel)
 {
@@ -21,7 +21,7 @@ TEST(MotionVolume, HasTheShellsVelocityAtEachVoxel)
     const test::Ball posed = test::ball(test::turned_long);
     const ShellMap velocity = test::velocity_of_turning(posed);
     const auto fog = openvdb::FloatGrid::create();
-    fog->setTransform(openvdb::math::Transform::createLinearTransform(kVoxel));
+    fog->setTransform(openvdb::math::Transform::createLinearTransform(kMotionVoxel));
     fog->fill(openvdb::CoordBBox(openvdb::Coord(-12, -3, 3), openvdb::Coord(-6, 3, 5)), 1.0f);
     fog->tree().voxelizeActiveTiles();
     const auto made = openvdb::gridPtrCast<openvdb::Vec3SGrid>(
@@ -32,7 +32,7 @@ TEST(MotionVolume, HasTheShellsVelocityAtEachVoxel)
     EXPECT_EQ(made->activeVoxelCount(), fog->activeVoxelCount());
     for (auto voxel = made->cbeginValueOn(); voxel; ++voxel) {
         ASSERT_TRUE(fog->tree().isValueOn(voxel.getCoord()));
-        const Vec3d at = kVoxel * voxel.getCoord().asVec3d();
+        const Vec3d at = kMotionVoxel * voxel.getCoord().asVec3d();
         EXPECT_LT((Vec3d(*voxel) - test::turning(at)).length(), 1e-5);
     }
 }

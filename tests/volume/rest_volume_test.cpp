@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/rest_volume.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/write/vdb_file.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <vector>
@@ -20,7 +20,7 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-constexpr double kVoxel = 0.05;
+constexpr double kRestVoxel = 0.05;
 
 TetMesh tets_of(const TriangleMesh& mesh)
 {
@@ -29,7 +29,7 @@ TetMesh tets_of(const TriangleMesh& mesh)
 
 openvdb::Vec3SGrid::Ptr grid_of(const TetMesh& posed, const std::vector<Vec3s>& rest)
 {
-    return openvdb::gridPtrCast<openvdb::Vec3SGrid>(rest_volume(posed, rest, kVoxel));
+    return openvdb::gridPtrCast<openvdb::Vec3SGrid>(rest_volume(posed, rest, kRestVoxel));
 }
 
 TEST(RestVolume, AtRestEveryVoxelIsWhereItIs)
@@ -37,7 +37,7 @@ TEST(RestVolume, AtRestEveryVoxelIsWhereItIs)
     const TetMesh tets = tets_of(test::icosphere(1.0, 2));
     const auto grid = grid_of(tets, tets.points);
     EXPECT_EQ(grid->getName(), "rest");
-    EXPECT_EQ(grid->activeVoxelCount(), shell_depth_grid(tets, kVoxel)->activeVoxelCount());
+    EXPECT_EQ(grid->activeVoxelCount(), shell_depth_grid(tets, kRestVoxel)->activeVoxelCount());
     EXPECT_GT(grid->activeVoxelCount(), 10000U);
     for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel)
         ASSERT_LT((Vec3d(*voxel) - grid->indexToWorld(voxel.getCoord())).length(), 1e-6);

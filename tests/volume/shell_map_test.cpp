@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/shell_map.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "volume/tet_index_grid.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <cmath>
 #include <utility>
@@ -19,7 +19,7 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-constexpr double kVoxel = 0.03;
+constexpr double kMapVoxel = 0.03;
 
 /// A sphere's shell whose inner surface is turned about the z axis, so that sides are curved.
 PrismShell turned_shell(double radians, const std::set<std::uint32_t>& pinned = {})
@@ -50,10 +50,10 @@ ShellMap map_of(const ShellStack& stack)
 
 template <typename Visit> void for_each_voxel(const ShellMap& map, const Visit& visit)
 {
-    const auto grid = tet_index_grid(map.tets(), kVoxel, "test", StageProgress(nullptr, "test"));
+    const auto grid = tet_index_grid(map.tets(), kMapVoxel, "test", StageProgress(nullptr, "test"));
     ASSERT_GT(grid->activeVoxelCount(), 10000u);
     for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel)
-        visit(std::uint32_t(*voxel), kVoxel * voxel.getCoord().asVec3d());
+        visit(std::uint32_t(*voxel), kMapVoxel * voxel.getCoord().asVec3d());
 }
 
 TEST(ShellMap, ThereAndBack)
@@ -77,11 +77,12 @@ TEST(ShellMap, DoesNotDependOnDiagonals)
 {
     const ShellMap one = map_of(stack_of(turned_shell(0.1), SplitRule::vertex_index));
     const ShellMap other = map_of(stack_of(turned_shell(0.1), SplitRule::length_ascending));
-    const auto grid = tet_index_grid(other.tets(), kVoxel, "test", StageProgress(nullptr, "test"));
+    const auto grid =
+        tet_index_grid(other.tets(), kMapVoxel, "test", StageProgress(nullptr, "test"));
     auto tet_at = grid->getConstAccessor();
     std::size_t other_tets = 0;
     for_each_voxel(one, [&](std::uint32_t tet, const Vec3d& point) {
-        const int second = tet_at.getValue(openvdb::Coord::round(point / kVoxel));
+        const int second = tet_at.getValue(openvdb::Coord::round(point / kMapVoxel));
         if (second < 0)
             return;
         const SurfacePlace a = one.on_surface(one.place_in(tet, point));

@@ -17,11 +17,11 @@ namespace
 
 using openvdb::Vec3d;
 
-constexpr double kInner = 0.5;
+constexpr double kInnerScale = 0.5;
 
 ShellMap ball(double stretch = 1)
 {
-    test::HandMade made = test::hand_made_shell(test::icosphere(1.0, 2), kInner, {3});
+    test::HandMade made = test::hand_made_shell(test::icosphere(1.0, 2), kInnerScale, {3});
     for (auto* points : {&made.shell.outer, &made.shell.inner, &made.tets.points})
         for (openvdb::Vec3s& p : *points)
             p[0] = float(p[0] * stretch);
@@ -53,9 +53,9 @@ TEST(ShellSampler, FindsWhatLiesInTheShellAndNothingElse)
         // The sphere's facets lie up to four hundredths below it, half as much on the inner one;
         // around the pinned vertex the shell ends earlier.
         const double r = point.length();
-        if (r > 1 || r < kInner * 0.95) {
+        if (r > 1 || r < kInnerScale * 0.95) {
             EXPECT_FALSE(place.found()) << point;
-        } else if (r < 0.95 && r > kInner &&
+        } else if (r < 0.95 && r > kInnerScale &&
                    (point / r - Vec3d(map.tets().points[3])).length() > 0.7) {
             EXPECT_TRUE(place.found()) << point;
         }

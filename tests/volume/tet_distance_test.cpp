@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/tet_distance.h"
 
+#include "core/grid_instances.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/triangle_corners.h"
 #include "support/shapes.h"
@@ -14,7 +15,6 @@
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ namespace
 using openvdb::Int32Grid;
 using openvdb::Vec3d;
 
-constexpr double kVoxel = 0.07;
+constexpr double kDistanceVoxel = 0.07;
 
 ShellStack stack_of(const TriangleMesh& mesh, double scale = 0.4)
 {
@@ -69,7 +69,7 @@ TriangleMesh skin_of(const ShellStack& stack)
     return {stack.surface(stack.skin), stack.triangles()};
 }
 
-void expect_exact(const ShellStack& stack, const TetMesh& tets, double voxel = kVoxel)
+void expect_exact(const ShellStack& stack, const TetMesh& tets, double voxel = kDistanceVoxel)
 {
     const TetDistances found = tet_distances(stack, tets, {voxel});
     const Int32Grid::ConstAccessor triangle = triangles_of(found).getConstAccessor();
@@ -120,9 +120,11 @@ TEST(TetDistance, BoundsAreNeverBelowTheDistanceAndNearPrismsNeverAboveOwnPrism)
     const ShellStack stack = grown_stack();
     const TetMesh tets = make_tets(stack);
     const TriangleMesh skin = skin_of(stack);
-    const TetDistances exact = tet_distances(stack, tets, {kVoxel});
-    const TetDistances own = tet_distances(stack, tets, {kVoxel, TetDistanceMethod::own_prism});
-    const TetDistances near = tet_distances(stack, tets, {kVoxel, TetDistanceMethod::near_prisms});
+    const TetDistances exact = tet_distances(stack, tets, {kDistanceVoxel});
+    const TetDistances own =
+        tet_distances(stack, tets, {kDistanceVoxel, TetDistanceMethod::own_prism});
+    const TetDistances near =
+        tet_distances(stack, tets, {kDistanceVoxel, TetDistanceMethod::near_prisms});
     const auto at_own = own.distance->getConstAccessor(),
                at_near = near.distance->getConstAccessor();
     const auto triangle = triangles_of(near).getConstAccessor();
@@ -132,7 +134,7 @@ TEST(TetDistance, BoundsAreNeverBelowTheDistanceAndNearPrismsNeverAboveOwnPrism)
         ASSERT_LE(at_near.getValue(at), *value) << at; // inside: more is less
         ASSERT_LE(at_own.getValue(at), at_near.getValue(at)) << at;
         ASSERT_EQ(-at_near.getValue(at), float(to_triangle(skin, std::size_t(triangle.getValue(at)),
-                                                           kVoxel * at.asVec3d())));
+                                                           kDistanceVoxel * at.asVec3d())));
         too_far += at_own.getValue(at) < *value;
     }
     // Otherwise there would be nothing to correct.
@@ -150,9 +152,9 @@ TEST(TetDistance, IsNegativeBelowTheSkinAndPositiveAboveIt)
     for (const ShellStack& stack : {inside, outside, both}) {
         const TetMesh tets = make_tets(stack);
         expect_exact(stack, tets);
-        const TetDistances found = tet_distances(stack, tets, {kVoxel});
+        const TetDistances found = tet_distances(stack, tets, {kDistanceVoxel});
         for (auto value = found.distance->cbeginValueOn(); value; ++value) {
-            const double r = kVoxel * value.getCoord().asVec3d().length();
+            const double r = kDistanceVoxel * value.getCoord().asVec3d().length();
             // The surface lies between the sphere around its vertices and that within its faces.
             if (r > 1.0) {
                 EXPECT_GT(*value, 0) << r;
@@ -184,7 +186,7 @@ TEST(TetDistance, IsExactWherePrismsHaveOneTetOrTwo)
 TEST(TetDistance, LeavesTheVoidAlone)
 {
     const ShellStack stack = stack_of(test::icosphere(1.0, 3), 0.5);
-    const TetDistances found = tet_distances(stack, make_tets(stack), {kVoxel});
+    const TetDistances found = tet_distances(stack, make_tets(stack), {kDistanceVoxel});
     EXPECT_FALSE(found.distance->tree().isValueOn({0, 0, 0}));
     EXPECT_EQ(found.distance->tree().getValue({0, 0, 0}), 0);
     EXPECT_EQ(triangles_of(found).tree().getValue({0, 0, 0}), -1);
@@ -208,9 +210,10 @@ TEST(TetDistance, IsExactInTetsOfACoreToo)
     const ShellStack stack = stack_of(test::icosphere(1.0, 2), 0.5);
     const TetMesh shell = make_tets(stack), all = joined_tets(shell, fan_of(stack, shell));
     expect_exact(stack, all);
-    const TetDistances found = tet_distances(stack, all, {kVoxel});
+    const TetDistances found = tet_distances(stack, all, {kDistanceVoxel});
     EXPECT_LT(found.distance->tree().getValue({0, 0, 0}), -0.9);
-    const TetDistances bound = tet_distances(stack, all, {kVoxel, TetDistanceMethod::own_prism});
+    const TetDistances bound =
+        tet_distances(stack, all, {kDistanceVoxel, TetDistanceMethod::own_prism});
     const auto exact = found.distance->getConstAccessor();
     for (auto value = bound.distance->cbeginValueOn(); value; ++value)
         ASSERT_LE(*value, exact.getValue(value.getCoord()));
@@ -220,7 +223,7 @@ TEST(TetDistance, TheNextPoseHasTheBitsOfTheSurfaceAlone)
 {
     const ShellStack stack = grown_stack();
     const TetMesh rest = make_tets(stack);
-    const TetDistances before = tet_distances(stack, rest, {kVoxel});
+    const TetDistances before = tet_distances(stack, rest, {kDistanceVoxel});
     const auto pose = [](std::vector<openvdb::Vec3s>& points) {
         for (openvdb::Vec3s& p : points)
             p = openvdb::Vec3s(p[0] + 0.2f * p[1] * p[1], 1.1f * p[1], p[2] - 0.1f * p[0]);
@@ -229,8 +232,9 @@ TEST(TetDistance, TheNextPoseHasTheBitsOfTheSurfaceAlone)
     pose(bent.layers[0].outer);
     pose(bent.layers[0].inner);
     const TetMesh tets = make_tets(bent);
-    const TetDistances alone = tet_distances(bent, tets, {kVoxel});
-    const TetDistances next = next_tet_distances(bent, tets, rest, *before.nearest, {kVoxel});
+    const TetDistances alone = tet_distances(bent, tets, {kDistanceVoxel});
+    const TetDistances next =
+        next_tet_distances(bent, tets, rest, *before.nearest, {kDistanceVoxel});
     EXPECT_TRUE(same_bits(alone, next));
     // As a bound, what was nearest is nearer than the prisms.
     const auto error = [&](const TetDistances& bound) {
@@ -242,7 +246,7 @@ TEST(TetDistance, TheNextPoseHasTheBitsOfTheSurfaceAlone)
         }
         return sum;
     };
-    const TetDistanceOptions own{kVoxel, TetDistanceMethod::own_prism};
+    const TetDistanceOptions own{kDistanceVoxel, TetDistanceMethod::own_prism};
     EXPECT_LT(error(next_tet_distances(bent, tets, rest, *before.nearest, own)),
               error(tet_distances(bent, tets, own)));
 }
@@ -264,14 +268,16 @@ TEST(TetDistance, RefusesWhatDoesNotFit)
     const TetMesh tets = make_tets(stack);
     for (const double voxel : {0.0, -1.0, double(NAN), 1e-12})
         EXPECT_THROW(tet_distances(stack, tets, {voxel}), InvalidOption);
-    const TetDistances found = tet_distances(stack, tets, {kVoxel});
+    const TetDistances found = tet_distances(stack, tets, {kDistanceVoxel});
     TetMesh fewer = tets;
     fewer.tets.pop_back();
-    EXPECT_THROW(next_tet_distances(stack, tets, fewer, *found.nearest, {kVoxel}), InvalidOption);
-    EXPECT_THROW(next_tet_distances(stack, tets, tets, *found.distance, {kVoxel}), InvalidOption);
+    EXPECT_THROW(next_tet_distances(stack, tets, fewer, *found.nearest, {kDistanceVoxel}),
+                 InvalidOption);
+    EXPECT_THROW(next_tet_distances(stack, tets, tets, *found.distance, {kDistanceVoxel}),
+                 InvalidOption);
     const auto wrong = openvdb::Int32Grid::create(-1);
     wrong->tree().setValue({0, 0, 0}, 80);
-    EXPECT_THROW(next_tet_distances(stack, tets, tets, *wrong, {kVoxel}), InvalidOption);
+    EXPECT_THROW(next_tet_distances(stack, tets, tets, *wrong, {kDistanceVoxel}), InvalidOption);
 }
 
 } // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume/tet_index_grid.h"
 
+#include "core/grid_instances.h"
 #include "support/shapes.h"
 #include "vdb_shell/write/vdb_file.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <vector>
 
@@ -17,7 +17,7 @@ namespace
 
 using openvdb::Vec3d;
 
-constexpr double kVoxel = 0.05;
+constexpr double kTetVoxel = 0.05;
 
 TetMesh shell_tets()
 {
@@ -33,11 +33,11 @@ double volume_of(const std::array<Vec3d, 4>& p)
 TEST(TetIndexGrid, EveryVoxelLiesInTheTetThatItNames)
 {
     const TetMesh tets = shell_tets();
-    const auto grid = tet_index_grid(tets, kVoxel, "test", StageProgress(nullptr, "test"));
-    EXPECT_EQ(grid->activeVoxelCount(), shell_depth_grid(tets, kVoxel)->activeVoxelCount());
+    const auto grid = tet_index_grid(tets, kTetVoxel, "test", StageProgress(nullptr, "test"));
+    EXPECT_EQ(grid->activeVoxelCount(), shell_depth_grid(tets, kTetVoxel)->activeVoxelCount());
     for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel) {
         ASSERT_GE(*voxel, 0);
-        const Vec3d centre = kVoxel * voxel.getCoord().asVec3d();
+        const Vec3d centre = kTetVoxel * voxel.getCoord().asVec3d();
         std::array<Vec3d, 4> corner;
         for (int i = 0; i < 4; ++i)
             corner[std::size_t(i)] = Vec3d(tets.points[tets.tets[std::size_t(*voxel)][i]]);
@@ -57,8 +57,8 @@ TEST(TetIndexGrid, LeavesOutWhatIsNotWanted)
     for (std::size_t t = 0; t < wanted.size(); t += 3)
         wanted[t] = 1;
     const StageProgress progress(nullptr, "test");
-    const auto all = tet_index_grid(tets, kVoxel, "test", progress);
-    const auto some = tet_index_grid(tets, kVoxel, "test", progress, wanted);
+    const auto all = tet_index_grid(tets, kTetVoxel, "test", progress);
+    const auto some = tet_index_grid(tets, kTetVoxel, "test", progress, wanted);
     EXPECT_GT(some->activeVoxelCount(), 0u);
     EXPECT_LT(some->activeVoxelCount(), all->activeVoxelCount());
     for (auto voxel = some->cbeginValueOn(); voxel; ++voxel)

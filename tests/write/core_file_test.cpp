@@ -27,7 +27,7 @@ namespace
 using openvdb::Vec3s;
 using test::same_bits;
 
-ShellFile file_of(const ShellStack& stack)
+ShellFile core_file_of(const ShellStack& stack)
 {
 
     const ShellStack solid = test::hollow_ball();
@@ -52,7 +52,7 @@ ShellFile file_of(const ShellStack& stack)
 }
 
 /// With tets in the shell, and with none, so that all its vertices are points of the core.
-std::vector<ShellStack> samples()
+std::vector<ShellStack> core_samples()
 {
     ShellStack tapered = test::hollow_ball();
     tapered.tapered = true;
@@ -63,8 +63,8 @@ TEST(CoreFile, ReadsBackBitForBit)
 {
     const test::TemporaryFolder folder;
     for (const PointPlacement points : {PointPlacement::same_file, PointPlacement::beside})
-        for (const ShellStack& stack : samples()) {
-            const ShellFile written = file_of(stack);
+        for (const ShellStack& stack : core_samples()) {
+            const ShellFile written = core_file_of(stack);
             VdbWriteOptions options;
             options.points = points;
             write_shell_vdb(folder / "shell.vdb", written, options);
@@ -85,7 +85,7 @@ TEST(CoreFile, ReadsBackBitForBit)
 TEST(CoreFile, WithoutACoreNothingIsSaidOfIt)
 {
     const test::TemporaryFolder folder;
-    ShellFile file = file_of(test::hollow_ball());
+    ShellFile file = core_file_of(test::hollow_ball());
     const std::string with = checksum_of(file.stack, file.tets, file.core);
     file.core = {};
     EXPECT_EQ(checksum_of(file.stack, file.tets, file.core), checksum_of(file.stack, file.tets));
@@ -104,8 +104,8 @@ const Verification& entry_of_core(const std::vector<Verification>& all)
 
 TEST(CoreFile, CheckProvesTheSolidAnew)
 {
-    for (const ShellStack& stack : samples()) {
-        ShellFile file = file_of(stack);
+    for (const ShellStack& stack : core_samples()) {
+        ShellFile file = core_file_of(stack);
         const std::vector<Verification> sound = verify_shell(file);
         EXPECT_TRUE(entry_of_core(sound).holds) << entry_of_core(sound).detail;
         file.core.points.back() = Vec3s(0.9f, 0.9f, 0.9f);
@@ -124,7 +124,7 @@ TEST(CoreFile, RefusesWhatDoesNotFitTogether)
     const auto refused = [&](const ShellFile& file) {
         EXPECT_THROW(write_shell_vdb(folder / "shell.vdb", file), InvalidOption);
     };
-    const ShellFile sound = file_of(test::hollow_ball());
+    const ShellFile sound = core_file_of(test::hollow_ball());
     ShellFile file = sound;
     file.core.tets[3][1] = 100000;
     refused(file);
@@ -142,7 +142,7 @@ TEST(CoreFile, RefusesWhatDoesNotFitTogether)
 TEST(CoreFile, TetFormatsTellTheCoreByMinusOne)
 {
     const test::TemporaryFolder folder;
-    const ShellFile file = file_of(test::hollow_ball());
+    const ShellFile file = core_file_of(test::hollow_ball());
     const TetMesh all = joined_tets(file.tets, file.core);
     write_tets(folder / "all.node", all);
     write_tets(folder / "all.mesh", all);

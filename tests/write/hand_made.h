@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/grid_instances.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/write/vdb_file.h"
-
-#include <openvdb/openvdb.h>
 
 #include <set>
 

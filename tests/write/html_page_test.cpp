@@ -113,7 +113,7 @@ Vec3d place(const Block& page, const Block& frame, std::size_t f, std::size_t po
     return p;
 }
 
-ShellFile file_of(const ShellStack& stack)
+ShellFile page_file_of(const ShellStack& stack)
 {
     ShellFile file;
     file.stack = stack;
@@ -125,7 +125,7 @@ ShellFile file_of(const ShellStack& stack)
 ShellFile ball()
 {
     const auto made = test::hand_made_shell(test::icosphere(1.0, 2), 0.6, {3, 11});
-    return file_of(one_layer(made.shell, made.split));
+    return page_file_of(one_layer(made.shell, made.split));
 }
 
 ShellStack three_layers()
@@ -177,13 +177,13 @@ TEST(HtmlPage, HoldsTheShellToSixteenBits)
 TEST(HtmlPage, HoldsLayersSharedPointsAndCores)
 {
     for (const std::size_t skin : {0U, 1U, 3U}) {
-        ShellFile file = file_of(three_layers());
+        ShellFile file = page_file_of(three_layers());
         file.stack.skin = skin;
         expect_shows(page_of({file}), file);
     }
     for (const ShellStack& stack : {test::pinched_rod(), test::layers_to_a_point()})
-        expect_shows(page_of({file_of(stack)}), file_of(stack));
-    ShellFile filled = file_of(test::hollow_ball());
+        expect_shows(page_of({page_file_of(stack)}), page_file_of(stack));
+    ShellFile filled = page_file_of(test::hollow_ball());
     filled.core = test::cone_core(filled.stack, filled.tets, Vec3s(0.01f, 0.02f, 0.03f));
     expect_shows(page_of({filled}), filled);
     EXPECT_EQ(block_of(page_of({filled}), "shell").about["core_tets"], filled.core.tets.size());
@@ -281,7 +281,7 @@ TEST(HtmlPage, FramesAreOfOneShell)
 
     HtmlPage page;
     page.add("a.vdb", ball());
-    EXPECT_THAT(refusal_of(page, "b.vdb", file_of(three_layers())),
+    EXPECT_THAT(refusal_of(page, "b.vdb", page_file_of(three_layers())),
                 testing::AllOf(testing::HasSubstr("b.vdb"), testing::HasSubstr("a.vdb")));
     EXPECT_THROW(HtmlPage().write("p.html"), InvalidOption);
     ShellFile broken = ball();
@@ -292,7 +292,7 @@ TEST(HtmlPage, FramesAreOfOneShell)
 TEST(HtmlPage, OfManyPrismsSomePillarsAreDrawn)
 {
     const auto made = test::hand_made_shell(test::icosphere(1.0, 4), 0.5);
-    const ShellFile file = file_of(one_layer(made.shell, made.split));
+    const ShellFile file = page_file_of(one_layer(made.shell, made.split));
     const std::string text = page_of({file}, 1000);
     const Block page = block_of(text, "page"), shell = block_of(text, "shell"),
                 frame = block_of(text, "frame0");

@@ -37,7 +37,7 @@ ShellStack pinned_layers()
     return stack;
 }
 
-ShellFile file_of(const ShellStack& stack)
+ShellFile layered_file_of(const ShellStack& stack)
 {
     const PrismShell& first = stack.layers[0];
     ShellFile file =
@@ -69,7 +69,7 @@ TEST(LayeredFile, ReadsBackBitForBit)
     stack.layers[0].stop = stack.layers[1].stop = stack.layers[2].stop;
     for (const std::size_t skin : {0U, 1U, 3U}) {
         stack.skin = skin;
-        const ShellFile written = file_of(stack);
+        const ShellFile written = layered_file_of(stack);
         write_shell_vdb(folder / "shell.vdb", written);
         const ShellFile read = read_shell_vdb(folder / "shell.vdb");
         EXPECT_EQ(read.stack.skin, skin);
@@ -98,19 +98,19 @@ TEST(LayeredFile, OneLayerBelowTheSurfaceIsSchemaOne)
     const test::TemporaryFolder folder;
     const test::SplitShell ball = test::scaled_shell(test::icosphere(1, 1), 0.5f);
     ShellStack stack = one_layer(ball.shell, ball.split);
-    write_shell_vdb(folder / "inward.vdb", file_of(stack));
+    write_shell_vdb(folder / "inward.vdb", layered_file_of(stack));
     EXPECT_EQ(read_shell_info(folder / "inward.vdb").schema, 1);
     stack.skin = 1;
-    write_shell_vdb(folder / "outward.vdb", file_of(stack));
+    write_shell_vdb(folder / "outward.vdb", layered_file_of(stack));
     EXPECT_EQ(read_shell_info(folder / "outward.vdb").schema, kLayeredSchema);
 }
 
 TEST(LayeredFile, CheckNamesTheLayerThatFails)
 {
     ShellStack stack = pinned_layers();
-    EXPECT_TRUE(about_certificate(file_of(stack)).holds);
+    EXPECT_TRUE(about_certificate(layered_file_of(stack)).holds);
     std::swap(stack.splits[1].order[40][0], stack.splits[1].order[40][1]);
-    ShellFile file = file_of(pinned_layers()); // claims to be certified
+    ShellFile file = layered_file_of(pinned_layers()); // claims to be certified
     file.stack = stack;
     file.tets = make_tets(stack);
     const Verification entry = about_certificate(file);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "write/point_grid_builder.h"
 
+#include "core/grid_instances.h"
 #include "write/point_grids.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/points/AttributeArray.h>
 #include <openvdb/points/AttributeGroup.h>
 

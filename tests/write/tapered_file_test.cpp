@@ -26,7 +26,7 @@ namespace
 using openvdb::Vec3s;
 using test::same_bits;
 
-ShellFile file_of(const ShellStack& stack)
+ShellFile tapered_file_of(const ShellStack& stack)
 {
     const PrismShell& first = stack.layers[0];
     ShellFile file = test::hand_made_file({first, stack.splits[0], make_tets(stack)}, 0.1);
@@ -54,7 +54,7 @@ TEST(TaperedFile, ReadsBackBitForBit)
 {
     const test::TemporaryFolder folder;
     for (const ShellStack& stack : samples()) {
-        const ShellFile written = file_of(stack);
+        const ShellFile written = tapered_file_of(stack);
         write_shell_vdb(folder / "shell.vdb", written);
         const ShellFile read = read_shell_vdb(folder / "shell.vdb");
         EXPECT_TRUE(read.stack.tapered);
@@ -81,7 +81,7 @@ TEST(TaperedFile, CheckProvesItAnew)
 {
     const test::TemporaryFolder folder;
     for (const ShellStack& stack : samples()) {
-        write_shell_vdb(folder / "shell.vdb", file_of(stack));
+        write_shell_vdb(folder / "shell.vdb", tapered_file_of(stack));
         std::size_t looked_at = 0;
         for (const Verification& entry : verify_shell(read_shell_vdb(folder / "shell.vdb")))
             // The level set is that of another solid.
@@ -92,7 +92,7 @@ TEST(TaperedFile, CheckProvesItAnew)
             }
         EXPECT_GE(looked_at, 5U);
     }
-    ShellFile false_claim = file_of(test::two_sheets());
+    ShellFile false_claim = tapered_file_of(test::two_sheets());
     false_claim.stack = test::tapered(test::plate_shell(0.7f, 0.65f));
     false_claim.tets = make_tets(false_claim.stack);
     for (const Verification& entry : verify_shell(false_claim))
