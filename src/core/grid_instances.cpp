@@ -4,4 +4,5 @@
 
 #include "core/grid_instances.h"
 
-VDB_SHELL_TREE(, openvdb::FloatTree)
+template class openvdb::Grid<openvdb::FloatTree>;
+template class openvdb::tree::Tree<openvdb::FloatTree::RootNodeType>;

@@ -5,4 +5,6 @@
 
 #include "core/grid_instances.h"
 
-VDB_SHELL_NODES(, openvdb::FloatTree)
+template class openvdb::tree::InternalNode<
+    openvdb::FloatTree::RootNodeType::ChildNodeType::ChildNodeType, 5>;
+template class openvdb::tree::InternalNode<openvdb::FloatTree::LeafNodeType, 4>;

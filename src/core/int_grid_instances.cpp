@@ -4,5 +4,8 @@
 
 #include "core/grid_instances.h"
 
-VDB_SHELL_TREE(, openvdb::Int32Tree)
-VDB_SHELL_NODES(, openvdb::Int32Tree)
+template class openvdb::Grid<openvdb::Int32Tree>;
+template class openvdb::tree::Tree<openvdb::Int32Tree::RootNodeType>;
+template class openvdb::tree::InternalNode<
+    openvdb::Int32Tree::RootNodeType::ChildNodeType::ChildNodeType, 5>;
+template class openvdb::tree::InternalNode<openvdb::Int32Tree::LeafNodeType, 4>;

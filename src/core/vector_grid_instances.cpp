@@ -4,5 +4,8 @@
 
 #include "core/grid_instances.h"
 
-VDB_SHELL_TREE(, openvdb::Vec3STree)
-VDB_SHELL_NODES(, openvdb::Vec3STree)
+template class openvdb::Grid<openvdb::Vec3STree>;
+template class openvdb::tree::Tree<openvdb::Vec3STree::RootNodeType>;
+template class openvdb::tree::InternalNode<
+    openvdb::Vec3STree::RootNodeType::ChildNodeType::ChildNodeType, 5>;
+template class openvdb::tree::InternalNode<openvdb::Vec3STree::LeafNodeType, 4>;

@@ -38,7 +38,8 @@ constexpr double kLeastGain = 0.999;
 bool near_carried(const Parts& parts, const PoseState& state, std::uint32_t point)
 {
     constexpr double kNearShare = 1e-3;
-    return (state.place[point] - state.carried[point]).length() <= kNearShare * parts.spacing[point];
+    return (state.place[point] - state.carried[point]).length() <=
+           kNearShare * parts.spacing[point];
 }
 
 /// A step towards what the point wants that the exact tests allow.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// A tree of whole numbers though a mask would do: its code is there already (core/grid_instances.h),
-// where a mask's takes the compiler ten seconds.
+// A tree of whole numbers though a mask would do: its code is there already
+// (core/grid_instances.h), where a mask's takes the compiler ten seconds.
 
 #include "volume/extend_volume.h"
 

@@ -238,7 +238,7 @@ Vec3f colour_of(const Sample& sample)
         colour = tint_colours[sample.tint];
     else if (sample.tets > 1)
         colour = overlap_colour;
-    colour = blend(colour, kEdgeColour, sample.edge);
+    colour = blend(colour, edge_colour, sample.edge);
     colour = blend(colour, inner_colour, sample.inner);
     return blend(colour, outer_colour, sample.outer);
 }

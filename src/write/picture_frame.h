@@ -13,7 +13,7 @@ inline constexpr int kSmallestWidth = 16, kLargestWidth = 16384;
 
 /// What all pictures of tets have in common: samples per pixel and direction, the colour of edges.
 constexpr int kSamples = 3;
-inline const openvdb::Vec3f kEdgeColour(0.16f, 0.20f, 0.26f);
+inline const openvdb::Vec3f edge_colour(0.16f, 0.20f, 0.26f);
 
 /// World units to pixels, y downwards.
 struct PictureFrame {

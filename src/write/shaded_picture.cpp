@@ -148,7 +148,7 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const bool drawn = (t.edges >> ((k + 1) % 3)) & 1;
             if (drawn && weight[k] * flat.edge_samples[k] < kEdgePixels * kSamples) {
-                sample.colour += flat.edge_strength * (kEdgeColour - flat.colour);
+                sample.colour += flat.edge_strength * (edge_colour - flat.colour);
                 return;
             }
         }
