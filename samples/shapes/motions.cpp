@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "shapes/motions.h"
 
+#include "shapes/polygon_mesh.h"
+
 #include <openvdb/math/Mat3.h>
 
 #include <algorithm>

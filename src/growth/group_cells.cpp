@@ -24,7 +24,7 @@ namespace
 constexpr double kSizes = 1.1;
 // What a domain has more than its cube on each side, in edges. With half an edge domains would
 // touch each other.
-constexpr double kMargin = 0.49;
+constexpr double kCellMargin = 0.49;
 
 double longest_side(const Box& box)
 {
@@ -44,8 +44,8 @@ Box domain_of(const Place& place, double edge)
     Box box;
     for (int k = 0; k < 3; ++k) {
         const auto at = double(place[std::size_t(k)]);
-        box.lo[k] = (at - kMargin) * edge;
-        box.hi[k] = (at + 1 + kMargin) * edge;
+        box.lo[k] = (at - kCellMargin) * edge;
+        box.hi[k] = (at + 1 + kCellMargin) * edge;
     }
     return box;
 }

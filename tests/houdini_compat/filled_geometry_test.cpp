@@ -24,6 +24,8 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3s;
+using test::has;
+using test::values_of;
 
 ShellFile filled(ShellStack stack)
 {
@@ -198,7 +200,7 @@ TEST(FilledGeometry, CheckProvesTheCoreAnew)
     EXPECT_FALSE(holds(read_back(file)));
 }
 
-template <typename Change> std::string refusal_after(const Change& change)
+template <typename Change> std::string refusal_of_filled(const Change& change)
 {
     HoudiniGeometry g = shell_geometry(filled_ball());
     change(g);
@@ -210,35 +212,27 @@ template <typename Change> std::string refusal_after(const Change& change)
     return "it was read";
 }
 
-std::vector<std::int32_t>& integers(std::vector<Attribute>& list, const char* name)
-{
-    const Attribute* found = find(list, name);
-    return std::get<std::vector<std::int32_t>>(
-        list[static_cast<std::size_t>(found - list.data())].values);
-}
-
-void has(const std::string& message, const std::string& words)
-{
-    EXPECT_EQ(message.rfind("x.geo: ", 0), 0u) << message;
-    EXPECT_NE(message.find(words), std::string::npos) << '"' << words << "\": " << message;
-}
-
 TEST(FilledGeometry, SaysWhatOfTheCoreContradicts)
 {
-    has(refusal_after(
-            [](auto& g) { integers(g.detail_attributes, "vdb_shell_core_tets")[0] = 1 << 20; }),
+    has(refusal_of_filled([](auto& g) {
+            values_of<std::int32_t>(g.detail_attributes, "vdb_shell_core_tets")[0] = 1 << 20;
+        }),
         "\"vdb_shell_core_tets\" is 1048576");
-    has(refusal_after(
-            [](auto& g) { integers(g.detail_attributes, "vdb_shell_core_tets")[0] += 1; }),
+    has(refusal_of_filled([](auto& g) {
+            values_of<std::int32_t>(g.detail_attributes, "vdb_shell_core_tets")[0] += 1;
+        }),
         "is no tetrahedron of the core");
-    has(refusal_after(
-            [](auto& g) { integers(g.detail_attributes, "vdb_shell_core_tets")[0] -= 1; }),
+    has(refusal_of_filled([](auto& g) {
+            values_of<std::int32_t>(g.detail_attributes, "vdb_shell_core_tets")[0] -= 1;
+        }),
         "is a point behind the shell's");
-    has(refusal_after([](auto& g) { integers(g.point_attributes, "source_vertex").back() = -2; }),
+    has(refusal_of_filled([](auto& g) {
+            values_of<std::int32_t>(g.point_attributes, "source_vertex").back() = -2;
+        }),
         "\"source_vertex\" of a point of the core is -2");
-    has(refusal_after([](auto& g) { g.vertex_point[0] = std::uint32_t(g.points - 1); }),
+    has(refusal_of_filled([](auto& g) { g.vertex_point[0] = std::uint32_t(g.points - 1); }),
         "is a point behind the shell's");
-    has(refusal_after(
+    has(refusal_of_filled(
             [](auto& g) { std::swap(g.vertex_point.back(), *(g.vertex_point.end() - 2)); }),
         "checksum");
     // Pinned vertices are of no tet: the triangle between them is the core's own.
