@@ -40,7 +40,7 @@ constexpr std::size_t kCrowdedCorner = 128;
 // has some fifty, the faces of a tet mesh some five hundred.
 constexpr std::size_t kMostNearGroup = 1024;
 // Groups that one thread takes at a time: they share the memory of one list of nearby boxes.
-constexpr std::size_t kGroupsInPart = 16;
+constexpr std::size_t kTriangleGroupsInPart = 16;
 
 /// A convex part with four corners, in their order around it. It is cut across, in the middle of
 /// the longer two of opposite sides, so a long one becomes shorter and not thinner.
@@ -215,15 +215,15 @@ private:
         tree.build(boxes);
         std::vector<char> crowded(asked_.size());
         const std::size_t groups = tree.groups();
-        const std::size_t parts = (groups + kGroupsInPart - 1) / kGroupsInPart;
+        const std::size_t parts = (groups + kTriangleGroupsInPart - 1) / kTriangleGroupsInPart;
         parts_.resize(parts);
         for_each_index(
             parts,
             [&](std::size_t part) {
                 BoxTree::Near near;
-                const std::size_t end = std::min(groups, (part + 1) * kGroupsInPart);
-                for (std::size_t group = part * kGroupsInPart; group < end && !stop_.wanted();
-                     ++group)
+                const std::size_t end = std::min(groups, (part + 1) * kTriangleGroupsInPart);
+                for (std::size_t group = part * kTriangleGroupsInPart;
+                     group < end && !stop_.wanted(); ++group)
                     if (!look_at_group(tree, group, near, parts_[part]))
                         tree.for_each_of(group, [&](int i) { crowded[std::size_t(i)] = 1; });
             },
