@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bash .ci/install_packages.sh build
-cmake --preset release -DVDB_SHELL_BUILD_TESTS=OFF -DVDB_SHELL_UNITY=ON
+cmake --preset release -DVDB_SHELL_BUILD_TESTS=OFF
 cmake --build --preset release
 out=build/quickstart
 mkdir -p "$out"

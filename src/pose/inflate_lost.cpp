@@ -35,7 +35,7 @@ using openvdb::Vec3d;
 constexpr std::array<int, 3> kRings{1, 2, 4};
 /// From one try to the next, and where the digits of doubles end.
 constexpr double kThinner = 0.25, kThinnest = 1e-9;
-constexpr int kHalvings = 30;
+constexpr int kHalvingsOfLength = 30;
 /// Cosines below that are the rounding of a double in a direction that sees nothing.
 constexpr double kLeastSight = 1e-7;
 /// Pillars need not get longer to outlast the rounding, in edges; others bring them to where they
@@ -169,7 +169,7 @@ bool place_thin(GrowState& s, int v, double length)
         return false;
     s.pinned[v] = 0;
     const auto around = growth::star(*s.mesh, v);
-    for (int halving = 0; halving < kHalvings; ++halving, length *= 0.5) {
+    for (int halving = 0; halving < kHalvingsOfLength; ++halving, length *= 0.5) {
         s.b[v] = s.a[v] + length * direction;
         if (std::all_of(around.begin(), around.end(),
                         [&](const FaceCorner& at) { return height_of(s, at.face) > 0; }))

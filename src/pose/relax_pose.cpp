@@ -20,7 +20,7 @@ using Parts = RestShell::Parts;
 
 /// A point that moves by less, in units of its spacing, is at rest.
 constexpr double kStill = 1e-3;
-constexpr int kHalvings = 8;
+constexpr int kHalvingsOfStep = 8;
 /// A round costs a hundredth of growth, and most points rest after a few.
 constexpr int kRounds = 60;
 
@@ -35,7 +35,7 @@ bool moved(const Parts& parts, const PoseState& state, std::uint32_t point, doub
     if (!energy.newton(step))
         return false;
     const double now = energy.at(Vec3d(0.0));
-    for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5)
+    for (int halving = 0; halving < kHalvingsOfStep; ++halving, step *= 0.5)
         if (energy.at(step) < now) {
             to = state.place[point] + step;
             return step.length() > kStill * parts.spacing[point];
