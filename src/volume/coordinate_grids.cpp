@@ -39,6 +39,8 @@ struct Grids {
 
     template <typename Visit> void for_each(const Visit& visit)
     {
+        // In the order of the enumerators, which is that of the grids that are returned. The masks
+        // are not among them: their active voxels are those of one layer only.
         visit(rest), visit(depth), visit(thickness), visit(uvw), visit(prism), visit(prism_weights);
         visit(nearest), visit(nearest_weights), visit(layer), visit(density);
     }
@@ -89,6 +91,8 @@ public:
         : in_(inputs), skin_{inputs.stack->surface(inputs.stack->skin), inputs.stack->triangles()},
           ramp_(std::move(ramp))
     {
+        // A tree over the whole skin takes memory and time, and only one of the coordinates needs
+        // it.
         if (nearest)
             nearest_.emplace(skin_);
         for (std::size_t v = 0; v < skin_.points.size(); ++v) {
@@ -103,6 +107,8 @@ public:
               Grids& grids) const
     {
         grids.for_each([&](auto& grid) { grid.begin(i, leaf); });
+        // No voxel is active yet, for whoever looks at the active voxels of a mask wants those of
+        // the layer.
         for (auto& mask : grids.masks)
             mask.begin(i, leaf, false);
         for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
@@ -116,8 +122,12 @@ private:
     {
         const ShellPlace place = in_.map->place_in(tet, point);
         const SurfacePlace on = in_.map->on_surface(place);
+        // Tets of a core belong to no prism. Depth stays 1 there, so that a ramp over it does not
+        // begin anew in the middle of the solid; numbers of triangles and layers keep their -1.
         const bool in_core = on.triangle == ShellPlace::kNone;
         const double depth = in_core ? 1.0 : (on.layer + on.share) / double(in_.map->layers());
+        // A shell at rest is its own rest: the voxel's centre is taken as it is, without the detour
+        // through the map, which rounds.
         grids.rest.set(i, voxel, Vec3s(in_.rest ? in_.rest->point_of(place) : point));
         grids.depth.set(i, voxel, float(depth));
         grids.density.set(i, voxel, float(ramp_.at(depth)));
@@ -138,6 +148,8 @@ private:
         if (grids.uvw.wanted()) {
             openvdb::Vec2d uv(0.0);
             for (int k = 0; k < 3; ++k)
+                // The coordinates are those of this triangle's corners and not of vertices, which
+                // on a seam have several; so nothing is averaged over one.
                 uv += on.weight[k] * (*in_.texture)[on.triangle][std::size_t(k)];
             grids.uvw.set(i, voxel, Vec3s(float(uv[0]), float(uv[1]), float(depth)));
         }
@@ -160,6 +172,7 @@ private:
     std::optional<NearestOnMesh> nearest_;
 };
 
+/// For the message about a name that is none of them.
 std::string list_of(const NameTable<Coordinate>& table)
 {
     std::string list;
@@ -210,6 +223,7 @@ std::vector<Coordinate> coordinates_of(const CoordinateOptions& options)
         if (found == table.end())
             throw InvalidOption("--volumes: \"" + word + "\" is none of " + list_of(table));
         if (has(list, found->second))
+            // A mistake in any case, for there can be one grid of a name only.
             throw InvalidOption("--volumes: \"" + word + "\" comes twice");
         list.push_back(found->second);
     }
@@ -241,6 +255,8 @@ std::vector<GridBasePtr> coordinate_grids(const CoordinateInputs& inputs,
     for (auto& mask : grids.masks)
         add(mask);
     for (const GridBasePtr& grid : made)
+        // So that programs show them as fog: they are numbers without a unit, 0 outside. A
+        // thickness is a length.
         if (grid->isType<FloatGrid>() && grid->getName() != "thickness")
             grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     return made;

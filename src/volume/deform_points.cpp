@@ -68,6 +68,8 @@ class InShell
 {
 public:
     explicit InShell(const MovedLeaves& moved) : moved_(moved) {}
+    // OpenVDB asks these of every filter. Which points of a leaf are inside is only known point by
+    // point, hence partial.
     static bool initialized() { return true; }
     static openvdb::points::index::State state() { return openvdb::points::index::PARTIAL; }
     template <typename LeafNode> static openvdb::points::index::State state(const LeafNode&)
@@ -126,6 +128,7 @@ AttributeArray* vectors_of(Leaf& leaf, const char* name)
     return one_vector ? &array : nullptr;
 }
 
+/// An attribute has no vector type as a grid has; `by_type` is what its name stands for.
 VectorMap vector_map(VectorRule rule, VectorMap by_type)
 {
     switch (rule) {
@@ -141,6 +144,8 @@ VectorMap vector_map(VectorRule rule, VectorMap by_type)
     return VectorMap::keep;
 }
 
+/// Says where points go. What it holds is read only, so all threads share one; each has a leaf of
+/// its own.
 class Carrier
 {
 public:
@@ -161,12 +166,15 @@ public:
         moved.found.assign(positions.size(), 0);
         const Vectors velocities(vectors_of(leaf, kVelocity)), normals(vectors_of(leaf, kNormal));
         for (auto point = leaf.beginIndexOn(); point; ++point) {
+            // OpenVDB stores a position in voxels from the centre of the point's own voxel.
             const Vec3d at = Vec3d(position.get(*point)) + point.getCoord().asVec3d();
             const ShellPlace place = sampler_.find(transform.indexToWorld(at) - shift_);
             if (!place.found())
                 continue;
             moved.found[*point] = 1;
             moved.to[*point] = posed_.point_of(place) + shift_;
+            // Vectors are changed now, while the place is known: when movePoints has run, the point
+            // may be in another leaf, under another number.
             const openvdb::Mat3d by_pose = pull_back(rest_, posed_, place).by_pose;
             const Vec3d added = velocity_ ? velocity_->point_of(place) : Vec3d(0.0);
             velocities.change(*point, [&](const Vec3d& v) {
@@ -208,6 +216,8 @@ MovedLeaves carry_all(PointDataGrid& grid, const Carrier& carrier, const StagePr
     std::vector<Leaf*> leaves;
     grid.tree().getNodes(leaves);
     MovedLeaves moved;
+    // All keys are made before the threads begin, which then only look them up; inserting at the
+    // same time would not be safe.
     for (const Leaf* leaf : leaves)
         moved[leaf->origin()];
     // Some tens of milliseconds of work a block: soon enough for who waits for an answer.
@@ -259,6 +269,7 @@ GridBasePtr deform_points(const openvdb::GridBase& source, const ShellMap& rest,
         figures.active_before += std::size_t(leaf->constAttributeArray("P").size());
     if (figures.active_before == 0)
         throw InvalidOption("grid \"" + source.getName() + "\" has no points");
+    // One leaf stands for all: require_alike has compared them.
     const AttributeSet& attributes = points->tree().cbeginLeaf()->attributeSet();
     if (velocity && attributes.find(kVelocity) == AttributeSet::INVALID_POS)
         openvdb::points::appendAttribute<Vec3f>(points->tree(), kVelocity);

@@ -51,6 +51,7 @@ public:
             return value;
         const double most = options_.most_density;
         const double factor = std::clamp(back.volume_ratio, 1.0 / most, most);
+        // Counted, because each of these voxels has a mass that is no longer that of the source.
         limited += factor != back.volume_ratio;
         return float(value * factor);
     }
@@ -70,6 +71,9 @@ private:
             return false;
         const bool fog =
             grid.getGridClass() == openvdb::GRID_FOG_VOLUME || grid.getName() == "density";
+        // A temperature or a mask means the same however small its voxel has become; a density is
+        // an amount for a volume. The grid says which it is by its class, or by the one name that
+        // programs agree on.
         return rule == MassRule::all || (rule == MassRule::fog && fog);
     }
 
@@ -97,6 +101,8 @@ typename Grid::Ptr deform(const Grid& source, const ShellMap& rest, const ShellM
                           DeformFigures& figures, const StageProgress& progress)
 {
     const ValueMap map(source, options);
+    // Voxels of the pose are gone through, not those of the source: each asks where it comes from,
+    // so none is left without a value where the map stretches.
     const Int32Grid::Ptr tets = tet_index_grid(posed.tets(), lattice, "deform", progress,
                                                tets_with_content(source, rest, lattice));
     VoxelLeaves<Grid> leaves(source.getName(), source.background(), tets->tree().leafCount());
@@ -131,12 +137,16 @@ GridBasePtr deform_grid(const Grid& source, const ShellMap& rest, const ShellMap
     figures.active_before = source.activeVoxelCount();
     if (figures.active_before == 0)
         throw InvalidOption("grid \"" + source.getName() + "\" has no active voxels");
+    // Of the shell at rest: what lies outside there has no place to be carried with, and a volume
+    // that is cut off without a word would be taken for whole.
     const Int32Grid::Ptr at_rest = tet_index_grid(rest.tets(), lattice, "deform", progress);
     const Content before = content_of(source, *at_rest);
     figures.outside = before.outside_share();
     require_inside(source.getName(), figures.outside, options.most_outside);
     const bool level_set = source.getGridClass() == openvdb::GRID_LEVEL_SET;
     typename Grid::Ptr made;
+    // Whole numbers name things, so there is no mean of them to extend by. Level sets have values
+    // on both sides of their surface already.
     if constexpr (std::is_integral_v<typename Grid::ValueType>) {
         made = deform(source, rest, posed, lattice, options, figures, progress);
     } else {

@@ -71,6 +71,7 @@ private:
     bool probe(Coord at, Value& value)
     {
         for (int axis = 0; axis < 3; ++axis) {
+            // The remainder of a negative number is negative; tiles go on below the first one.
             const int beyond = (at[axis] - low_[axis]) % size_[axis];
             at[axis] = low_[axis] + (beyond < 0 ? beyond + size_[axis] : beyond);
         }
@@ -87,6 +88,8 @@ private:
             double weight = 1;
             for (int axis = 0; axis < 3; ++axis)
                 weight *= step[axis] ? share[axis] : 1 - share[axis];
+            // On a voxel's centre only one of the eight counts. Asking the others could make a
+            // voxel active that takes nothing from them.
             if (weight == 0)
                 continue;
             Value value;
@@ -117,6 +120,7 @@ class ToTexture
 public:
     ToTexture(const ShellMap& map, const std::vector<std::array<Vec2d, 3>>& corner,
               const openvdb::CoordBBox& tile, const MapOptions& options)
+        // From half a voxel before the first centre, so that tiles meet without a gap.
         : map_(map), corner_(corner), low_(tile.min().asVec3d() - Vec3d(0.5)),
           tiles_(options.repeat_u, options.repeat_v, options.repeat_depth),
           size_(tile.dim().asVec3d()), from_(options.from_depth), to_(options.to_depth)
@@ -136,9 +140,11 @@ public:
             return false;
         found.index = index_of(on);
         const Mat3d by_place = map_.jacobian_of(place), texture = derivatives(place, on);
+        // Texture coordinates without extent: no place of the texture belongs here alone.
         singular = by_place.det() == 0 || texture.det() == 0;
         if (singular)
             return false;
+        // The chain rule: d index / d place, times d place / d world.
         found.by_world = texture * by_place.inverse(0.0);
         return true;
     }
@@ -153,6 +159,7 @@ private:
         Vec2d uv(0.0);
         for (int k = 0; k < 3; ++k)
             uv += on.weight[k] * corner_[on.triangle][std::size_t(k)];
+        // The texture's z points outwards and depth inwards.
         const double up = (to_ - depth_of(on)) / (to_ - from_);
         return low_ + Vec3d(uv[0], uv[1], up) * tiles_ * size_;
     }
@@ -178,6 +185,7 @@ private:
             const Vec2d along = uv[std::size_t(k) + 1] - uv[0];
             by.setCol(k, Vec3d(along[0], along[1], 0) * tiles_ * size_);
         }
+        // The third is the share of a layer: u and v do not change down a pillar.
         by.setCol(2, Vec3d(0, 0, -tiles_[2] * size_[2] / (double(map_.layers()) * (to_ - from_))));
         return by;
     }
@@ -205,6 +213,8 @@ Value carried(const Value& value, const Mat3d& to_shell, const GridBase& texture
 {
     if constexpr (std::is_same_v<Value, float>) {
         const double ratio = std::abs(to_shell.det());
+        // A distance has no one scale where the map stretches by direction. The mean scale keeps
+        // the sign and the place of the surface; the distances are made anew afterwards.
         if (texture.getGridClass() == openvdb::GRID_LEVEL_SET)
             return float(value * std::cbrt(ratio));
         return keep_mass ? float(value / ratio) : value;
@@ -258,9 +268,11 @@ void map_leaf(const Mapping<Grid>& mapping, std::size_t i, const TetIndexLeaf& l
         const Mat3d to_world = mapping.axes * place.by_world;
         const double share = std::abs(to_world.det());
         const Mat3d to_shell = to_world.inverse(0.0);
+        // Volume in the texture for one unit of volume in the shell.
         sums.texture += share;
         sums.shell += 1;
         sums.stretch += share * squared_norm(to_shell) / 3;
+        // A mirrored chart, as half of a symmetric character may have.
         sums.mirrored += to_world.det() < 0;
         typename Grid::ValueType value;
         if (sampler.mean(place.index, voxel * place.by_world, value) || mapping.level_set)
@@ -280,6 +292,7 @@ void add_up(const std::vector<Sums>& sums, MapFigures& figures)
         figures.singular += s.singular;
     }
     if (all.texture > 0)
+        // Without the mean scale: a texture that is only larger is not stretched.
         figures.stretch = std::sqrt(all.stretch / all.texture) / std::cbrt(all.shell / all.texture);
 }
 

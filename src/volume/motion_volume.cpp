@@ -25,6 +25,8 @@ ShellMap velocity_map(ShellStack stack, TetMesh tets,
 {
     assert(by_surface.size() == stack.surfaces());
     assert(by_tet_point.size() == tets.points.size());
+    // Neighbouring layers share a surface, so there is one more of these than layers, and the
+    // surface between is written twice.
     for (std::size_t k = 0; k < stack.layers.size(); ++k) {
         stack.layers[k].outer = by_surface[k];
         stack.layers[k].inner = by_surface[k + 1];
@@ -46,6 +48,8 @@ GridBasePtr motion_volume(const openvdb::GridBase& volume, const ShellMap& posed
             leaves.begin(i, leaf, false);
             for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
                 const openvdb::Coord at = voxel.getCoord();
+                // Only where the volume is: motion blur asks for the velocity of what is there, and
+                // a grid over the whole shell may be much larger.
                 if (!values.isValueOn(at))
                     continue;
                 const Vec3d point = lattice.origin + lattice.voxel_size * at.asVec3d();
@@ -55,6 +59,7 @@ GridBasePtr motion_volume(const openvdb::GridBase& volume, const ShellMap& posed
         });
     });
     const auto made = leaves.grid(volume.transform());
+    // So that programs turn and stretch the velocities when the volume itself is turned or scaled.
     made->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
     return made;
 }

@@ -53,6 +53,8 @@ DistanceSurface::DistanceSurface(const TriangleMesh& mesh, double voxel_size)
     middle_ = 0.5 / voxel_ * (bounds.low + bounds.high);
     slack_ = kDistanceSlack * diagonal_of(bounds) / voxel_;
     for_each_index(prepared_.size(), [&](std::size_t t) {
+        // About the middle of the mesh before rounding to floats: far from the origin there would
+        // be no digits left for the shape.
         std::array<Vec3d, 3> corner = triangle_corners(mesh, t);
         for (Vec3d& c : corner)
             c = c / voxel_ - middle_;
@@ -110,6 +112,7 @@ void NearestInLeaf::take_nearest(const Coord& corner, const List& list, Voxels& 
         voxel[i] = corner_of_block(corner, 1, i);
         place[i] = std::size_t(voxel[i][0] << 6 | voxel[i][1] << 3 | voxel[i][2]);
         found.distance[place[i]] = std::numeric_limits<double>::infinity();
+        // No square is below nothing, so a voxel that nobody asks for keeps no triangle.
         limit[i] = wanted(voxel[i], 1) ? most * most : -1.0F;
     }
     thin_out(list, limit);
@@ -119,6 +122,8 @@ void NearestInLeaf::take_nearest(const Coord& corner, const List& list, Voxels& 
             const double d = surface_.distance(origin_ + voxel[i], list[n]);
             double& least = found.distance[place[i]];
             std::uint32_t& triangle = found.triangle[place[i]];
+            // The smallest index of equally near ones, so that the answer does not depend on the
+            // order of the list.
             if (d < least || (d == least && list[n] < triangle))
                 least = d, triangle = list[n];
         }
@@ -149,6 +154,8 @@ void NearestInLeaf::descend(std::size_t level, const Coord& corner, const List& 
         near.clear();
     for (std::size_t n = 0; n < list.size(); ++n)
         for (unsigned bits = within_[n]; bits != 0; bits &= bits - 1)
+            // In the order of the list it came from. The lists of a level serve one block after the
+            // other: what descends from here uses those of the next level.
             of_block[std::size_t(__builtin_ctz(bits))].push_back(list[n]);
     for (std::size_t i = 0; i < kLanes; ++i)
         if (!of_block[i].empty())

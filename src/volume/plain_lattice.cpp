@@ -21,6 +21,8 @@ VoxelLattice plain_lattice(const openvdb::GridBase& grid, const Vec3d& shift)
         along[axis] = size;
         // A hundred-thousandth of a voxel over a voxel: what float matrices of other programs lose.
         constexpr double kExact = 1e-5;
+        // The image of each unit vector is asked, not the type of the transform: a matrix that
+        // happens to scale alike is as good as a scale, and one that turns is not.
         plain = (transform.indexToWorld(unit) - origin - along).length() <= kExact * size;
     }
     if (!plain)

@@ -17,6 +17,8 @@ namespace
 using openvdb::Mat3d;
 using openvdb::Vec3d;
 
+/// Of a singular matrix the identity: where a prism is pressed flat the way back says nothing of
+/// directions, and a vector that stays is better than one that is infinite.
 Mat3d inverse(const Mat3d& matrix)
 {
     return matrix.det() == 0.0 ? Mat3d::identity() : matrix.inverse(0.0);
@@ -32,6 +34,8 @@ Pullback pull_back(const ShellMap& rest, const ShellMap& posed, const ShellPlace
     // On a pinned pillar the share inwards says nothing, and there is nothing to be undone.
     if (at_pose.det() != 0.0)
         back.by_pose = rest.jacobian_of(place) * at_pose.inverse(0.0);
+    // A pose that is not certified may have tets that are turned inside out: they cover a volume
+    // all the same, and mass is not negative.
     back.volume_ratio = std::abs(back.by_pose.det());
     return back;
 }
@@ -51,6 +55,8 @@ VectorMap vector_map(const openvdb::GridBase& grid, VectorRule rule)
     switch (grid.getVectorType()) {
     case openvdb::VEC_INVARIANT:
         return VectorMap::keep;
+    // As gradients and normals are: they are carried by the transposed of the derivative of the way
+    // back.
     case openvdb::VEC_COVARIANT:
         return VectorMap::normal;
     case openvdb::VEC_COVARIANT_NORMALIZE:
@@ -72,6 +78,9 @@ Vec3d carried_vector(const Vec3d& vector, VectorMap map, const Mat3d& by_pose)
         return vector;
     case VectorMap::forward:
         return inverse(by_pose) * vector;
+    // A normal stays square to a surface that is stretched, which a vector that is stretched with
+    // it does not. `by_pose` is the derivative of rest by pose, so its transposed carries from rest
+    // to the pose.
     case VectorMap::normal:
         return by_pose.transpose() * vector;
     case VectorMap::unit_normal: {
@@ -81,6 +90,7 @@ Vec3d carried_vector(const Vec3d& vector, VectorMap map, const Mat3d& by_pose)
     }
     case VectorMap::rotate: {
         Mat3d turn, stretch;
+        // The turning part of the derivative, without its stretch: the vector keeps its length.
         return openvdb::math::polarDecomposition(inverse(by_pose), turn, stretch) ? turn * vector
                                                                                   : vector;
     }

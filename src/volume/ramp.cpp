@@ -13,6 +13,7 @@ namespace vdb_shell
 namespace
 {
 
+/// By from_chars, which does not ask the locale: a decimal comma would be a separator here.
 double number_of(const std::string& word, const std::string& where)
 {
     double value = 0;
@@ -27,6 +28,8 @@ double number_of(const std::string& word, const std::string& where)
 std::vector<std::string> split_at(char separator, const std::string& text)
 {
     std::vector<std::string> words;
+    // Up to and including the end, so that a separator at the end is followed by an empty word:
+    // "a," is two words, and an empty text one. Both are refused by who reads the words.
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(separator, begin), text.size());
         words.push_back(text.substr(begin, end - begin));
@@ -58,6 +61,7 @@ Ramp ramp_of(const std::string& text, const std::string& name)
                 std::string(name).append(": \"").append(word).append("\" is no place:value"));
         ramp.knots.emplace_back(number_of(parts[0], name), number_of(parts[1], name));
         if (ramp.knots.size() > 1 &&
+            // Equal places are refused too: Ramp::at divides by the difference.
             !(ramp.knots[ramp.knots.size() - 2].first < ramp.knots.back().first))
             throw InvalidOption(name + ": place " + parts[0] + " is not beyond the one before it");
     }

@@ -25,6 +25,8 @@ openvdb::Vec3SGrid::Ptr vector_volume(const TetMesh& posed,
                                       const StageProgress& progress)
 {
     assert(vectors.size() == posed.points.size());
+    // One number after the other, by the same code that writes depths: so the active voxels of the
+    // three, and of `depth` beside them in the file, are the same.
     std::array<openvdb::FloatGrid::Ptr, 3> part;
     std::array<std::vector<const openvdb::FloatTree::LeafNodeType*>, 3> leaves;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -14,6 +14,11 @@
 #include <optional>
 #include <utility>
 
+// Takes a finished stack and its tets; tells where a point is in the shell, and where a place of
+// the shell is in space. A point comes with a tet that holds it, so nothing is searched here: its
+// linear weights in that tet are the first guess of its place in the curved prism, and Newton's
+// method (wedge.h) does the rest. Prisms whose map may not be one-to-one stay linear in their tets
+// (docs/theory.md, "Coordinates of a shell").
 namespace vdb_shell
 {
 namespace
@@ -24,6 +29,9 @@ using openvdb::Vec3I;
 using openvdb::Vec3s;
 using openvdb::Vec4d;
 
+/// By triangle and corner: the triangle across the side that is opposite the corner. The skin of a
+/// shell is a closed manifold, so sorting puts the two uses of each edge side by side; a side
+/// without a partner keeps kNone.
 std::vector<Vec3I> triangles_beyond(const std::vector<Vec3I>& triangles)
 {
     std::vector<Vec3I> beyond(triangles.size(), Vec3I(ShellPlace::kNone));
@@ -39,6 +47,7 @@ std::vector<Vec3I> triangles_beyond(const std::vector<Vec3I>& triangles)
     return beyond;
 }
 
+/// In doubles, for Newton's method goes on to more digits than float32 has.
 template <typename Corners> Wedge wedge_of(const Corners& corners)
 {
     Wedge wedge;
@@ -66,6 +75,8 @@ WedgePlace corner_place(std::uint8_t bits)
 {
     WedgePlace sum(0.0);
     int count = 0;
+    // The lower three bits are the outer corners in the order of the triangle, the upper three the
+    // inner ones.
     const bool outer = (bits & 7) != 0;
     for (int k = 0; k < 6; ++k)
         if ((bits >> k & 1) != 0 && (k < 3) == outer) {
@@ -75,6 +86,8 @@ WedgePlace corner_place(std::uint8_t bits)
     return count == 0 ? sum : sum / count;
 }
 
+/// A point's weights in a tet as coordinates of the prism, linear between the tet's corners. In a
+/// curved prism the point is not quite there, but near enough for Newton's method to begin.
 WedgePlace place_of_weights(const std::array<std::uint8_t, 4>& bits, const Vec4d& weight)
 {
     WedgePlace place(0.0);
@@ -89,6 +102,7 @@ constexpr double kOnSide = 1e-9;
 bool all_inside(const Vec4d& weight)
 {
     for (int i = 0; i < 4; ++i)
+        // Turned round, so that weights that are no numbers, as a flat tet gives, count as outside.
         if (!(weight[i] >= -kOnSide))
             return false;
     return true;
@@ -110,6 +124,8 @@ ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
             corners_[p][i] = layer.outer[triangle[int(i)]];
             corners_[p][i + 3] = layer.inner[triangle[int(i)]];
         }
+        // Prism by prism: one that fails does not make its neighbours linear. So the side between
+        // them is curved for one and flat for the other, which place_of has to bear.
         curved_[p] = has_positive_jacobian(wedge_of(corners_[p]));
     });
     corner_bits_.resize(tets_.tets.size());
@@ -120,12 +136,16 @@ ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
         has_tets_[p] = 1;
         for (std::size_t i = 0; i < 4; ++i)
             for (std::size_t k = 0; k < 6; ++k)
+                // By place and not by index, for the tets number points in their own way. A pinned
+                // inner corner has the place of its outer one, and tapering gives several corners
+                // one place, so a corner of a tet may have several bits.
                 if (corners_[p][k] == tets_.points[tets_.tets[t][int(i)]])
                     corner_bits_[t][i] = std::uint8_t(corner_bits_[t][i] | 1u << k);
     }
     count_prisms();
 }
 
+/// A prism that has no tets left, by three pins or by tapering, has no inside and is not counted.
 void ShellMap::count_prisms()
 {
     prisms_ = linear_prisms_ = 0;
@@ -150,6 +170,8 @@ Vec4d ShellMap::tet_weights(std::uint32_t tet, const Vec3d& point) const
     const Vec3d a(tets_.points[corner[0]]);
     const Vec3d b = Vec3d(tets_.points[corner[1]]) - a, c = Vec3d(tets_.points[corner[2]]) - a,
                 d = Vec3d(tets_.points[corner[3]]) - a, p = point - a;
+    // Cramer's rule. Numerators and determinant change their signs together, so an inverted tet
+    // needs no case of its own.
     const Vec3d cd = c.cross(d);
     const double det = b.dot(cd);
     const Vec3d weight(p.dot(cd) / det, p.dot(d.cross(b)) / det, p.dot(b.cross(c)) / det);
@@ -180,6 +202,13 @@ ShellPlace ShellMap::find_in(std::uint32_t tet, const Vec3d& point) const
     return all_inside(weight) ? place_of(tet, weight, point) : ShellPlace();
 }
 
+/// The tet says which prism would have the point if sides were flat; where a side is curved the
+/// point may lie beyond it, and the most negative weight says beyond which. Invariant of the loop:
+/// `triangle` has a curved prism in this layer, and `best` is the place, of those seen so far, that
+/// leaves its prism least. Where the prism beside is linear it would not have the point either:
+/// that is in the sliver between its flat side and this curved one, and keeps its negative weight.
+/// Where Newton's method does not settle, or more than a whole prism away, the tet's own weights
+/// stand.
 ShellPlace ShellMap::place_of(std::uint32_t tet, const Vec4d& weight, const Vec3d& point) const
 {
     if (tets_.prism[tet] == kCorePrism)
@@ -206,12 +235,14 @@ ShellPlace ShellMap::place_of(std::uint32_t tet, const Vec4d& weight, const Vec3
             best.weight = at;
             best_outside = outside;
         }
+        // Outer and inner triangles are flat: there the tet has decided.
         const int least = int(openvdb::math::MinIndex(Vec3d(at[0], at[1], at[2])));
         if (at[least] >= -kOnSide)
             break;
         triangle = beyond_[triangle][least];
         if (triangle == ShellPlace::kNone || !curved_[layer + triangle])
             break;
+        // The neighbour numbers its corners differently; only the depth is the same.
         guess = {1.0 / 3, 1.0 / 3, std::clamp(at[3], 0.0, 1.0)};
     }
     return best;
@@ -239,6 +270,8 @@ ShellMap::tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) con
         tet[t] = prism[layer + tets_.prism[t]];
         for (int i = 0; i < 3; ++i) {
             const std::uint32_t beside = beyond_[tets_.prism[t]][i];
+            // A place that is looked for from this tet may be found in a prism beside its own
+            // (place_of).
             if (beside != ShellPlace::kNone && prism[layer + beside])
                 tet[t] = 1;
         }
@@ -262,6 +295,7 @@ openvdb::Mat3d ShellMap::jacobian_of(const ShellPlace& place) const
         return vdb_shell::jacobian_of(wedge_of(corners_[place.prism]), wedge_place(place.weight));
     const openvdb::Vec4I& corner = tets_.tets[place.tet];
     const Vec3d a(tets_.points[corner[0]]);
+    // Affine in the tet, so its edges from corner 0 are the derivatives by the three other weights.
     return {Vec3d(tets_.points[corner[1]]) - a, Vec3d(tets_.points[corner[2]]) - a,
             Vec3d(tets_.points[corner[3]]) - a, false};
 }
@@ -281,6 +315,8 @@ SurfacePlace ShellMap::on_surface(const ShellPlace& place) const
         at = place_of_weights(corner_bits_[place.tet], place.weight);
     }
     on.weight = {1.0 - at[0] - at[1], at[0], at[1]};
+    // By rounding a place may be a little above its layer or below it; depths are added up over
+    // layers and must stay within theirs.
     on.share = std::clamp(at[2], 0.0, 1.0);
     return on;
 }

@@ -34,6 +34,7 @@ BoxTree tree_of(const TetMesh& tets)
     return tree;
 }
 
+/// Tets without volume have no size to go by. No voxel gets one of them then, so any size will do.
 double sensible_voxel_size(const TetMesh& tets)
 {
     const double volume = std::abs(tet_volume(tets));
@@ -44,6 +45,8 @@ double sensible_voxel_size(const TetMesh& tets)
 /// The box of floats around a point of doubles.
 FloatBox box_around(const Vec3d& point)
 {
+    // One float farther on either side, for the point itself was rounded to a float: a tet that
+    // holds the double must not be missed.
     const auto toward = [&](double end) {
         Vec3s p(point);
         for (int axis = 0; axis < 3; ++axis)
@@ -90,6 +93,7 @@ ShellPlace ShellSampler::find(const Vec3d& point) const
     }
     std::uint32_t tet = ShellPlace::kNone;
     parts_->tree.for_each_overlap(box_around(point), [&](int t) {
+        // The smallest index, whatever order the tree gives: on a face both tets hold the point.
         if (std::uint32_t(t) < tet && map_.holds(std::uint32_t(t), point))
             tet = std::uint32_t(t);
     });

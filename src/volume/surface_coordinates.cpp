@@ -39,6 +39,8 @@ struct Key {
 
     Key(const TriangleMesh& mesh, std::uint32_t t) : triangle(t), first(0)
     {
+        // Only turned and never reversed: a triangle that is turned over is another one, whose
+        // texture would be mirrored.
         const openvdb::Vec3I& c = mesh.triangles[t];
         for (int k = 1; k < 3; ++k)
             if (mesh.points[c[k]] < mesh.points[c[first]])
@@ -72,6 +74,8 @@ public:
         TriangleTree::Seed seed = TriangleTree::kNoSeed;
         const std::uint32_t begin = tree_.nearest(middle, 0.0F, seed).triangle;
         far = std::sqrt(squared(begin, middle));
+        // As far as the chart is from the middle, and the middle from the farthest corner: the part
+        // of the chart that the triangle lies over.
         double reach = far;
         for (const Vec3d& c : corner)
             reach = std::max(reach, far + (c - middle).length());
@@ -80,6 +84,8 @@ public:
         for (std::size_t k = 0; k < 3; ++k)
             least[k] = squared(begin, corner[k]);
         std::vector<std::uint32_t> found{begin};
+        // Breadth first, across edges without a seam only. `found` grows while it is gone through,
+        // and ends where no neighbour is within reach.
         for (std::size_t n = 0; n < found.size(); ++n)
             for (int side = 0; side < 3; ++side) {
                 const std::uint32_t next = across(found[n], side);
@@ -115,6 +121,8 @@ private:
             for (int j = 0; j < 3; ++j)
                 if (other != t && triangles[other][j] == b && triangles[other][(j + 1) % 3] == a) {
                     const Corners &x = textured_.corner[t], &y = textured_.corner[other];
+                    // Bit for bit: files repeat the index of a texture coordinate where a chart
+                    // goes on.
                     const bool joined = x[std::size_t(k)] == y[std::size_t((j + 1) % 3)] &&
                                         x[std::size_t((k + 1) % 3)] == y[std::size_t(j)];
                     return joined ? other : kNone;
@@ -133,6 +141,8 @@ private:
             const std::array<double, 3> weight = nearest_weights(c, place);
             return weight[0] * uv[0] + weight[1] * uv[1] + weight[2] * uv[2];
         }
+        // Barycentric coordinates of the foot in the plane. They may be negative: a corner beyond
+        // the chart's edge is drawn on in the scale of its last triangle.
         const double b = (place - c[0]).cross(c[2] - c[0]).dot(n) / area;
         const double d = (c[1] - c[0]).cross(place - c[0]).dot(n) / area;
         return uv[0] + b * (uv[1] - uv[0]) + d * (uv[2] - uv[0]);
@@ -162,6 +172,7 @@ SurfaceCoordinates surface_coordinates(const TextureCoordinates& textured,
     std::vector<double> far(count, -1);
     for_each_index(count, [&](std::size_t t) {
         Key key(surface, std::uint32_t(t));
+        // Below every number, so that lower_bound finds the first of equal triangles.
         key.triangle = 0;
         const auto found = std::lower_bound(known.begin(), known.end(), key);
         if (found == known.end() || found->point != key.point) {
@@ -172,6 +183,8 @@ SurfaceCoordinates surface_coordinates(const TextureCoordinates& textured,
             made.corner[t][std::size_t((key.first + k) % 3)] =
                 textured.corner[found->triangle][std::size_t((found->first + k) % 3)];
     });
+    // After the threads, in the order of triangles. A distance below 0 is left over where none was
+    // measured.
     for (const double d : far) {
         made.same += d < 0;
         made.farthest = std::max(made.farthest, d);

@@ -125,6 +125,7 @@ bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
 
 void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<TetJob>& jobs)
 {
+    // A tet between voxel centres has an empty box and no job. In a coarse grid these are most.
     if (tet.flat || tet.low.x() > tet.high.x() || tet.low.y() > tet.high.y() ||
         tet.low.z() > tet.high.z())
         return;
@@ -173,6 +174,7 @@ std::vector<std::vector<TetJob>> list_jobs(const TetMesh& mesh, const std::vecto
     return jobs;
 }
 
+/// One more than columns: each column ends where the next one starts.
 std::vector<std::size_t> column_starts(const std::vector<TetJob>& jobs)
 {
     std::vector<std::size_t> starts;

@@ -82,6 +82,8 @@ public:
         find_candidates(index);
         if (method_ == TetDistanceMethod::own_prism)
             take_candidates(index);
+        // A leaf that only tets of a core meet has no candidate, so there near_prisms has to look
+        // like exact.
         else if (list_.empty() || method_ == TetDistanceMethod::exact) {
             search_.list_nearest(origin, mask_, list_, near_);
             search_.nearest_of_list(origin, mask_, near_, found_);
@@ -107,6 +109,7 @@ private:
         mask_.fill(0);
         for (auto voxel = index.cbeginValueOn(); voxel; ++voxel) {
             const openvdb::Index at = voxel.pos();
+            // OpenVDB numbers the voxels of a leaf with x slowest: 64 to one x, a word of the mask.
             mask_[at >> 6] |= std::uint64_t(1) << (at & 63U);
             const std::uint32_t triangle = candidate_of(voxel.getCoord(), std::size_t(*voxel));
             found_.triangle[at] = triangle;
@@ -173,6 +176,8 @@ TetDistances scan(const ShellStack& stack, const TetMesh& tets, const TetDistanc
     const StageProgress progress(interrupter, "Distance by tets");
     const auto nearest = tet_index_grid(tets, options.voxel_size, "distance by tets", progress);
     nearest->setName("nearest_triangle");
+    // The topology is copied once and values are written into it, so both grids have the same
+    // leaves in the same order, and `from` and `to` go together.
     auto distance = openvdb::FloatGrid::create(
         std::make_shared<openvdb::FloatTree>(nearest->tree(), 0.0f, 0.0f, openvdb::TopologyCopy()));
     distance->setTransform(nearest->transform().copy());
@@ -225,6 +230,7 @@ TetDistances next_tet_distances(const ShellStack& stack, const TetMesh& tets,
                                 const openvdb::GridBase& previous_nearest,
                                 const TetDistanceOptions& options, Interrupter* interrupter)
 {
+    // A place is carried by the number of its tet, which has to mean the same tet in both poses.
     if (previous_tets.tets != tets.tets)
         throw InvalidOption("distance by tets: the last pose has " +
                             std::to_string(previous_tets.tets.size()) + " tets that are not the " +
@@ -235,6 +241,7 @@ TetDistances next_tet_distances(const ShellStack& stack, const TetMesh& tets,
                             "of " +
                             previous_nearest.valueType() + ", not of int32");
     const auto count = std::int64_t(stack.triangles().size());
+    // The grid may come from a file; its numbers are used as indices.
     for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel)
         if (*voxel < 0 || *voxel >= count)
             throw InvalidOption("distance by tets: the last pose names triangle " +

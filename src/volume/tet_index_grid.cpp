@@ -17,6 +17,8 @@ openvdb::Int32Grid::Ptr tet_index_grid(const TetMesh& tets, const VoxelLattice& 
         [](auto& column, const TetJob& job, const IndexTet&, const TetInColumn& part) {
             for_rows(column, part,
                      [&](std::int32_t* values, const TetInColumn::Line&, int, int begin, int end) {
+                         // Later tets are written over earlier ones. for_rows is called with the
+                         // greatest index first, so the smallest stays.
                          std::fill(values + begin, values + end, std::int32_t(job.tet));
                      });
         });

@@ -19,6 +19,8 @@ openvdb::FloatGrid::Ptr tet_values_grid(const TetMesh& tets, const std::vector<d
     fill_columns(
         columns, grid->tree(), progress,
         [&](auto& column, const TetJob&, const IndexTet& tet, const TetInColumn& part) {
+            // Gathered, so that the choice of an instruction set (core/dispatch.h) is made once for
+            // 64 rows: one row is little work beside it.
             std::array<DepthRow, 64> rows;
             std::size_t count = 0;
             const DepthAlongZ along{tet.value.value, tet.value.slope[2], tet.origin[2],

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+// A prism with bilinear sides, as a polynomial of three coordinates, and its inverse by Newton's
+// method. All is in doubles: the result is a place and proves nothing (docs/theory.md, "Coordinates
+// of a shell").
 namespace vdb_shell
 {
 namespace
@@ -13,6 +16,7 @@ namespace
 using openvdb::Mat3d;
 using openvdb::Vec3d;
 
+/// By the two weights and by the share inwards.
 struct Derivatives {
     Vec3d by_u, by_v, by_t;
 };
@@ -61,6 +65,8 @@ bool has_positive_jacobian(const Wedge& w)
             size = std::max(size, std::sqrt(d.lengthSqr() * a.lengthSqr() * b.lengthSqr()));
             return -d.dot(a.cross(b));
         };
+        // Nine numbers in all, three for each corner. The middle one is twice the Bernstein
+        // coefficient; only its sign counts.
         const double first = six_volumes(w.outer[j], w.outer[k]);
         const double between =
             six_volumes(w.outer[j], w.inner[k]) + six_volumes(w.inner[j], w.outer[k]);
@@ -91,8 +97,8 @@ Mat3d jacobian_of(const Wedge& wedge, const WedgePlace& at)
 std::optional<WedgePlace> place_of(const Wedge& wedge, const Vec3d& point, const WedgePlace& guess)
 {
     // Doubles give twelve digits beside the prism's size. Newton's steps double the digits, so
-    // there are three to five, and after one
-    // that changes places by a ten-millionth there is nothing left to look at.
+    // there are three to five, and after one that changes places by a ten-millionth there is
+    // nothing left to look at.
     constexpr int kMostSteps = 16;
     constexpr double kExact = 1e-12, kLastStep = 1e-7, kFarOutside = 1.0;
     const Polynomial x(wedge);
@@ -112,6 +118,8 @@ std::optional<WedgePlace> place_of(const Wedge& wedge, const Vec3d& point, const
                                    missing.dot(d.by_u.cross(d.by_v))) /
                              det;
         at += change;
+        // Far outside the map may fold over, and Newton's method would find a place that is none.
+        // The comparison is turned round so that it also ends at what is no number.
         if (!(outside_of(at) < kFarOutside))
             return {};
         // What is left of the second order is a product of two changes and a side.

@@ -51,8 +51,9 @@ struct CoordinateInputs {
     const std::vector<CornerTexture>* texture = nullptr;
 };
 
-/// Grids over the voxels whose centres lie in a tet, all with the same active voxels, in the order
-/// of the list; coordinates are those of ShellMap, so that no borders of tets show. Background 0,
+/// Grids over the voxels whose centres lie in a tet, in the order of Coordinate and the masks of
+/// layers last. All have the same active voxels, but for the masks, which have those of their
+/// layer. Coordinates are those of ShellMap, so that no borders of tets show. Background 0,
 /// of numbers of triangles and layers -1. In a core there is no prism: numbers are -1, weights and
 /// thickness 0. Same bits for any number of threads. Throws InvalidOption for a voxel size
 /// that is not positive, texture coordinates that are missing, a ramp that is none; Cancelled.
