@@ -57,6 +57,7 @@ std::string names_for_parser(const Option& option)
     return option.kind == OptionKind::flag ? names + ",!" + negation_of(option) : names;
 }
 
+/// The words that CLI11 has for its own types.
 const char* type_in_help(OptionKind kind)
 {
     switch (kind) {
@@ -99,6 +100,8 @@ std::string usage_of(const BoundOption& bound)
 std::string help_of(const BoundOption& bound)
 {
     std::string help = bound.option.help;
+    // CLI11 shows a flag without a value. What is on already can only be turned off, which nobody
+    // would guess.
     if (bound.option.kind == OptionKind::flag && std::get<bool>(bound.default_value))
         help += " [on]";
     std::string choices;
@@ -136,6 +139,7 @@ void add_to_parser(CLI::App& app, BoundOption& bound)
                                 ->option_text("Excludes: " + option.flag);
 }
 
+/// Null where this command has no such flag.
 BoundOption* find(BoundOptions& bound, const std::string& flag)
 {
     const auto found = std::find_if(bound.options.begin(), bound.options.end(),
@@ -143,6 +147,7 @@ BoundOption* find(BoundOptions& bound, const std::string& flag)
     return found == bound.options.end() ? nullptr : &*found;
 }
 
+/// On the command line; what a file of options says does not count.
 bool was_given(const BoundOption& bound)
 {
     return (bound.given && bound.given->count() > 0) ||
@@ -153,6 +158,7 @@ std::string text_of_file(const std::filesystem::path& preset)
 {
     std::ifstream in(preset, std::ios::binary);
     std::ostringstream text;
+    // An empty file fails here as well, since nothing goes into the stream. It is no JSON either.
     if (!in || !(text << in.rdbuf()))
         throw ReadError(preset.string() + ": cannot be read as a file of options");
     return text.str();
@@ -179,6 +185,7 @@ void set_given(BoundOption& bound)
 {
     Option& option = bound.option;
     const bool by_shorthand = bound.shorthand_given && bound.shorthand_given->count() > 0;
+    // The two may say different things, and nothing tells which was meant.
     if (by_shorthand && bound.given->count() > 0)
         throw InvalidOption(option.shorthand + " excludes " + option.flag);
     if (by_shorthand)
@@ -201,6 +208,7 @@ void settle_exclusions(BoundOptions& bound)
     for (BoundOption& one : bound.options) {
         BoundOption* other =
             one.option.excludes.empty() ? nullptr : find(bound, one.option.excludes);
+        // `excludes` may name an option of `build` that this command does not have.
         if (!other)
             continue;
         if (was_given(one) && was_given(*other))
@@ -276,6 +284,7 @@ BoundOptions bind(CLI::App& app, OptionSections sections)
     // The fields still have their defaults at this point, and get() has copied them; afterwards
     // nothing else remembers what the default was.
     bound.sections = std::move(sections);
+    // CLI11 shows groups in the order in which it meets them.
     for (const std::string& group : groups_of(bound.options))
         for (BoundOption& option : bound.options)
             if (option.option.group == group && !option.option.flag.empty())
@@ -288,6 +297,8 @@ void apply(BoundOptions& bound)
     // Exclusions and needs are settled last, because both depend on what the file and the flags
     // have set together.
     BoundOption* purpose = find(bound, kPurposeFlag);
+    // The purpose comes before everything, also before a file of options, as it is the most general
+    // of what can be said.
     if (purpose && was_given(*purpose)) {
         Purpose wanted = Purpose::any;
         Option parsed = purpose_option(wanted);

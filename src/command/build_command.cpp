@@ -30,6 +30,7 @@ namespace vdb_shell::command
 namespace
 {
 
+/// Null without a name. Lengths and places are those of the file (in_place).
 FloatGridPtr read_thickness_grid(const std::string& name)
 {
     if (name.empty())
@@ -46,6 +47,8 @@ void keep_voxel_size(ShellOptions& options, const Context& context)
         options.level_set.voxel_size = context.sequence->voxel_size;
 }
 
+/// By the extension alone: what is in the file is not known before it is read, and options are
+/// refused by this earlier.
 bool is_level_set(const BuildArguments& arguments)
 {
     const GridName source = split_grid_name(arguments.mesh.string());
@@ -79,6 +82,8 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
             "read", [&] { read = read_surface(arguments.mesh, arguments.read, arguments.format); });
         warn_of_lost_digits(arguments.mesh, read, context);
         const Placement& placement = read.report.placement;
+        // Before in_unit: what frames have in common is kept in world units, while a frame that is
+        // rescaled may have a unit of its own.
         keep_voxel_size(options, context);
         options = in_unit(options, placement.unit);
         result = build_shell(read.mesh, options, name, in_place(thickness, placement).get(),
@@ -114,6 +119,7 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     file.report_json = report_json(result.report, false);
     if (wants_vdb(outputs)) {
         file.surface = result.level_set;
+        // Voxels take memory and time, and no other format has a place for them.
         file.depth = shell_depth_grid(file.tets, result.report.field.voxel_size, interrupter);
     }
     return file;
@@ -263,9 +269,12 @@ int run_build(const BuildArguments& arguments, Context& context)
     std::vector<StageCost> write_cost;
     ShellOptions options = arguments.shell;
     ShellResult result = [&] {
+        // For building alone, as only --core-fill starts an outside program.
         const PoliteStop polite(options.core_fill.wanted());
         return read_and_build(arguments, options, context, &interrupter);
     }();
+    // A signal that came while the outside program could run was only noted, and the last stage may
+    // not have asked since.
     if (caught_signal())
         throw Cancelled();
     require_tets(arguments, result);
@@ -281,9 +290,12 @@ int run_build(const BuildArguments& arguments, Context& context)
     });
 
     std::vector<StageCost>& stages = result.report.stages;
+    // After write_outputs: the report within the files cannot have the time that writing them took,
+    // the one beside them can.
     stages.insert(stages.end(), write_cost.begin(), write_cost.end());
     write_report(arguments, result.report, files);
     files.commit();
+    // When all files are in their places: whoever reads figures may take the files for written.
     print_figures(arguments, result.report, context.out);
     return status_of_build(result.report, context);
 }

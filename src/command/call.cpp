@@ -37,6 +37,8 @@ namespace vdb_shell::command
 namespace
 {
 
+/// The parser binds fields when it is made, before it is known which command is given; so all
+/// commands have theirs here.
 struct Arguments {
     GlobalArguments global;
     BuildArguments build;
@@ -63,6 +65,7 @@ struct Subcommand {
     BoundOptions bound;
     std::function<FilePlan()> plan;
     std::function<int(Context&)> run;
+    /// --frames gives this command all frames in one run, as its output is one file of all.
     bool gathers_frames = false;
 };
 
@@ -118,6 +121,7 @@ struct Call::Parts {
     BoundOptions global;
     std::vector<Subcommand> commands;
 
+    /// The order of its calls is that of the commands in the help.
     template <typename Add, typename Struct>
     void add(const char* name, const char* help, Add add_options, Struct& arguments,
              std::function<FilePlan()> plan, std::function<int(Context&)> run)
@@ -254,6 +258,8 @@ Subcommand& Call::Parts::given()
 std::vector<std::string> words_of(const std::vector<std::string>& given)
 {
     std::vector<std::string> words;
+    // The parser would take whatever comes next for the value, and so `--progress build` for a
+    // style.
     const auto style = [](const std::string& word) {
         const auto& table = names(ProgressStyle::none);
         return std::any_of(table.begin(), table.end(),
@@ -264,6 +270,7 @@ std::vector<std::string> words_of(const std::vector<std::string>& given)
         const std::string next = i + 1 < given.size() ? given[i + 1] : "";
         if (word == "--frames" && !next.empty()) {
             words.push_back(word);
+            // A parser takes a word that begins with a minus for a flag; behind an = it does not.
             words.back().append("=").append(next);
             ++i;
         } else if (word == "--progress") {
@@ -323,11 +330,14 @@ bool Call::gathers_frames() const
 std::string Call::options_text() const
 {
     const Subcommand& command = parts_->given();
+    // Folders do not count: the same work on another machine, or after the project was moved, has
+    // other folders and the same bytes.
     const auto name_alone = [](const std::string& file) {
         return std::filesystem::path(file).filename().string();
     };
     std::string text = command.app->get_name() + '\n';
     for (const CLI::Option* option : command.app->get_options())
+        // Words without a flag have no description of ours.
         if (option->get_positional())
             for (const std::string& word : option->results())
                 text += name_alone(word) + '\n';
@@ -336,6 +346,8 @@ std::string Call::options_text() const
         const std::string value = text_of(option.get());
         text += option.flag + ' ' + option.key + '=';
         if (option.kind == OptionKind::text && bound.given)
+            // An option that can be given several times keeps more than its field shows, and their
+            // order counts.
             for (const std::string& word : bound.given->results())
                 text += name_alone(word) + ' ';
         text += (option.kind == OptionKind::text ? name_alone(value) : value) + '\n';

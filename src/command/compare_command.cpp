@@ -69,6 +69,7 @@ int run_compare(const CompareArguments& arguments, Context& context)
         write_picture_pair(arguments.picture, first, second, arguments.drawing, &files);
         files.commit();
     }
+    // After the picture is in its place, so that figures are not followed by an error.
     context.out << text;
     return success;
 }

@@ -44,6 +44,8 @@ void take_core_files(Option& option, std::vector<std::string>& files)
                    "). Or FILE: a closed surface inside (or FILE.vdb:GRID, a level set) that the "
                    "shell stays off; once for each. A file of such a name: ./" +
                    option.choices.front();
+    // What is one of the option's own words goes through the setter that it had; all else is a
+    // file.
     option.set = [words = std::exchange(option.choices, {}), set = option.set,
                   &files](const OptionValue& value) {
         const auto& text = std::get<std::string>(value);
@@ -68,6 +70,8 @@ std::vector<CoreMesh> read_cores(const std::vector<std::string>& files, const Re
         CoreMesh core{path.filename().string(), {}};
         Placement own;
         if (path.extension() == ".vdb") {
+            // A level set has a transform of its own, in world space; so its placement is the one
+            // that moves nothing.
             core.mesh = contour(*read_level_set(parts.file, parts.grid));
         } else {
             ReadResult read = read_surface(path, options);

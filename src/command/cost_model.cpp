@@ -31,6 +31,8 @@ namespace
 
 using openvdb::Vec3d;
 
+/// What costs are proportional to. Voxels of the surface are its area over the square of a voxel's
+/// edge, those of the solid its volume over the cube; `more_layers` counts those after the first.
 struct Size {
     double triangles = 0, surface_voxels = 0, solid_voxels = 0, more_layers = 0;
 };
@@ -55,13 +57,17 @@ double triangles_of(const ShellOptions& shell, const TriangleMesh& mesh, double 
         count = double(*shell.remesh.triangles);
     if (shell.remesh.edge_length) {
         const double edge = *shell.remesh.edge_length;
+        // As many equilateral triangles of that edge as the surface has room for.
         count = area / (std::sqrt(3.0) / 4 * edge * edge);
     }
+    // Every level cuts a triangle in four.
     return count * std::pow(4.0, shell.subdivide.levels);
 }
 
 double sum_of(const CostNumbers& numbers, const Size& size)
 {
+    // Two slopes for triangles: from kCoarseFrom on growth begins on a coarser surface
+    // (GrowOptions::coarse_from), so those beyond cost less.
     return numbers[0] + numbers[1] * std::min(size.triangles, kCoarseFrom) +
            numbers[2] * std::max(size.triangles - kCoarseFrom, 0.0) +
            numbers[3] * size.surface_voxels + numbers[4] * size.solid_voxels +
@@ -85,6 +91,7 @@ double other_file(const std::string& extension, double triangles, double tets)
 
 double disk_of(const Outputs& outputs, const Size& size, const CostNumbers& vdb)
 {
+    // Three tets a prism, as it has without pins and tapering: the most that there can be.
     const double tets = 3 * size.triangles * (1 + size.more_layers);
     double bytes = 0;
     for (const std::filesystem::path& path : outputs.paths)
@@ -94,6 +101,8 @@ double disk_of(const Outputs& outputs, const Size& size, const CostNumbers& vdb)
     return bytes;
 }
 
+/// Options that none of the measured builds had. What they cost is not known, so it is said and not
+/// guessed.
 std::vector<std::string> not_counted(const BuildArguments& a)
 {
     const ShellOptions& s = a.shell;
@@ -161,6 +170,8 @@ CallCost estimate_build(const BuildArguments& arguments)
     const ShellOptions shell = in_unit(arguments.shell, unit);
     const double voxel = resolve_voxel_size(read.mesh, shell.level_set);
     Size size = size_of(read.mesh, voxel, std::size_t(std::max(shell.layers.layers, 1)));
+    // The voxels are those of the surface as it is read: resampling changes the number of its
+    // triangles, and hardly its area and volume.
     size.triangles = triangles_of(shell, read.mesh, area_of(read.mesh));
     CallCost cost;
     cost.file = arguments.mesh.string();
@@ -209,6 +220,8 @@ CallCost estimate_deform(const DeformArguments& arguments)
     cost.file = arguments.call.volume.string();
     for (const GridBasePtr& grid :
          read_volumes(arguments.call.volume, arguments.call.grids, GridKinds::volumes_and_points)) {
+        // Of deformations the numbers for voxels of the surface mean those of the volume
+        // (cost_numbers.h).
         size.surface_voxels += double(grid->activeVoxelCount());
         cost.voxel_size = grid->voxelSize()[0];
         if (!grid->isType<openvdb::FloatGrid>())

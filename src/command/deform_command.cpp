@@ -55,6 +55,8 @@ std::string figures_of_deform(const DeformFigures& f, bool points)
     std::snprintf(line, sizeof line, "%s: %zu %s, %zu before", f.grid.c_str(), f.active_after,
                   points ? "points" : "voxels", f.active_before);
     std::string text = line;
+    // Vectors, whole numbers and level sets have no mass, and a change by per cent of nothing says
+    // nothing.
     if (f.mass_before != 0) {
         std::snprintf(line, sizeof line, "; mass %.6g, %.6g before (%+.3f %%)", f.mass_after,
                       f.mass_before, 100 * (f.mass_after / f.mass_before - 1));
@@ -118,12 +120,17 @@ FilePlan plan_deform(const DeformArguments& arguments)
 
 int run_deform(const DeformArguments& arguments, Context& context)
 {
+    // Made anew, for reading adds the file in which a shell keeps its points: no output may replace
+    // that either.
     FilePlan plan = plan_deform(arguments);
     SignalInterrupter interrupter(context);
     MappedShell posed = map_shell(arguments.posed, plan);
     const std::unique_ptr<ShellMap> from = map_before(arguments, posed, plan);
+    // Before any voxel is asked for, so that what is carried there and back comes back to where it
+    // was.
     make_linear_alike(*from, *posed.map);
     std::unique_ptr<ShellMap> velocity;
+    // Before the first volume, whose work would be lost.
     if (arguments.velocity && !(velocity = map_of_velocities(posed)))
         throw InvalidOption(arguments.posed.string() +
                             ": it does not know how fast it moves, which --velocity asks for; "
@@ -146,6 +153,7 @@ int run_deform(const DeformArguments& arguments, Context& context)
         text += figures_of_deform(figures, is_point_grid(*grid));
     }
     if (velocity) {
+        // Points have theirs as an attribute already.
         const auto volume = std::find_if(made.begin(), made.end(), [](const GridBasePtr& grid) {
             return !is_point_grid(*grid);
         });

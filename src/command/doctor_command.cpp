@@ -83,11 +83,13 @@ void print_machine(std::ostream& out)
 /// Grids by name and type, and whether they are a shell of ours.
 void print_vdb(std::ostream& out, const fs::path& path)
 {
+    // Before OpenVDB opens it: a count in a damaged file could have it ask for all memory.
     require_whole_vdb(path);
     openvdb::initialize();
     openvdb::io::File file(path.string());
     file.open(false);
     bool level_set = false;
+    // Names and types only: that the rest is whole, the walk has shown.
     const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
     for (const openvdb::GridBase::Ptr& grid : *grids) {
         const bool is_level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
@@ -97,6 +99,7 @@ void print_vdb(std::ostream& out, const fs::path& path)
         level_set = level_set || (is_level_set && grid->isType<openvdb::FloatGrid>());
     }
     const openvdb::MetaMap::Ptr metadata = file.getMetadata();
+    // The key that only files of ours have; whether the shell in it is whole is for check.
     const bool shell = (*metadata)["vdb_shell_schema"] != nullptr;
     print_row(out, "use",
               shell       ? "info, convert and check read it as a shell"

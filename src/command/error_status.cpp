@@ -21,6 +21,8 @@ namespace vdb_shell::command
 namespace
 {
 
+/// Words that programs compare with, so they do not change. Several statuses of a signal are one
+/// word.
 const char* code_of(int status)
 {
     switch (status) {
@@ -61,6 +63,7 @@ std::string element_at(const std::string& text)
     for (const std::string kind : kinds) {
         if (text.rfind(kind, 0) != 0)
             continue;
+        // Grids have names, all else has numbers.
         const bool quoted = text[kind.size()] == '"';
         const std::size_t end = quoted ? text.find('"', kind.size() + 1) + 1
                                        : text.find_first_not_of("0123456789", kind.size());
@@ -76,6 +79,7 @@ std::string element_at(const std::string& text)
 int status_of(const std::exception& error)
 {
     if (dynamic_cast<const Cancelled*>(&error))
+        // Nothing but a signal asks stages to stop, so a stop without one is a fault of ours.
         return caught_signal() ? signal_base + caught_signal() : internal_error;
     if (dynamic_cast<const InvalidOption*>(&error))
         return usage_error;
@@ -103,12 +107,14 @@ ErrorFacts facts_of(const std::exception& error)
     facts.code = code_of(status_of(error));
     std::string rest = message_of(error);
     const std::string first = rest.substr(0, rest.find(": "));
+    // Formats go by extensions, so files have one; "line 3" and "--layers" have none.
     if (first.size() < rest.size() && std::filesystem::path(first).has_extension()) {
         facts.file = first;
         rest.erase(0, first.size() + 2);
     }
     facts.element = element_at(rest);
     const std::size_t is = rest.find(" is "), must = rest.find(", must be ");
+    // "vertex 7 is not finite, must be ..." would look like an option, so elements come first.
     if (facts.element.empty() && is < must && must != std::string::npos) {
         facts.option = take_before(rest, " is ");
         facts.value = take_before(rest, ", must be ");

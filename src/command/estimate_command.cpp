@@ -102,6 +102,8 @@ std::vector<Step> steps_of(const EstimateArguments& arguments, GlobalArguments& 
     Call call;
     call.parse(words);
     global = call.global();
+    // Then plan_steps lets inputs be missing: a job is estimated before the files of all its frames
+    // are there.
     global.keep_going = true;
     return plan_steps(words, global, context);
 }
@@ -112,6 +114,7 @@ Estimate estimate_words(const EstimateArguments& arguments, const Context& conte
     const std::vector<Step> steps = steps_of(arguments, global, context);
     Call first;
     first.parse(steps.front().words);
+    // Sets the command's own options; the plan itself has been made by steps_of.
     first.plan();
     return {first.name(), steps.size(), global.threads > 0 ? global.threads : int(thread_count()),
             estimate_call(first)};
@@ -158,6 +161,8 @@ FilePlan plan_estimate(const EstimateArguments& arguments)
     const BuildArguments& build = arguments.build;
     FilePlan plan(Existing::replaced);
     if (is_call(arguments)) {
+        // Options before -- are those of a build's surfaces. With a call behind it they would be
+        // without effect, and -o looks as if it had one.
         if (!build.outputs.paths.empty())
             throw InvalidOption("the call stands behind --, with all its options: estimate -- " +
                                 arguments.words.front() + " ...");
@@ -188,6 +193,7 @@ int run_estimate(const EstimateArguments& arguments, Context& context)
     double seconds = 0, memory = 0, disk = 0;
     for (const Estimate& estimate : estimates_of(arguments, context)) {
         seconds += estimate.seconds();
+        // One after the other: memory is given back between them, files stay.
         memory = std::max(memory, estimate.cost.memory);
         disk += estimate.disk();
         meshes.push_back(json_of(estimate));

@@ -93,6 +93,7 @@ OptionList task_options(FarmArguments& a)
                 .within(at_least(0))};
 }
 
+/// What neither an engine nor a shell gives a meaning to.
 std::string job_name(const FarmArguments& arguments)
 {
     std::string name = arguments.name.empty() ? arguments.job.stem().string() : arguments.name;
@@ -108,11 +109,15 @@ std::string job_name(const FarmArguments& arguments)
 /// Names that stand in the job as they are.
 void require_one_line(const fs::path& path, const char* what)
 {
+    // A line break would end one of sbatch's lines. A backslash in a name of a log has sbatch
+    // replace none of the signs behind it.
     if (path.string().find_first_of("\n\r\\") != std::string::npos)
         throw InvalidOption(std::string(what) + " \"" + path.string() +
                             "\" has a line break or a backslash, which has no place in a job");
 }
 
+/// As Linux names the file of a running process. Slurm's machines mostly see the same disks, so
+/// they know it by this path.
 std::string own_program()
 {
     std::error_code unknown;
@@ -120,6 +125,7 @@ std::string own_program()
     return unknown ? "vdb_shell" : self.string();
 }
 
+/// An array is for programs that write lists: in it nothing has to be quoted.
 std::vector<std::string> words_of_line(const std::string& line, const std::string& place)
 {
     if (line.front() != '[')
@@ -159,6 +165,7 @@ std::vector<FarmCall> given_calls(const FarmArguments& arguments, const Context&
     if (!arguments.calls.empty())
         return calls_in(arguments.calls, context);
     std::vector<FarmCall> calls{plan_call(arguments.call, "", context)};
+    // A list may hold single runs, for there are many of them.
     if (calls.front().frames.empty())
         throw InvalidOption("the call behind -- has no --frames, and one run alone needs no farm; "
                             "--calls takes a list of them");
@@ -168,6 +175,8 @@ std::vector<FarmCall> given_calls(const FarmArguments& arguments, const Context&
 std::size_t chunk_of(const FarmArguments& arguments, const FarmJob& job,
                      const std::optional<StepCost>& cost)
 {
+    // Never more tasks than an array takes, however long one of them gets; `--chunk` is taken at
+    // its word, and its author knows the engine.
     const std::size_t steps = job.steps(), least = (steps + kMostTasks - 1) / kMostTasks;
     if (arguments.chunk > 0)
         return std::size_t(arguments.chunk);
@@ -206,8 +215,11 @@ FarmJob job_of(const FarmArguments& arguments, const Context& context, bool with
     require_one_line(job.program, "the program");
     job.limits = arguments.limits;
     job.calls = given_calls(arguments, context);
+    // After all calls are planned, which needs their outputs; before tasks are made of them, for a
+    // task may hold several calls in any order.
     require_apart(job.calls);
     for (std::size_t c = 0; c < job.calls.size(); ++c)
+        // The name counts calls and not assets: two lines of a list may well have one name.
         if (job.calls[c].manifest.empty())
             job.calls[c].manifest = job.folder / ("call-" + std::to_string(c) + ".json");
     std::optional<StepCost> cost;
@@ -215,6 +227,7 @@ FarmJob job_of(const FarmArguments& arguments, const Context& context, bool with
         cost = dearest_step(job.calls, job.limits.cpus, context);
     job.chunk = chunk_of(arguments, job, cost);
     job.tasks = tasks_of(job.calls, job.chunk);
+    // After the tasks, whose size decides how long one takes.
     if (cost)
         set_limits(job, *cost);
     return job;
@@ -264,6 +277,8 @@ FilePlan plan_farm(const FarmArguments& arguments)
     require_engine_is_there(arguments);
     std::ostringstream unheard;
     const Context silent{unheard, unheard, LogLevel::error, MessageFormat::text, {}};
+    // Without an estimate, which would read a surface: a plan reads nothing. A list of calls is a
+    // file too, and is looked at by the run.
     if (!arguments.call.empty())
         text_of_job(arguments, job_of(arguments, silent, false));
     return plan;

@@ -42,6 +42,7 @@ std::vector<std::string> shared_words(const std::vector<std::string>& words)
     std::vector<std::string> shared;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
+        // Flags that every task says anyway, or that would contradict what it says.
         const bool alone = is_flag(word, "--resume") || is_flag(word, "--keep-going") ||
                            word == "--no-resume" || word == "--no-keep-going";
         const bool valued = is_flag(word, "--frames") || is_flag(word, "--manifest");
@@ -62,6 +63,7 @@ void require_for_farm(const Call& call, const std::vector<std::string>& words)
     const GlobalArguments& global = call.global();
     if (global.dry_run)
         throw InvalidOption("--dry-run stands before --, beside farm");
+    // Two places for one number could contradict each other, and the engine only knows of its own.
     if (global.threads > 0)
         throw InvalidOption("--threads is said to the tasks by farm; give it --cpus");
     for (const std::string& word : words)
@@ -83,6 +85,7 @@ std::optional<FileWord> file_word(const std::string& word, std::optional<int> fr
                                   const std::vector<fs::path>& files)
 {
     const std::size_t behind_flag = word.rfind("--", 0) == 0 ? word.find('=') + 1 : 0;
+    // The whole word first, for a colon can be a part of a file's name.
     for (const std::size_t length : {word.size(), word.rfind(':')}) {
         if (length == std::string::npos || length <= behind_flag)
             continue;
@@ -100,6 +103,8 @@ void take_files(FarmCall& farm, const std::vector<Step>& steps)
         farm.outputs.insert(farm.outputs.end(), step.outputs.begin(), step.outputs.end());
     const Step& first = steps.front();
     std::vector<fs::path> inputs = first.inputs;
+    // Those that are not there yet as well: a job before this one may make them, and a worker has
+    // to get them.
     inputs.insert(inputs.end(), first.missing.begin(), first.missing.end());
     if (!inputs.empty())
         farm.first_input = inputs.front();
@@ -114,6 +119,7 @@ void take_files(FarmCall& farm, const std::vector<Step>& steps)
             farm.files.push_back(*file);
         }
     }
+    // A file of options can name files of its own, which no word of the call shows.
     farm.unnamed_inputs = inputs.size() - std::min(inputs.size(), named);
 }
 
@@ -233,6 +239,7 @@ void require_apart(const std::vector<FarmCall>& calls)
             written.push_back(calls[i].manifest);
         for (const fs::path& output : written) {
             const auto [other, added] = writers.emplace(identity_of(output), i);
+            // Frames of one call have been held against each other by plan_steps.
             if (!added && other->second != i)
                 throw InvalidOption(output.string() + ": would be written by " +
                                     name(other->second) + " and by " + name(i));
@@ -250,6 +257,8 @@ void require_apart(const std::vector<FarmCall>& calls)
 
 std::vector<FarmTask> tasks_of(const std::vector<FarmCall>& calls, std::size_t chunk)
 {
+    // Calls without frames share a task, as many as `chunk`; a call with frames has tasks of its
+    // own, for --frames belongs to one run of the command.
     std::vector<FarmTask> tasks;
     bool open = false; // whether the last one takes calls without frames
     for (std::size_t c = 0; c < calls.size(); ++c) {

@@ -27,6 +27,7 @@ constexpr double kTimeMargin = 4, kLeastMinutes = 5, kMemoryMargin = 1.25, kMore
 /// Empty where the model knows the call; else why not.
 std::string add_cost(const FarmCall& call, int cpus, StepCost& dearest)
 {
+    // The reason is told to the user, who then knows which of --memory and --minutes to give.
     if (!is_modelled(call.command))
         return "`" + call.command + "`";
     if (!std::filesystem::exists(call.first_input))
@@ -37,6 +38,8 @@ std::string add_cost(const FarmCall& call, int cpus, StepCost& dearest)
     try {
         const CallCost cost = estimate_call(first);
         if (!cost.not_counted.empty())
+            // A number that leaves out what an option costs is too low, and a limit that is too low
+            // ends the task.
             return cost.not_counted.front();
         dearest.seconds = std::max(dearest.seconds, cost.seconds(cpus));
         dearest.memory = std::max(dearest.memory, cost.memory);
@@ -64,6 +67,7 @@ std::optional<StepCost> dearest_step(const std::vector<FarmCall>& calls, int cpu
 
 std::size_t chunk_for(const StepCost& cost, std::size_t steps)
 {
+    // A millisecond at least, so that a model that says nothing does not divide by it.
     const double fit = kTaskSeconds / std::max(cost.seconds, 1e-3);
     return fit < double(steps) ? std::size_t(std::max(fit, 1.0)) : steps;
 }
@@ -81,6 +85,7 @@ void set_limits(FarmJob& job, const StepCost& cost)
         }
         most = std::max(most, steps);
     }
+    // What was given is not touched: a person knows the machines.
     if (!job.limits.minutes)
         job.limits.minutes =
             std::max(kLeastMinutes, kTimeMargin * double(most) * cost.seconds / kSecondsPerMinute);

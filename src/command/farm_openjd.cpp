@@ -100,6 +100,8 @@ public:
           template_folder_(fs::absolute(file).lexically_normal().parent_path()),
           tasks_folder_(folders_.use(checked(job.folder.string()), true))
     {
+        // Read as well: --resume looks at what an earlier attempt has noted, and the join at what
+        // all tasks have.
         folders_.use(job.folder, false);
     }
 
@@ -108,6 +110,7 @@ public:
         ordered_json steps = ordered_json::array();
         for (std::size_t c = 0; c < job_.calls.size(); ++c) {
             steps.push_back(call_step(c));
+            // A call without frames is one task, whose manifest says everything already.
             if (!job_.calls[c].frames.empty())
                 steps.push_back(join_step(c));
         }
@@ -142,6 +145,8 @@ private:
                        {"type", "STRING"},
                        {"description", "vdb_shell, as the workers know it"},
                        {"default", checked(job_.program)}});
+        // The scheduler parts the frames, so they are a parameter of the job, which whoever submits
+        // it can change.
         if (chunking_)
             all.push_back({{"name", "Frames"},
                            {"type", "STRING"},
@@ -156,6 +161,8 @@ private:
 
     std::string in_folder(const fs::path& path, bool output)
     {
+        // The folder is an expression, which the worker's own path replaces; the name behind it
+        // stays, with its frame token.
         const fs::path whole = (job_.home / path).lexically_normal();
         return folders_.use(checked(whole.parent_path().string()), output) + "/" +
                checked(whole.filename().string());
@@ -166,9 +173,11 @@ private:
     std::vector<std::string> words_of(const FarmCall& call)
     {
         std::vector<std::string> words = call.words;
+        // A folder becomes a parameter only if a word of the call shows it.
         if (call.unnamed_inputs > 0)
             throw InvalidOption("an input is named by no word of the call, but by a file of "
                                 "options: a worker would not get it; name it in the call");
+        // Before expressions are put in, which have the braces that are refused here.
         for (std::string& word : words)
             checked(word);
         for (const FileWord& file : call.files)
@@ -209,9 +218,12 @@ private:
         if (chunking_) {
             frames["type"] = "CHUNK[INT]";
             frames["range"] = "{{Param.Frames}}";
+            // Every frame is a run of its own, so those of a chunk need not follow each other.
             frames["chunks"] = {{"defaultTaskCount", job_.chunk},
                                 {"rangeConstraint", "NONCONTIGUOUS"}};
         } else {
+            // Without the extension a task has one value. A text like 1-9x2 lets it hold a whole
+            // chunk.
             frames["type"] = "STRING";
             frames["range"] = parts_of(call);
         }
@@ -222,6 +234,7 @@ private:
     {
         constexpr double kMibPerGib = 1024;
         ordered_json amounts = ordered_json::array();
+        // Names of the specification, which counts memory in MiB.
         amounts.push_back({{"name", "amount.worker.vcpu"}, {"min", job_.limits.cpus}});
         if (job_.limits.memory_gib)
             amounts.push_back({{"name", "amount.worker.memory"},
@@ -233,6 +246,7 @@ private:
     {
         const FarmCall& call = job_.calls[c];
         const bool frames = !call.frames.empty();
+        // By its frames, for a template does not know the number of a task.
         const std::string part = tasks_folder_ + "/" + std::to_string(c) + "-" +
                                  (frames ? "{{Task.Param.Frames}}" : "0") + ".json";
         ordered_json args = ordered_json::array(
@@ -255,6 +269,8 @@ private:
         ordered_json args = ordered_json::array({"join", "-o", in_folder(call.manifest, true)});
         args.push_back(chunking_ ? std::string("--expect={{Param.Frames}}")
                                  : "--expect=" + frames_text(call.frames));
+        // How the scheduler will part the frames is not known, so all manifests of the folder are
+        // joined.
         if (chunking_)
             args.push_back(tasks_folder_);
         else

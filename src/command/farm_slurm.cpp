@@ -75,6 +75,8 @@ submit() {
 }
 )";
 
+/// What the script is asked for: the first word says it; without one a task of an array runs
+/// itself, and a person is shown the lines at the top of the file.
 constexpr const char* kRoles = R"(
 here() {
     mkdir -p "$folder" || exit 5
@@ -113,9 +115,12 @@ void write_directives(std::ostream& out, const FarmJob& job)
         out << '%' << limits.at_once;
     out << "\n#SBATCH --cpus-per-task=" << limits.cpus << '\n';
     if (limits.memory_gib)
+        // Whole mebibytes and minutes, rounded up: sbatch takes no fractions.
         out << "#SBATCH --mem=" << std::lround(std::ceil(*limits.memory_gib * kMibPerGib)) << "M\n";
     if (limits.minutes)
         out << "#SBATCH --time=" << std::lround(std::ceil(*limits.minutes)) << '\n';
+    // A task that is put back goes on in the same log, so that the reason of its first end is not
+    // lost.
     out << "#SBATCH --requeue\n#SBATCH --open-mode=append\n";
 }
 
@@ -130,6 +135,7 @@ void write_calls(std::ostream& out, const FarmJob& job)
 {
     out << '\n';
     for (std::size_t c = 0; c < job.calls.size(); ++c) {
+        // A function for each call, as a call has many tasks and its words are written once.
         out << "call_" << c << "() { run \"$1\" \"$2\"";
         for (const std::string& word : job.calls[c].words)
             out << ' ' << quoted(word);
@@ -151,6 +157,8 @@ void write_tasks(std::ostream& out, const FarmJob& job)
            "    esac\n}\n";
 }
 
+/// One manifest of parts for each call. bash makes their names of a range, for a call may have a
+/// thousand parts.
 void write_joins(std::ostream& out, const FarmJob& job)
 {
     std::vector<std::size_t> parts(job.calls.size(), 0);

@@ -20,6 +20,8 @@ using nlohmann::ordered_json;
 /// Raised when keys change their meaning.
 constexpr int kTopsSchema = 1;
 
+/// --keep-going, since a task is a failure all the same if one frame is, and the others are done by
+/// then.
 ordered_json words_of(const FarmJob& job, const FarmRun& run)
 {
     const FarmCall& call = job.calls[run.call];

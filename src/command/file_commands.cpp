@@ -118,6 +118,8 @@ int run_info(const FileArguments& arguments, Context& context)
     for (const openvdb::FloatGrid::Ptr& grid : {file.surface, file.depth})
         if (grid)
             print_grid(*grid, context.out);
+    // Reading has thrown already for a part whose digest does not hold; so what is printed is that
+    // they do.
     print_checks(file, context.out);
     context.out << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
     return success;
@@ -133,6 +135,7 @@ FilePlan plan_convert(const FileArguments& arguments)
 
 int run_convert(const FileArguments& arguments)
 {
+    // Made anew, for the points may stand in a file that is not known before this one is opened.
     FilePlan plan = plan_convert(arguments);
     // The file says itself where its points are, if they are not in it.
     if (!houdini::has_geometry_extension(arguments.file))

@@ -28,6 +28,8 @@ bool takes_a_stream(const struct stat& file)
     for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
         struct stat status {
         };
+        // A rename would leave the stream writing into a file that has no name any more. Devices
+        // keep their place, so they are no matter.
         if (S_ISREG(file.st_mode) && ::fstat(stream, &status) == 0 &&
             status.st_dev == file.st_dev && status.st_ino == file.st_ino)
             return true;
@@ -51,6 +53,7 @@ std::optional<FilePlan::Identity> FilePlan::identity_of(const fs::path& path)
 {
     struct stat status {
     };
+    // Follows links: what counts is which bytes are read or replaced.
     if (::stat(path.c_str(), &status) != 0)
         return std::nullopt;
     return Identity{status.st_dev, status.st_ino, ""};
@@ -78,6 +81,8 @@ void FilePlan::add_input(const fs::path& path)
             missing_.push_back(path);
         return;
     }
+    // Points of a shell may stand in a file that is only known when outputs have been added
+    // (read_shell_info), so both are asked whichever comes first.
     if (const Entry* output = find(outputs_, *identity))
         throw InvalidOption(output->path.string() + ": is the input " + path.string() +
                             "; it is not overwritten");
@@ -92,6 +97,8 @@ void FilePlan::add_output(const fs::path& path)
         identity = identity_of(target.folder());
         if (!identity)
             refuse_output(path, "its folder does not exist");
+        // A file that is not there has no inode. Its folder has, and within a folder a name is
+        // unique.
         identity->name = target.path.filename().string();
     }
     if (const Entry* input = find(inputs_, *identity))

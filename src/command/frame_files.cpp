@@ -53,6 +53,7 @@ void for_each_frame(const FrameFiles& arguments, FilePlan plan, Context& context
         const std::filesystem::path& file = arguments.files[i];
         // The file says itself where its points are, if they are not in it.
         if (!houdini::has_geometry_extension(file))
+            // Throws where the output would replace it.
             plan.add_input(read_shell_info(file).points_at);
         use(i, read_shell(file));
     }

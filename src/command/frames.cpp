@@ -100,6 +100,8 @@ private:
         pass_blanks();
         const std::size_t begin = place_;
         if (take("x:")) {
+            // Messages name the step from its sign on, so the place goes back there. When it is
+            // found right it is read once more, to get behind it.
             const int given = read_number("a step");
             place_ = begin;
             if (given == 0)
@@ -107,6 +109,7 @@ private:
             if (given < 0 && last > first)
                 refuse("a step downwards does not lead from " + std::to_string(first) + " to " +
                        std::to_string(last));
+            // The two ends of the range say which way it goes: 10-1x3 and 10-1x-3 are the same.
             step *= std::abs(given);
             take("x:");
             read_number("a step");
@@ -117,6 +120,7 @@ private:
 
     void add(int frame)
     {
+        // Left out and noted, as the outputs of the two would be the same files.
         if (!known_.insert(frame).second) {
             list_.repeated.push_back(frame);
             return;
@@ -200,6 +204,7 @@ std::optional<Token> next_token(const std::string& path, std::size_t from)
     return std::nullopt;
 }
 
+/// A minus counts as one of the digits, as for printf.
 std::string padded(int frame, int width)
 {
     std::string digits = std::to_string(std::abs(frame));
@@ -222,6 +227,7 @@ std::string frames_text(const std::vector<int>& frames)
     for (std::size_t begin = 0; begin < frames.size();) {
         std::size_t end = begin + 1;
         const int step = end < frames.size() ? frames[end] - frames[begin] : 0;
+        // As far as the step stays the same.
         while (end < frames.size() && frames[end] - frames[end - 1] == step)
             ++end;
         // Two of them are a range only where they are neighbours: "1-2", but "1,9".

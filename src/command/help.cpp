@@ -25,6 +25,7 @@ public:
     std::string make_description(const CLI::App* app) const override
     {
         std::string text = CLI::Formatter::make_description(app);
+        // The program itself has no parent, and its examples stand under an empty name.
         const std::string command = app->get_parent() ? app->get_name() : "";
         const std::vector<Example>& examples = examples_of(command);
         if (!examples.empty())
@@ -95,6 +96,7 @@ void begin_help_with_examples(CLI::App& app)
     app.formatter(std::make_shared<HelpWithExamples>());
 }
 
+/// What a report of a fault has to say.
 std::string version_text()
 {
     std::ostringstream text;

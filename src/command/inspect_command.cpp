@@ -73,6 +73,8 @@ int run_inspect(const InspectArguments& arguments, Context& context)
         context.out << inspection_json(name, read.report, inspection) << '\n';
     else
         context.out << inspection_text(name, read.report, inspection);
+    // The picture and the text are made in any case; a surface that is not usable is what they are
+    // made for.
     return usable(inspection) ? success : check_failed;
 }
 

@@ -26,6 +26,7 @@ namespace
 
 namespace fs = std::filesystem;
 
+/// Without --expect one run without a frame, whose manifest has a null for it.
 std::vector<std::optional<int>> expected(const JoinArguments& arguments)
 {
     if (arguments.expect.empty())
@@ -60,15 +61,21 @@ std::vector<fs::path> parts_of(const JoinArguments& arguments)
     std::vector<fs::path> parts;
     for (const fs::path& part : arguments.parts) {
         if (!fs::is_directory(part)) {
+            // One that is not there is what a task that never ran has left: its frames are told to
+            // be missing.
             if (fs::exists(part))
                 parts.push_back(part);
             continue;
         }
         std::vector<fs::path> inside;
         for (const fs::directory_entry& entry : fs::directory_iterator(part))
+            // The whole manifest may stand in the folder of its parts, from an earlier join, and is
+            // none of them.
             if (entry.path().extension() == ".json" &&
                 (!fs::exists(arguments.whole) || !fs::equivalent(entry.path(), arguments.whole)))
                 inside.push_back(entry.path());
+        // A folder is listed in no order. Where two parts know of a frame the last one holds, so
+        // the order has to be the same each time.
         std::sort(inside.begin(), inside.end());
         parts.insert(parts.end(), inside.begin(), inside.end());
     }
@@ -122,6 +129,7 @@ BoundOptions add_join_command(CLI::App& app, JoinArguments& arguments)
 FilePlan plan_join(const JoinArguments& arguments)
 {
     expected(arguments);
+    // --expect was read above for its errors alone, which are told before anything is joined.
     FilePlan plan(Existing::replaced);
     for (const fs::path& part : arguments.parts)
         plan.add_input(part);
@@ -135,7 +143,9 @@ int run_join(const JoinArguments& arguments, Context& context)
     if (files.empty())
         throw ReadError("none of the manifests is there, the first of them not " +
                         arguments.parts.front().string() + "; nothing was written");
+    // The first one says which command the others have to be of.
     const std::string command = Manifest::command_in(files.front());
+    // A manifest holds a mutex and cannot be moved, which a vector would do as it grows.
     std::deque<Manifest> parts;
     for (const fs::path& file : files)
         parts.emplace_back(file, command);

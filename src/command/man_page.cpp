@@ -39,6 +39,8 @@ void write_option(std::ostream& out, const Option& option)
     if (option.kind != OptionKind::flag) {
         out << " \\fI" << (option.kind == OptionKind::text ? "text" : "value") << "\\fR";
         const std::string value = text_of(option.get());
+        // The default. That of a name is empty as a rule, and an option without one would be told
+        // to be "unset".
         if (option.kind != OptionKind::text && value != "unset")
             out << " [" << escaped(value) << ']';
     }
@@ -62,6 +64,7 @@ void write_options(std::ostream& out, const CommandEntry& command)
     for (const BoundOption& bound : command.bound->options) {
         if (bound.option.flag.empty())
             continue;
+        // Options come group by group, as in the help, so a heading stands where the group changes.
         if (bound.option.group != group)
             out << ".SS " << escaped(command.name.empty() ? "" : command.name + ": ")
                 << escaped(group = bound.option.group) << '\n';

@@ -76,6 +76,7 @@ std::vector<FileMark> marks_of(const ordered_json& json)
 ordered_json json_of(const ManifestEntry& entry)
 {
     ordered_json json;
+    // Null, so that every entry has the key and a reader need not ask for it.
     json["frame"] = entry.frame ? ordered_json(*entry.frame) : ordered_json();
     json["status"] = entry.status;
     if (!entry.error.empty())
@@ -108,6 +109,8 @@ ordered_json parsed(const fs::path& file)
     if (!in)
         throw ReadError(file.string() + ": cannot be read");
     ordered_json json = ordered_json::parse(in);
+    // Keys of another schema could mean something else, and a frame that is taken for done is never
+    // looked at again.
     if (json.at("schema").get<int>() != kManifestSchema)
         throw ReadError(file.string() + ": schema is " + json.at("schema").dump() + ", must be " +
                         std::to_string(kManifestSchema));
@@ -136,11 +139,13 @@ FileMark mark_of(const fs::path& file)
     std::ifstream in(file, std::ios::binary);
     FileMark mark{file.string(), 0, ""};
     Digest digest;
+    // A mebibyte at a time: outputs may be larger than memory.
     std::vector<char> buffer(std::size_t(1) << 20U);
     while (in.read(buffer.data(), std::streamsize(buffer.size())) || in.gcount() > 0) {
         digest.add(buffer.data(), std::size_t(in.gcount()));
         mark.bytes += std::uint64_t(in.gcount());
     }
+    // A disk that fails in the middle of a file ends the loop just as its end does.
     if (!in.eof())
         throw ReadError(file.string() + ": cannot be read");
     mark.digest = digest.hex();
@@ -163,6 +168,7 @@ Manifest::Entries Manifest::read() const
         return {};
     return with_file(file_, [&] {
         const ordered_json json = parsed(file_);
+        // Frame 7 of another command is another thing, and one of the two would be lost.
         if (json.at("command").get<std::string>() != command_)
             throw ReadError(file_.string() + ": is the manifest of `" +
                             json.at("command").get<std::string>() + "`, not of `" + command_ + "`");
@@ -234,6 +240,7 @@ void Manifest::put_all_of(const std::deque<Manifest>& others)
     entries_ = read();
     for (const Manifest& other : others)
         for (const auto& [frame, entry] : other.entries_) {
+            // Names of outputs are relative to the manifest, and this one may stand elsewhere.
             ManifestEntry& own = entries_[frame] = entry;
             for (FileMark& output : own.outputs)
                 output.path = relative(other.place_of(output));
@@ -255,6 +262,7 @@ void Manifest::write() const
 {
     ordered_json json;
     json["schema"] = kManifestSchema;
+    // Says to a person what wrote the file; no reader asks for it.
     json["program"] = "vdb_shell";
     json["version"] = VDB_SHELL_VERSION;
     json["command"] = command_;
@@ -262,6 +270,7 @@ void Manifest::write() const
     for (const auto& [frame, entry] : entries_)
         json["steps"].push_back(json_of(entry));
     OutputSet files;
+    // By a set of files as every output: replaced whole, or left as it was.
     files.write_stream(file_, [&](std::ostream& out) {
         out << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
     });

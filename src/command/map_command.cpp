@@ -92,10 +92,14 @@ int run_map(const MapArguments& arguments, Context& context)
         MapFigures figures;
         made.push_back(
             map_volume(*grid, *shell.map, texture.corner, options, figures, &interrupter));
+        // The map works in the frame of the mesh; a .vdb has transforms that lead to where the
+        // file's surface lies.
         made.back()->transform().postTranslate(shell.file.placement.shift());
         report.push_back(json_of(figures));
         text += figures_of_map(figures);
     }
+    // Told and not refused: a repaired or remeshed surface has other triangles, and whether the
+    // nearest coordinates will do is for the user to judge.
     const std::size_t others = texture.corner.size() - texture.same;
     if (others > 0)
         context.say(LogLevel::info,

@@ -15,6 +15,8 @@
 
 #include <utility>
 
+// Takes files of shells; gives the maps that volumes go through. A place is carried from one map to
+// another by the number of its tet, so all maps of a call have to be of the same tets.
 namespace vdb_shell::command
 {
 
@@ -24,6 +26,7 @@ MappedShell map_shell(const std::filesystem::path& path, FilePlan& plan)
     if (!houdini::has_geometry_extension(path))
         plan.add_input(read_shell_info(path).points_at);
     MappedShell shell{path, read_shell(path), {}};
+    // With the tets of a filled core, for a volume may lie there as well.
     shell.map =
         std::make_unique<ShellMap>(shell.file.stack, joined_tets(shell.file.tets, shell.file.core));
     return shell;
@@ -51,6 +54,8 @@ std::unique_ptr<ShellMap> map_of_velocities(const MappedShell& shell)
 
 double voxel_size_of(const MappedShell& shell, double wanted)
 {
+    // A length on the command line is in the unit of the file, as the voxels of the level set are
+    // not: those are the mesh's.
     if (wanted != 0)
         return wanted / shell.file.placement.unit;
     if (!shell.file.surface)
@@ -66,6 +71,7 @@ SurfaceCoordinates texture_of(const std::filesystem::path& mesh, const MappedShe
     const TextureCoordinates textured = houdini::has_geometry_extension(mesh)
                                             ? houdini::read_polygon_texture(mesh, placement)
                                             : read_texture_coordinates(mesh, placement);
+    // The textured surface is that at rest. In the pose no triangle would lie on one of its own.
     const ShellStack rest = rest_stack(shell.file);
     return surface_coordinates(textured, {rest.surface(rest.skin), rest.triangles()});
 }
@@ -73,6 +79,7 @@ SurfaceCoordinates texture_of(const std::filesystem::path& mesh, const MappedShe
 void require_same_tets(const MappedShell& first, const MappedShell& second)
 {
     const TetMesh &a = first.map->tets(), &b = second.map->tets();
+    // Corner for corner: a place found in one is looked up in the other by its number.
     if (a.tets != b.tets || a.prism != b.prism || a.prism_layer != b.prism_layer ||
         a.points.size() != b.points.size())
         throw InvalidOption(second.path.string() + ": its tets (" + std::to_string(b.tets.size()) +

@@ -30,6 +30,7 @@ nlohmann::ordered_json schema_of(const std::vector<CommandEntry>& commands)
     json["version"] = VDB_SHELL_VERSION;
     for (const CommandEntry& command : commands) {
         const nlohmann::ordered_json options = schema_json(command.bound->sections);
+        // What stands beside every command has no command's name, and a key of its own.
         if (command.name.empty())
             json["options"] = options;
         else

@@ -88,6 +88,7 @@ struct Solid {
 Solid solid_of(const ShellFile& file, std::vector<std::uint8_t> certified)
 {
     Solid solid{joined_tets(file.tets, file.core), std::move(certified)};
+    // No flags at all stay none: an empty list says that nobody looked, and not that all are bad.
     if (!solid.certified.empty())
         solid.certified.resize(solid.tets.tets.size(), 1);
     return solid;
@@ -129,6 +130,8 @@ void add_outputs(FilePlan& plan, const Outputs& outputs)
                                 "\"; known are .vdb .geo .bgeo .bgeo.sc .usda .vtu .node .ele "
                                 ".mesh .msh .obj .ply .off .stl .png .html");
     require_sensible(outputs.picture);
+    // Before the files are added: a stage that could not name its volumes would be found out only
+    // when it is written.
     const fs::path volume = first_vdb(outputs);
     for (const fs::path& path : outputs.paths)
         if (kind_of(path) == Kind::usd && !volume.empty())
@@ -153,8 +156,10 @@ bool wants_flags(const Outputs& outputs)
 void write_outputs(const Outputs& outputs, const ShellFile& file,
                    const std::vector<std::uint8_t>& certified, OutputSet& files)
 {
+    // Joined once for all formats of tets, and not at all without one: it is a copy of all tets.
     const Solid solid = wants_flags(outputs) ? solid_of(file, certified) : Solid{};
     for (const fs::path& path : outputs.paths) {
+        // The .ele of a call that names the .node too, which writes both.
         if (files_of(path, outputs).empty())
             continue;
         switch (kind_of(path)) {
@@ -187,7 +192,7 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             write_usd(path, {{0.0, &file, first_vdb(outputs)}}, outputs.usd, &files);
             break;
         case Kind::unknown:
-            break; // refused by require_possible
+            break; // refused by add_outputs
         }
     }
 }

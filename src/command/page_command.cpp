@@ -24,6 +24,7 @@ FilePlan plan_page(const PageArguments& arguments)
 
 int run_page(const PageArguments& arguments, Context& context)
 {
+    // Takes what it needs of a shell at once, so that only one is in memory.
     HtmlPage page;
     for_each_frame(arguments, plan_page(arguments), context,
                    [&](std::size_t i, const ShellFile& shell) {

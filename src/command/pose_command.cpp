@@ -82,6 +82,8 @@ std::shared_ptr<const PreparedShell> prepare(const std::filesystem::path& path, 
         return make();
     const std::lock_guard<std::mutex> lock(context.sequence->mutex);
     std::shared_ptr<const PreparedShell>& known = context.sequence->prepared;
+    // Held by the lock while it is read: other frames that want the same file wait, and do not read
+    // it too. A frame that keeps a pointer keeps the shell, should the next one name another.
     if (!known || known->path != path)
         known = make();
     return known;
@@ -114,10 +116,13 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
     };
     const std::vector<Vec3s> skin = skin_of(arguments.mesh);
     const std::string name = arguments.mesh.filename().string();
+    // Without neighbours no pose is wanted twice, and the cache would only hold memory.
     if (!is_there(arguments.before) && !is_there(arguments.after))
         return build_posed(prepared.rest, skin, arguments.pose, name, interrupter);
     const std::shared_ptr<PoseCache> cache = cache_of(context);
     const auto pose_of = [&](const std::filesystem::path& mesh) {
+        // Neighbours are posed with the same options as their own frames are, so a frame finds its
+        // neighbours' poses, and they find its.
         return cache->get(mesh, [&] {
             return pose_shell(prepared.rest, mesh == arguments.mesh ? skin : skin_of(mesh),
                               arguments.pose, interrupter);
@@ -128,10 +133,14 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
     const auto neighbour = [&](const std::filesystem::path& mesh) {
         const bool there = is_there(mesh);
         frames += there;
+        // At an end of the shot the frame stands in for the neighbour that is missing; the
+        // difference is then one frame's, and else two frames'.
         return there ? pose_of(mesh) : own;
     };
     const PoseCache::Pose before = neighbour(arguments.before), after = neighbour(arguments.after);
     PosedShell posed = finish_posed(prepared.rest, skin, *own, name, interrupter);
+    // Of points of two poses, and not of the skin alone: so inner points have the velocity with
+    // which they really go.
     posed.velocity = point_velocities(*before, *after, frames * arguments.frame_seconds);
     return posed;
 }
@@ -183,6 +192,7 @@ FilePlan plan_pose(const PoseArguments& arguments)
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.rest_mesh);
     for (const std::filesystem::path& neighbour : {arguments.before, arguments.after})
+        // One that is missing is no error: so one call serves all frames of a shot, with its ends.
         if (is_there(neighbour))
             plan.add_input(neighbour);
     plan.add_input(arguments.preset);
@@ -201,11 +211,14 @@ int run_pose(const PoseArguments& arguments, Context& context)
     SignalInterrupter interrupter(context);
     const std::shared_ptr<const PreparedShell> prepared = prepare(arguments.shell, context);
     const ShellFile& rest = prepared->file;
+    // Poses take the voxels of the shell at rest, so that volumes of a sequence have one lattice.
+    // Refused before the work.
     if (wants_vdb(arguments.outputs) && !rest.surface)
         throw InvalidOption(arguments.shell.string() +
                             ": it has no level set, whose voxels a .vdb would have; pose the .vdb");
     PosedShell posed = posed_shell(arguments, *prepared, context, &interrupter);
     const std::vector<std::uint8_t> certified = certified_flags(posed);
+    // A copy, for the shell is moved into its file below, and the report outlives it.
     ShellReport report = posed.report;
     OutputSet files(existing_files(arguments.outputs.no_clobber));
     StageClock(report.stages).run("write", [&] {

@@ -30,6 +30,8 @@ ReadResult read_placed(const std::filesystem::path& path, InputFormat format,
     options.recentre = placement.moves();
     ReadResult read = read_surface(path, options, format);
     const Placement& own = read.report.placement;
+    // Through the file's coordinates in doubles: the digits that the two frames keep are not lost
+    // in between.
     if (own.moves() || placement.moves())
         for (Vec3s& p : read.mesh.points)
             p = Vec3s((own.in_file(p) - placement.origin) / placement.unit);
@@ -66,11 +68,14 @@ std::vector<Vec3s> read_points(const PosedSurface& posed, const Placement& place
     ReadResult read = read_placed(posed.mesh, posed.format, placement, true);
     if (fits(read.mesh))
         return std::move(read.mesh.points);
+    // Only standard input has another format, and it is at its end.
     if (posed.format == InputFormat::by_extension) {
         read = read_placed(posed.mesh, posed.format, placement, false);
         if (fits(read.mesh))
             return std::move(read.mesh.points);
     }
+    // Ids are points' own names, which exporters keep when they write points in another order from
+    // frame to frame.
     if (read.ids.empty() || wanted.ids.empty())
         refuse(posed, read.mesh, wanted);
     return in_order_of_ids(read.mesh.points, read.ids, wanted.ids, posed.mesh.string());
@@ -95,6 +100,7 @@ std::vector<Vec3s> read_posed_skin(const PosedSurface& posed, const ShellStack& 
     moved.points = read_points(posed, placement,
                                {rest.mesh.points.size(), rest.mesh.triangles, std::move(rest.ids),
                                 posed.rest_mesh.string()});
+    // The tie is made at rest, where the two surfaces lie on each other, and kept in the pose.
     return move_bound(bind_surface(skin, rest.mesh), moved);
 }
 

@@ -123,6 +123,7 @@ void Progress::show_text(const StepProgress& step, double share)
 {
     const std::string frame = step.frame_ ? "frame " + std::to_string(*step.frame_) + ": " : "";
     if (!terminal_) {
+        // The last lines, of "done" and "failed", are said by who runs the steps.
         if (share_at(step.stage_) < 1.0)
             err_ << "vdb_shell: " + frame + step.stage_ + '\n';
         return;
@@ -179,6 +180,7 @@ void StepProgress::stage(const std::string& name)
 
 void StepProgress::percent_of_stage(int percent)
 {
+    // OpenVDB's tools give -1 where they do not know how far they are.
     if (percent <= 0 || stage_.empty() || share_at(stage_) < 0)
         return;
     const double begin = share_at(stage_);
@@ -201,7 +203,10 @@ void StepProgress::advance(const std::string& stage, double share, bool at_once)
     const bool same_stage = stage == stage_;
     stage_ = stage;
     shown_ = now;
+    // A stage may come more than once in a step, and some names have no share: what was shown is
+    // not taken back.
     const double reached = std::max(share, share_);
+    // By differences, since steps that run at the same time add to one sum.
     all_.done_ += reached - share_;
     share_ = reached;
     if (!same_stage || all_.terminal_ || all_.style_ == ProgressStyle::json)

@@ -39,6 +39,7 @@ std::string options_for(Purpose purpose)
 void require_fit(Purpose purpose, const ShellOptions& options)
 {
     const char* hindrance = nullptr;
+    // What is refused is only what leaves nothing of the purpose; all else a user may overrule.
     const bool tapers = purpose == Purpose::simulation || purpose == Purpose::fewest_tets;
     if (tapers && !options.taper.wanted)
         hindrance = "without tapering (--no-taper)";

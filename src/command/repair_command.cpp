@@ -34,6 +34,7 @@ OptionSections describe(RepairArguments& a)
     for (OptionSection& section : sections)
         for (Option& o : section.options) {
             o.group = "Options";
+            // The key stays, for a file of options may serve `build` as well.
             if (o.key == "weld")
                 o.flag.clear(); // a repair welds in any case
         }

@@ -62,9 +62,11 @@ double free_memory()
     for (std::string key, rest; info >> key && std::getline(info, rest);)
         if (key == "MemAvailable:")
             return std::strtod(rest.c_str(), nullptr) * 1024.0;
+    // Where the system does not tell, memory bounds nothing; --frames-at-once does.
     return std::numeric_limits<double>::infinity();
 }
 
+/// Files that cannot be looked at count as none: running them will say what is wrong.
 std::uintmax_t bytes_of_inputs(const Step& step)
 {
     std::uintmax_t bytes = 0;
@@ -83,6 +85,7 @@ std::size_t frames_at_once(const std::vector<Step>& steps, const GlobalArguments
     std::uintmax_t largest = 0;
     for (const Step& step : steps)
         largest = std::max(largest, bytes_of_inputs(step));
+    // The largest one decides for all, as it is not known which frames will be at work together.
     if (largest > kSmallInputs)
         return 1;
     // Half of what is free, for other programs want some too.
@@ -97,6 +100,7 @@ public:
         : steps_(steps), global_(global), context_(context), results_(steps.size())
     {
         if (!global.manifest.empty())
+            // All steps are frames of one call, so of one command.
             manifest_.emplace(global.manifest, command_of(steps.front()));
         if (global.progress != ProgressStyle::none)
             progress_.emplace(global.progress, std::cerr, steps.size());
@@ -104,6 +108,7 @@ public:
 
     int run()
     {
+        // Even where many could run at once: the first one may fix the voxel size for the others.
         run_alone();
         const std::size_t at_once =
             std::min(frames_at_once(steps_, global_), steps_.size() - next_.load());
@@ -135,6 +140,8 @@ private:
         while (!stop_ && next_ < steps_.size()) {
             const std::size_t i = next_++;
             run_in_order(i);
+            // One that failed may have failed before it chose the voxels. Then the next one is
+            // alone too.
             if (sequence_.voxel_size || results_[i].status == success)
                 return;
         }
@@ -151,10 +158,13 @@ private:
 
     void run_at_once(std::size_t at_once)
     {
+        // What ran alone has printed by itself.
         printed_ = next_;
         std::vector<std::thread> workers;
         for (std::size_t w = 0; w < at_once; ++w)
             workers.emplace_back([&, threads = std::max<std::size_t>(thread_count() / at_once, 1)] {
+                // A frame's parallel loops stay in its arena, so that frames do not wait for each
+                // other's.
                 tbb::task_arena arena(static_cast<int>(threads));
                 arena.execute([&] { work(); });
             });
@@ -173,6 +183,8 @@ private:
                 if (i >= steps_.size())
                     return;
                 std::ostringstream out, err;
+                // What it says is kept until all frames before it have been printed; so the text of
+                // a call is the same however many run at once.
                 Context context{out, err, context_.level, context_.format, std::nullopt};
                 run_step(i, context);
                 const std::lock_guard lock(mutex_);
@@ -183,6 +195,8 @@ private:
             }
         } catch (...) {
             const std::lock_guard lock(mutex_);
+            // An exception must not leave a thread. Only what ends the whole call comes here;
+            // errors of frames are results.
             thrown_ = std::current_exception();
             stop_ = true;
         }
@@ -194,6 +208,7 @@ private:
         while (printed_ < results_.size() && results_[printed_].done) {
             Result& result = results_[printed_++];
             context_.out << result.out << std::flush;
+            // The line of the progress stands where the text would go.
             if (progress_ && !result.err.empty())
                 StepProgress::clear_line_of(*progress_);
             context_.err << result.err << std::flush;
@@ -210,6 +225,8 @@ private:
         const auto start = std::chrono::steady_clock::now();
         context.frame = step.frame;
         context.gathered = step.gathered;
+        // A single call has nothing to share, and would only keep in memory what nobody asks for
+        // again.
         context.sequence = step.frame ? &sequence_ : nullptr;
         std::optional<StepProgress> progress;
         if (progress_)
@@ -228,11 +245,13 @@ private:
         } catch (const std::exception& error) {
             if (progress)
                 progress->failed();
+            // A single call ends as it does without steps: main tells the error and its status.
             if (!step.frame || dynamic_cast<const Cancelled*>(&error))
                 throw;
             context.say(error);
             result.status = command::status_of(error);
         }
+        // Frames that have begun go on to their end; none begins after it.
         if ((result.status != success && !global_.keep_going) || caught_signal())
             stop_ = true;
     }
@@ -244,12 +263,14 @@ private:
         const FilePlan plan = call.plan();
         if (!manifest_)
             return run_call(step, call, context);
+        // Before the run, for the digests are to be those of the inputs that the run is given.
         ManifestEntry entry = entry_for(step, call, plan);
         if (global_.resume) {
             const std::optional<ManifestEntry> known = up_to_date(entry, step);
             if (known) {
                 left_out = true;
                 context.say(LogLevel::info, "left out, its outputs are up to date");
+                // A frame that is left out fixes the voxels as it would have if it had run.
                 if (!sequence_.voxel_size && known->voxel_size)
                     sequence_.voxel_size = known->voxel_size;
                 return known->status;
@@ -267,6 +288,7 @@ private:
         }
         entry.voxel_size = sequence_.voxel_size;
         for (const FilePlan::Entry& output : plan.outputs())
+            // What went into a pipe is gone, and cannot be asked for its digest.
             if (!output.special)
                 entry.outputs.push_back(manifest_->mark_output(output.path));
         manifest_->put(entry);
@@ -285,6 +307,7 @@ private:
         ManifestEntry entry;
         entry.frame = step.frame;
         Digest digest;
+        // Another version may write other bytes.
         digest.add_text(VDB_SHELL_VERSION);
         digest.add_text(call.options_text());
         for (const FilePlan::Entry& input : plan.inputs()) {
@@ -292,6 +315,8 @@ private:
                 throw InvalidOption(input.path.string() +
                                     ": can be read only once, and --manifest needs its digest");
             entry.inputs.push_back(mark_of(input.path));
+            // By what is in them, in their order. Names of inputs do not count, but as options_text
+            // has them.
             digest.add_text(entry.inputs.back().digest);
         }
         entry.fingerprint = digest.hex();
@@ -303,6 +328,7 @@ private:
     std::optional<ManifestEntry> up_to_date(const ManifestEntry& wanted, const Step& step) const
     {
         std::optional<ManifestEntry> known = manifest_->find(step.frame);
+        // The voxel size is no option of the frame, so the fingerprint does not know it.
         const bool same_voxels = known && (!sequence_.voxel_size || !known->voxel_size ||
                                            *known->voxel_size == *sequence_.voxel_size);
         if (!known || !known->error.empty() || known->fingerprint != wanted.fingerprint ||
@@ -323,6 +349,8 @@ private:
             left_out += result.left_out && result.status == success ? 1 : 0;
             if (result.status == success)
                 continue;
+            // In the order of --frames, and not in that of time, so that it is the same for any
+            // number of threads.
             first = first == success ? result.status : first;
             failed.push_back(steps_[i].frame.value_or(0));
         }

@@ -35,8 +35,10 @@ public:
     void add(const std::string& who, const FilePlan& plan)
     {
         for (const FilePlan::Entry& input : plan.inputs())
+            // Only the first reader is kept, for the message; many frames may read one file.
             readers_.emplace(input.identity, who);
         for (const FilePlan::Entry& output : plan.outputs())
+            // Many frames may write into one pipe, or into /dev/null.
             if (!output.special)
                 add_output(who, output);
     }
@@ -159,6 +161,7 @@ Step gathered(const std::vector<std::string>& words, const FrameList& list)
         if (const std::string token = frame_token(output.path.string()); !token.empty())
             throw InvalidOption(output.path.string() + ": has the frame token \"" + token +
                                 "\", and all frames come into one file");
+    // The frames go with the step, for `usd` writes their numbers as times.
     Step step{std::nullopt, {}, {}, {}, {}, list.frames};
     for (const std::string& word : words) {
         if (frame_token(word).empty())
@@ -181,6 +184,8 @@ std::vector<Step> steps_of(const std::vector<std::string>& words, const GlobalAr
                                            " more than once; each frame is done once");
     Call whole;
     whole.parse(words);
+    // Asked of the words as they stand, with their tokens: which command it is does not depend on
+    // the frame.
     if (whole.gathers_frames())
         return {gathered(words, list)};
     std::vector<Step> steps;
@@ -228,6 +233,7 @@ std::vector<Step> plan_steps(const std::vector<std::string>& words, const Global
     if (!global.manifest.empty())
         add_manifest(files, global.manifest);
     files.require_apart();
+    // With it a frame that misses an input fails when its turn comes, and the others are done.
     if (!global.keep_going)
         require_inputs(steps);
     return steps;

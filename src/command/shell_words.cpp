@@ -40,6 +40,8 @@ private:
             end_word();
             return;
         }
+        // A word may be empty, as '' is: it counts from its first character on, and not by its
+        // length.
         in_word_ = true;
         if (c == '\'' || c == '"')
             take_quoted(c);
@@ -57,6 +59,7 @@ private:
             const char next = at_ + 1 < line_.size() ? line_[at_ + 1] : '\0';
             const bool escapes = quote == '"' && line_[at_] == '\\' &&
                                  (next == '"' || next == '\\' || next == '$' || next == '`');
+            // A backslash before anything else stays, as in a shell.
             word_ += line_[escapes ? ++at_ : at_];
         }
         if (at_ >= line_.size())
@@ -91,6 +94,8 @@ std::string quoted(const std::string& word)
         return word;
     std::string text = "'";
     for (const char c : word)
+        // Between single quotes nothing stands for a single quote: the quotes end, a quote with a
+        // backslash follows, and they begin again.
         text += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return text + "'";
 }

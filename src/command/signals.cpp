@@ -69,6 +69,7 @@ void on_signal(int number)
     ::_exit(signal_base + number);
 }
 
+/// The system call that met the limit returns an error all the same.
 void on_ignored_signal(int) {}
 
 void on_terminate()
@@ -83,6 +84,7 @@ void on_terminate()
     } catch (const std::exception& error) {
         std::cerr << "vdb_shell: " << error.what() << '\n';
     }
+    // An exception that nobody can catch is a fault of ours: a core file says where it came from.
     std::abort();
 }
 

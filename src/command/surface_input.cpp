@@ -30,6 +30,8 @@ namespace fs = std::filesystem;
 /// Readers want a file: they look at its end before its middle, and some do so twice.
 ReadResult read_standard_input(const ReadOptions& options, InputFormat format)
 {
+    // With the extension of its format, by which readers go; readable for its owner only, as nobody
+    // else was given what comes here.
     const TemporaryFile spool(fs::temp_directory_path(), "standard-input." + name_in_table(format),
                               0600);
     std::ofstream out(spool.path(), std::ios::binary);
@@ -43,6 +45,7 @@ ReadResult read_standard_input(const ReadOptions& options, InputFormat format)
     try {
         return read_surface(spool.path(), options);
     } catch (const ReadError& error) {
+        // Messages name the file, and the user knows none of that name.
         std::string text = error.what();
         const std::string name = spool.path().string();
         for (std::size_t at = 0; (at = text.find(name)) != std::string::npos;)

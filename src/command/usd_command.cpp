@@ -35,7 +35,9 @@ FilePlan plan_usd(const UsdArguments& arguments)
 int run_usd(const UsdArguments& arguments, Context& context)
 {
     const std::vector<std::filesystem::path>& names = arguments.frames.files;
+    // Without --frames, or with several files for each, they are counted from 1.
     const bool numbered = context.gathered.size() == names.size();
+    // Samples point into it, and a list does not move what it holds.
     std::list<ShellFile> shells;
     std::vector<UsdSample> samples;
     for_each_frame(

@@ -10,6 +10,8 @@
 
 #include <ostream>
 
+// What `deform` and `map` share: where results go, which files a call has, and the order in which
+// they are written and told.
 namespace vdb_shell::command
 {
 
@@ -49,6 +51,7 @@ void write_results(const VolumeCall& call, const std::vector<GridBasePtr>& volum
     if (!call.report.empty() && !to_output)
         files.write_stream(call.report, [&](std::ostream& out) { out << json; });
     files.commit();
+    // A report on standard output was asked for by name, so --quiet does not take it away.
     if (to_output || !call.quiet)
         context.out << (to_output ? json : text);
 }

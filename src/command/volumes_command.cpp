@@ -53,6 +53,8 @@ FilePlan plan_volumes(const VolumesArguments& arguments)
     require_extension(arguments.output, ".vdb");
     const std::vector<Coordinate> wanted = coordinates_of(arguments.coordinates);
     const bool uvw = std::find(wanted.begin(), wanted.end(), Coordinate::uvw) != wanted.end();
+    // Both ways round: a surface that is not asked for would be read and thrown away, and its
+    // author thinks that it counts.
     if (uvw == arguments.texture.empty())
         throw InvalidOption(uvw ? "--volumes uvw: there are no texture coordinates; --texture-from "
                                   "names the surface that has them"
@@ -76,6 +78,7 @@ int run_volumes(const VolumesArguments& arguments, Context& context)
     inputs.map = shell.map.get();
     inputs.stack = &shell.file.stack;
     inputs.rest = rest.get();
+    // Outlives the grids, whose inputs point into it.
     SurfaceCoordinates texture;
     if (!arguments.texture.empty()) {
         texture = texture_of(arguments.texture, shell);
