@@ -21,6 +21,8 @@ void Changes::accept(const Trial& trial)
     for (std::size_t i = 0; i < trial.pieces.size(); ++i) {
         const int piece = trial.pieces[i];
         s_.cost[std::size_t(piece)] = trial.costs[i];
+        // All nodes of the pieces and not only the one that moved: any of their tets may pay for a
+        // change now that did not before.
         for (const int n : nodes_of(s_, piece))
             changed_[std::size_t(n)] = now_;
     }
@@ -48,6 +50,7 @@ bool Changes::make_merge(Trial& trial)
 {
     const int from = trial.change.from, to = trial.change.to;
     swept_.clear();
+    // Before the change, as what is swept over begins at the old triangles.
     list_swept(s_, trial.pieces, from, swept_);
     const auto of_from = std::ptrdiff_t(swept_.size());
     list_swept(s_, trial.pieces, to, swept_);
@@ -59,9 +62,12 @@ bool Changes::make_merge(Trial& trial)
                                 }),
                  swept_.end());
     const Vec3d before = s_.at(to);
+    // The state is changed first and asked then: contacts and passing are of triangles as they are
+    // after it.
     point_places(from, to);
     s_.point[std::size_t(to)] = trial.change.at;
     if (!inner_surface_allows(trial)) {
+        // `places` of the two nodes has not been touched yet, so it still says which were whose.
         point_places(from, from);
         s_.point[std::size_t(to)] = before;
         return false;
@@ -69,6 +75,7 @@ bool Changes::make_merge(Trial& trial)
     auto &places_from = s_.places[std::size_t(from)], &places_to = s_.places[std::size_t(to)];
     const auto middle = std::ptrdiff_t(places_to.size());
     places_to.insert(places_to.end(), places_from.begin(), places_from.end());
+    // Ascending, which on_inner_surface relies on: the last place says the deepest level.
     std::inplace_merge(places_to.begin(), places_to.begin() + middle, places_to.end());
     places_from.clear();
     accept(trial);
@@ -81,6 +88,8 @@ bool Changes::make_move(Trial& trial)
     swept_.clear();
     list_swept(s_, trial.pieces, n, swept_);
     const Vec3d here = s_.at(n);
+    // The inner surface knows nothing of the step's share, so it is asked again for each shorter
+    // one.
     for (bool passes = true; passes;) {
         s_.point[std::size_t(n)] = trial.change.at;
         if (inner_surface_allows(trial)) {
@@ -98,12 +107,14 @@ bool Changes::make_move(Trial& trial)
 void Changes::list_swept_by_place(int place, int to)
 {
     swept_.clear();
+    // Only the innermost surface can be passed; places above it bound no void.
     if (s_.level_of(place) != s_.levels)
         return;
     const int from = s_.node[std::size_t(place)];
     for (const FaceCorner& at : star(*s_.mesh, s_.vertex_of(place))) {
         const int p = s_.corner(s_.levels, at.face, (at.local + 1) % 3),
                   q = s_.corner(s_.levels, at.face, (at.local + 2) % 3);
+        // A triangle that has lost its area, or that the change takes it from, sweeps over nothing.
         if (p != q && p != from && q != from && p != to && q != to)
             swept_.push_back({{from, p, q}, {s_.at(from), s_.at(p), s_.at(q), s_.at(to)}});
     }
@@ -135,6 +146,8 @@ bool Changes::turn(int layer, int edge)
                                       : std::vector<int>{first + faces[0], first + faces[1]});
     std::uint8_t& diagonal = s_.diagonal_of(layer, edge);
     diagonal ^= 1U;
+    // A diagonal lies in the quad between two surfaces and moves no triangle of either, so nothing
+    // is asked of the inner one.
     if (trials_.turned_costs_less()) {
         accept(own_trial());
         return true;

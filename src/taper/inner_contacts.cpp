@@ -24,6 +24,7 @@ namespace
 using growth::CornerIds;
 using growth::Corners;
 
+/// A face on a surface of the stack, by the nodes that its corners are now.
 struct InnerTriangle {
     CornerIds ids;
     Corners corners;
@@ -38,11 +39,13 @@ struct InnerTriangle {
     bool has(int n) const { return ids[0] == n || ids[1] == n || ids[2] == n; }
 };
 
+/// Pieces of the last layer: only their inner triangles are those of the innermost surface.
 int first_inner_piece(const TaperState& s)
 {
     return (s.levels - 1) * s.faces();
 }
 
+/// By nodes: points that are one have one number, so no coordinates are compared.
 bool same_corners(const CornerIds& s, const CornerIds& t)
 {
     return std::is_permutation(s.begin(), s.end(), t.begin());
@@ -98,6 +101,8 @@ bool triangle_clear(const TaperState& s, int face, const InnerTriangle& t)
             return;
         const InnerTriangle other(s, s.levels, g);
         if (!other.gone())
+            // Two that lie on each other may face each other: there the void has closed. Turned
+            // alike they would have the shell on one side of them twice.
             clear = same_corners(t.ids, other.ids) ? !same_turn(t.ids, other.ids)
                                                    : !held.touches(other);
     });
@@ -105,6 +110,7 @@ bool triangle_clear(const TaperState& s, int face, const InnerTriangle& t)
         if (!clear)
             return;
         const InnerTriangle outer(s, 0, g);
+        // An inner triangle may be an outer one itself, where the shell has no thickness.
         clear = same_corners(t.ids, outer.ids) || !held.touches(outer);
     });
     return clear;
@@ -126,6 +132,7 @@ struct SweptTet {
     /// Its share of the winding number at p; `on_it` is set if p is on its surface.
     int winding_at(const Vec3d& p, bool& on_it) const
     {
+        // A flat tet covers nothing, and nothing can be inside it.
         if (turn == 0 || !box.contains(Vec3s(p)))
             return 0;
         const auto& [a, b, c, d] = of->corners;
@@ -133,6 +140,7 @@ struct SweptTet {
             growth::orient(p, b, c, d) * turn, growth::orient(a, p, c, d) * turn,
             growth::orient(a, b, p, d) * turn, growth::orient(a, b, c, p) * turn};
         const int least = *std::min_element(side.begin(), side.end());
+        // None of the four is negative and one is 0, so the point is on its surface.
         on_it = on_it || least == 0;
         return least > 0 ? turn : 0;
     }
@@ -179,6 +187,8 @@ public:
     bool passes(const TaperState& s, const std::vector<int>& changed) const
     {
         std::vector<int> others, on_fan;
+        // What lies outside the box is not swept over, so the faces of few boxes stand for the
+        // whole surface.
         s.inner_tree.for_each_overlap(box_, [&](int face) {
             const InnerTriangle t(s, s.levels, face);
             if (t.gone())
@@ -266,6 +276,8 @@ bool any_fan(const std::vector<Swept>& swept, const std::array<int, 2>& moving, 
     std::sort(uses.begin(), uses.end());
     for (std::size_t i = 1; i < uses.size(); ++i)
         if (uses[i].first == uses[i - 1].first) {
+            // The smaller index becomes the root, so that fans come in the order of their first
+            // tets.
             const std::size_t a = root_of(uses[i].second), b = root_of(uses[i - 1].second);
             parent[std::max(a, b)] = std::min(a, b);
         }
@@ -305,6 +317,7 @@ void rebuild_inner_tree(TaperState& s)
     for (int f = 0; f < s.faces(); ++f)
         boxes.push_back(growth::float_box_of(InnerTriangle(s, s.levels, f).corners));
     s.inner_tree.build(std::move(boxes));
+    // For widen, which goes from a leaf of the tree up to its root.
     s.inner_tree.index_parents();
 }
 
@@ -323,6 +336,8 @@ bool inner_triangles_clear(const TaperState& s, const std::vector<int>& pieces)
         if (face < 0)
             return true;
         const InnerTriangle t(s, s.levels, face);
+        // A triangle without area is no part of the surface; what is left of it are edges of
+        // others, which are asked.
         return t.gone() || triangle_clear(s, face, t);
     });
 }

@@ -38,6 +38,7 @@ double distance(const TaperState& s, int p, int q)
     return (s.at(p) - s.at(q)).length();
 }
 
+/// Nothing where the two are one already, or where neither can move.
 void add_pair(const TaperState& s, int p, int q, std::vector<Pair>& pairs)
 {
     if (p != q && !(s.fixed(p) && s.fixed(q)))
@@ -62,6 +63,7 @@ void add_pairs_across(const TaperState& s, double share, std::vector<Pair>& pair
         if (!s.on_inner_surface(n))
             continue;
         const double reach = share * nearest_neighbour(s, n);
+        // Without a neighbour on the innermost surface there is no length to measure a gap by.
         if (!std::isfinite(reach))
             continue;
         FloatBox box = FloatBox::around(Vec3s(s.at(n) - Vec3d(reach)));
@@ -86,6 +88,8 @@ std::vector<Pair> pairs_to_merge(const TaperState& s, const MergeOptions& option
     }
     if (options.across > 0)
         add_pairs_across(s, options.across, pairs);
+    // Pairs that come from several edges, or from an edge and across the void, have equal lengths
+    // and are neighbours then.
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end(),
                             [](const Pair& a, const Pair& b) {
@@ -152,7 +156,7 @@ std::size_t Passes::merge(int percent)
 {
     TaperState& s = changes_.state();
     const std::uint32_t last = std::exchange(last_.merge, changes_.now());
-    // What a node has become part of in this pass.
+    // What a node has become part of in this pass. Pairs keep the names of before it.
     std::vector<int> now(s.point.size());
     std::iota(now.begin(), now.end(), 0);
     const auto find = [&](int n) {
@@ -201,6 +205,8 @@ std::size_t Passes::move(int percent)
 {
     TaperState& s = changes_.state();
     const std::uint32_t last = std::exchange(last_.move, changes_.now());
+    // Outer points, which come first, stay where they are; a node whose places have gone over to
+    // others is not there any more.
     std::vector<int> nodes;
     for (int n = s.vertices(); n < static_cast<int>(s.point.size()); ++n)
         if (s.used(n) && changes_.changed_since(n, last))
@@ -244,6 +250,7 @@ std::size_t Passes::hand_over(int percent)
 
 std::size_t Passes::turn(int percent)
 {
+    // By one thread, as a diagonal is turned in the state itself to be looked at.
     const TaperState& s = changes_.state();
     std::size_t made = 0;
     for (int layer = 0; layer < s.levels; ++layer) {

@@ -31,6 +31,7 @@ double units_of_solid(const std::vector<openvdb::Vec3s>& points,
                       const std::vector<openvdb::Vec3I>& triangles, double volume)
 {
     const auto count = double(triangles.size());
+    // The mean of a triangle.
     const double area = surface_area(points, triangles) / count;
     const double edge_if_equilateral = std::sqrt(4 / std::sqrt(3.0) * area);
     return std::max(count, volume / (area * edge_if_equilateral));
@@ -71,6 +72,7 @@ void count_result(const TaperState& s, TaperReport& report)
     for (int n = s.vertices(); n < static_cast<int>(s.point.size()); ++n)
         report.inner_points += s.used(n);
     for (const PieceCost& cost : s.cost)
+        // A prism has three tets at most, none where all its corners are pins.
         ++report.prisms_by_tets[std::size_t(cost.tets)];
 }
 
@@ -131,6 +133,8 @@ TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
     TaperState s = make_taper_state(mesh, stack, cap, weights_of(stack, options));
     s.obstacles = obstacles;
     MergeOptions merge;
+    // Without stitching, points that face each other across the void stay apart, however near they
+    // are.
     merge.across = options.core == CoreSurface::stitched ? merge.across : 0;
     // With one layer a point that joined the surface would be a pin, and thickness lost.
     merge.into_level_above = s.levels > 1;
@@ -142,6 +146,8 @@ TaperReport taper_shell(ShellStack& stack, const std::vector<double>& cap,
         if (make_round(passes, 100 * i / options.rounds, report) <= few)
             break;
     put_back(s, stack);
+    // From here on equal places are one point (shell/shared_points.h), and the certificate is that
+    // of tapered shells.
     stack.tapered = true;
     count_result(s, report);
     return report;

@@ -19,6 +19,8 @@ namespace vdb_shell::taper
 namespace
 {
 
+/// Sorted by their vertices, so that the number of an edge does not depend on the order in which
+/// faces name it.
 void index_edges(TaperState& s)
 {
     struct Side {
@@ -52,6 +54,9 @@ void read_diagonals(TaperState& s, const PrismSplit& split)
 {
     for (std::size_t e = 0; e < s.edges.size(); ++e) {
         const int f = s.faces_of_edge[e][0];
+        // The diagonal begins at the outer end of the vertex that comes earlier in the order by
+        // which the prism is cut (docs/theory.md, "Splits"). Both prisms beside the edge say the
+        // same, as the split conforms; the first one is asked.
         const auto place_in_order = [&](int vertex) {
             const auto& order = split.order[std::size_t(f)];
             return std::find_if(order.begin(), order.end(), [&](std::uint8_t local) {
@@ -68,6 +73,8 @@ void read_points(TaperState& s, const ShellStack& stack)
     for (int level = 0; level <= s.levels; ++level)
         for (int v = 0; v < s.vertices(); ++v) {
             const Vec3s& p = stack.surface(std::size_t(level))[std::size_t(v)];
+            // Only along a pillar. Points of different vertices that happen to be in one place stay
+            // two nodes: the stack is not tapered yet.
             if (level > 0 && p == stack.surface(std::size_t(level - 1))[std::size_t(v)]) {
                 s.node.push_back(s.node_at(level - 1, v));
                 s.places[std::size_t(s.node.back())].push_back(s.place(level, v));
@@ -84,6 +91,7 @@ std::array<int, 8> make_orders()
 {
     std::array<int, 8> orders{};
     for (unsigned forward = 0; forward < 8; ++forward) {
+        // Each corner before the next and the last before the first: no order does that.
         if (forward == 0 || forward == 7) {
             orders[forward] = -1;
             continue;
@@ -122,6 +130,7 @@ TaperState make_taper_state(const growth::Connectivity& mesh, const ShellStack& 
         read_diagonals(s, split);
     s.cost.resize(std::size_t(s.pieces()));
     for (int piece = 0; piece < s.pieces(); ++piece)
+        // The stack is valid, so the answer whether the piece is positive is not looked at.
         measure(s, piece_of(s, piece), s.cost[std::size_t(piece)]);
     build_trees(s);
     return s;
@@ -137,6 +146,7 @@ void put_back(const TaperState& s, ShellStack& stack)
         }
         for (int f = 0; f < s.faces(); ++f) {
             const int piece = k * s.faces() + f;
+            // Every prism has an order in the stack, also one that has no tets left.
             stack.splits[std::size_t(k)].order[std::size_t(f)] =
                 growth::tables().order[std::size_t(order_of(s, piece, nodes_of(s, piece)))];
         }
@@ -151,6 +161,7 @@ bool measure(const TaperState& s, const Piece& piece, PieceCost& cost)
         if (!positive)
             return;
         const TetCorners p = corners_of(piece, tet);
+        // The exact sign decides; the shape below may round as it likes.
         if (growth::orient(p[0], p[1], p[2], p[3]) <= 0) {
             positive = false;
             return;
@@ -173,6 +184,7 @@ bool within_caps(const TaperState& s, const std::vector<int>& places, const Vec3
 {
     return std::all_of(places.begin(), places.end(), [&](int place) {
         const int v = s.vertex_of(place);
+        // Exactly: a thickness that was asked for is a promise.
         return !exact::longer_than(Vec3s(s.at(v)), Vec3s(x), s.cap[std::size_t(v)]);
     });
 }

@@ -40,6 +40,8 @@ double volume6_to(const Vec3d& p, const std::array<Vec3d, 3>& triangle)
 
 } // namespace
 
+/// A new number marks a new list, so no flags have to be cleared: a list has some dozens of pieces
+/// of many thousands.
 void Trials::begin_list()
 {
     ++lists_;
@@ -59,6 +61,7 @@ void Trials::list_around(const std::vector<int>& places)
         const int level = s_.level_of(place);
         for (const FaceCorner& at : star(*s_.mesh, s_.vertex_of(place))) {
             if (level > 0)
+                // A place is a corner of the prisms above it and of those below.
                 list(level - 1, at.face);
             if (level < s_.levels)
                 list(level, at.face);
@@ -84,6 +87,7 @@ void Trials::sum_before()
         volume6_ += c.volume6;
     }
     before_.cost -= s_.weights.volume6 * volume6_;
+    // The volume is a gain, so a cost may be below nought; the share is taken of its size.
     enough_ = before_.cost - kLeastGain * std::abs(before_.cost);
 }
 
@@ -91,6 +95,8 @@ void Trials::sum_before()
 double Trials::volume6_after(const Substitution& change) const
 {
     double swept = 0;
+    // Seen from the place of the change, triangles that end there have no volume; and it is near,
+    // which costs few digits.
     const Vec3d& origin = change.at;
     for (const int index : pieces_) {
         const int face = index - (s_.pieces() - s_.faces());
@@ -122,6 +128,8 @@ bool Trials::loses_last_tet(int piece, const PieceCost& now) const
 template <class PieceOf>
 bool Trials::cost_less(const PieceOf& piece_at, double volume6, double than, double& cost)
 {
+    // A shell that has a worse tet already is not held to the bound there, or nothing could be
+    // mended.
     const double worst = std::max(before_.worst, s_.weights.worst_distortion);
     cost_.resize(pieces_.size());
     cost = -s_.weights.volume6 * volume6;
@@ -131,6 +139,7 @@ bool Trials::cost_less(const PieceOf& piece_at, double volume6, double than, dou
             loses_last_tet(pieces_[i], c))
             return false;
         cost += s_.weights.tet * c.tets + c.distortion;
+        // Costs of single pieces are not negative, so what is too much now will not become less.
         if (!(cost < than))
             return false;
     }
@@ -157,6 +166,7 @@ bool Trials::merge(int from, int to)
     list_around(places_to);
     sum_before();
     const Vec3d p = s_.at(from), q = s_.at(to);
+    // The point that the other one joins comes first: of equal costs the first stays.
     const std::array<Vec3d, 3> points{q, growth::rounded(0.5 * (p + q)), p};
     // Outer points stay where they are.
     const std::size_t tries = s_.fixed(to) ? 1 : points.size();
@@ -165,6 +175,7 @@ bool Trials::merge(int from, int to)
     for (std::size_t i = 0; i < tries; ++i) {
         const Substitution change{from, to, points[i]};
         double cost = 0;
+        // Each has to beat the best so far, whose costs are kept in best_cost_.
         if (!costs_less(change, cost_now_, cost) || !within_caps(s_, places_from, change.at) ||
             !within_caps(s_, places_to, change.at))
             continue;
@@ -193,11 +204,15 @@ Trials::Steps Trials::newton_steps(int n) const
                 ++free;
             const TetCorners p = corners_of(piece, tet);
             const double volume = six_volumes(p);
+            // A tet that does not have the node does not change; one whose volume rounds to nothing
+            // has no distortion to derive.
             if (free == 4 || !(volume > 0))
                 return;
             const bool poor = s_.weights.poor > 0 && breaks_sofa_rule(p, volume);
             add_distortion(p, free, volume, s_.weights.power, poor ? poor_gradient : gradient,
                            poor ? poor_hessian : hessian);
+            // The gain of volume is affine in the point, so it adds to the gradient and not to the
+            // Hessian.
             gradient -= s_.weights.volume6 * volume6_gradient(p, free);
             any_poor = any_poor || poor;
         });
@@ -222,6 +237,7 @@ bool Trials::move(int n)
     const bool passes = shorter_move(n, enough_);
     if (steps.for_poor == Vec3d(0.0))
         return passes;
+    // The plain step is kept while the other one is tried, and taken where that is no better.
     const Substitution change = change_;
     const double share = share_, cost = cost_now_;
     cost_.swap(best_cost_);
@@ -244,6 +260,7 @@ bool Trials::move_less(const Trial& failed)
     list_around(s_.places[std::size_t(n)]);
     sum_before();
     step_ = failed.step;
+    // Listed anew, for the trial may be another thread's.
     share_ = failed.share / 2;
     return shorter_move(n, enough_);
 }
@@ -254,6 +271,7 @@ bool Trials::shorter_move(int n, double than)
     const Vec3d& here = s_.at(n);
     for (; share_ >= kLeastShare; share_ /= 2) {
         change_ = {n, n, growth::rounded(here + share_ * step_)};
+        // The step is less than a rounding, and shorter ones would be too.
         if (change_.at == here)
             return false;
         if (costs_less(change_, than, cost_now_) &&

@@ -38,6 +38,7 @@ struct Place {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> edge_angle;
 };
 
+/// Angles of all edges are for one wish only, so they are measured for that one alone.
 Place look_around(const ShellStack& stack, const TetMesh& tets, const TriangleMesh& surface,
                   Side side, const std::vector<double>& cap, const WantedBounds& wanted)
 {
@@ -45,6 +46,7 @@ Place look_around(const ShellStack& stack, const TetMesh& tets, const TriangleMe
     if (!wanted.dihedral)
         return place;
     for (const EdgeAngle& at : edge_angles(surface, side))
+        // The smaller vertex first, as corners_on_skin gives them.
         place.edge_angle[{at.edge[0], at.edge[1]}] = at.radians;
     return place;
 }
@@ -60,6 +62,7 @@ std::vector<std::uint32_t> corners_on_skin(const Place& at, std::size_t t)
     return vertices;
 }
 
+/// Whether the tet has a triangle of the skin by which alone no tet could do better.
 bool held_by_triangle(const Place& at, const std::vector<std::uint32_t>& skin, std::size_t t,
                       const WantedBound& bound)
 {
@@ -75,6 +78,8 @@ bool held_by_triangle(const Place& at, const std::vector<std::uint32_t>& skin, s
             least_edge_ratio(p[0], p[1], p[2]) > bound.asked);
 }
 
+/// Two triangles at an edge have two tets, one of which has half the angle of the solid there at
+/// most. It may be this one.
 bool held_by_edge(const Place& at, const std::vector<std::uint32_t>& skin, const WantedBound& bound)
 {
     if (bound.kind != BoundKind::dihedral)
@@ -88,6 +93,7 @@ bool held_by_edge(const Place& at, const std::vector<std::uint32_t>& skin, const
     return false;
 }
 
+/// Where a length was asked for, a longer pillar might have made a better tet.
 bool at_cap(const Place& at, std::uint32_t vertex)
 {
     const double cap = at.cap[vertex];
@@ -97,6 +103,7 @@ bool at_cap(const Place& at, std::uint32_t vertex)
                kAtCap * cap;
 }
 
+/// The surface first, as it is the one cause that is proven; room is what is left.
 ShortCause cause_of(const Place& at, std::size_t t, const WantedBound& bound)
 {
     const std::vector<std::uint32_t> skin = corners_on_skin(at, t);
@@ -118,6 +125,7 @@ WantedBound judge_shapes(const Place& at, const std::vector<TetShape>& shapes, B
     WantedBound bound;
     bound.kind = kind;
     bound.asked = asked;
+    // A shell without tets breaks no bound on them.
     bound.reached = shapes.empty() ? asked : shapes[0].*figure;
     for (std::size_t t = 0; t < shapes.size(); ++t) {
         const double value = shapes[t].*figure;
@@ -127,6 +135,7 @@ WantedBound judge_shapes(const Place& at, const std::vector<TetShape>& shapes, B
         const ShortCause cause = cause_of(at, t, bound);
         ++bound.short_tets;
         ++bound.causes[std::size_t(cause)];
+        // In the order of tets: a few, to look at; the counts have them all.
         if (bound.first.size() < WantedBound::kFirstShown)
             bound.first.push_back(
                 {std::uint32_t(t), at.tets.prism[t], at.tets.prism_layer[t], value, cause});
@@ -137,6 +146,7 @@ WantedBound judge_shapes(const Place& at, const std::vector<TetShape>& shapes, B
     return bound;
 }
 
+/// A wish about the shell as a whole, which no single tet falls short of.
 WantedBound judge_whole(BoundKind kind, double asked, double reached, bool larger)
 {
     WantedBound bound;
@@ -201,6 +211,8 @@ double BoundsReport::shortfall() const
 {
     double sum = 0;
     for (const WantedBound& bound : bounds)
+        // Each missed bound counts one beside its shortfall, so that fewer missed ones are better.
+        // A budget of tets can be missed by more than the whole of it.
         sum += bound.met ? 0 : 1 + bound.shortfall;
     return sum;
 }
