@@ -42,6 +42,8 @@ struct Handed {
     std::vector<std::uint32_t> index; ///< by point handed over: the point of the void's surface
 };
 
+/// Without the shell's other points: a program might take lone ones for points of the void and mesh
+/// around them.
 Handed handed_over(const VoidSurface& surface)
 {
     Handed handed;
@@ -49,6 +51,7 @@ Handed handed_over(const VoidSurface& surface)
     for (const openvdb::Vec3I& triangle : surface.triangles)
         for (int corner = 0; corner < 3; ++corner)
             number[triangle[corner]] = 0;
+    // In the order of the shell's points, so that the program gets the same file each time.
     for (std::uint32_t p = 0; p < number.size(); ++p)
         if (number[p] != kNone) {
             number[p] = std::uint32_t(handed.index.size());
@@ -89,6 +92,8 @@ MesherTets run_mesher(const TriangleMesh& surface, const CoreFillOptions& option
                       Interrupter* interrupter)
 {
     const fs::path program = fill::find_program(name_in_table(options.program));
+    // Lives until the results have been read, and takes all files with it, also where something is
+    // thrown.
     const fill::TemporaryFolder folder;
     const fs::path stem = folder.path() / "void";
     const auto run = [&](const std::vector<std::string>& words) {
@@ -100,6 +105,7 @@ MesherTets run_mesher(const TriangleMesh& surface, const CoreFillOptions& option
         run({tetgen_switches(options), poly.string()});
         return fill::read_tetgen(stem);
     }
+    // Gmsh would write its result over the input of the same stem.
     const fs::path geo = stem.string() + ".geo", filled = folder.path() / "filled.msh";
     fill::write_gmsh_input(geo, stem.string() + ".msh", surface, options.edge_length,
                            options.radius_edge_ratio > 0);
@@ -117,6 +123,8 @@ void turn_positive(MesherTets& made)
         sum +=
             exact::orient3d(openvdb::Vec3s(made.points[t[0]]), openvdb::Vec3s(made.points[t[1]]),
                             openvdb::Vec3s(made.points[t[2]]), openvdb::Vec3s(made.points[t[3]]));
+    // Flat tets count as nothing. A tet that is turned over among others is a fault of the
+    // program's, and the certificate is to find it.
     if (sum < 0)
         for (Vec4I& t : made.tets)
             std::swap(t[2], t[3]);
@@ -130,6 +138,8 @@ void require_same_points(const MesherTets& made, const TriangleMesh& surface,
                            " points of the " + std::to_string(surface.points.size()) +
                            " that it was given");
     for (std::size_t p = 0; p < surface.points.size(); ++p)
+        // The same float32: what is common to core and shell is common by index, and has one place
+        // only.
         if (openvdb::Vec3s(made.points[p]) != surface.points[p])
             throw ProgramError(name + ": gave back another point " + std::to_string(p) +
                                " than it was given");
@@ -145,6 +155,8 @@ CoreTets core_of(const MesherTets& made, const std::vector<openvdb::Vec3s>& poin
 {
     CoreTets core;
     const std::size_t given = surface.lone_vertices.size() + surface.hole_points;
+    // The joined mesh has the points of the shell's tets first, then vertices and holes that no tet
+    // of the shell has, then those that the program made.
     const std::size_t shell = surface.points.size() - given;
     core.points.assign(surface.points.begin() + std::ptrdiff_t(shell), surface.points.end());
     core.source_vertex = surface.lone_vertices;
@@ -154,6 +166,8 @@ CoreTets core_of(const MesherTets& made, const std::vector<openvdb::Vec3s>& poin
     for (const Vec4I& tet : made.tets)
         for (int corner = 0; corner < 4; ++corner)
             if (number[tet[corner]] == kNone)
+                // Marks those that a tet has. Numbers are given afterwards, by ascending point, and
+                // not in the order of tets.
                 number[tet[corner]] = 0;
     for (std::size_t p = handed.index.size(); p < points.size(); ++p)
         if (number[p] != kNone) {
@@ -169,6 +183,7 @@ CoreTets core_of(const MesherTets& made, const std::vector<openvdb::Vec3s>& poin
 void measure(const TetMesh& tets, std::size_t given_points, CoreFill& made)
 {
     TetMesh alone = joined_tets(tets, made.core);
+    // Figures are those of the core's own tets, by the points of the whole.
     alone.tets = made.core.tets;
     CoreFillReport& report = made.report;
     report.points = made.core.empty() ? 0 : made.core.points.size() - given_points;
@@ -185,6 +200,7 @@ void require_fit(const CoreFillReport& report, const std::string& name)
     std::string text = name + ": its tets do not fit the shell, and none is taken:";
     for (const std::string& failure : report.certificate.failures())
         text += " " + failure + ";";
+    // The last failure ends the sentence.
     text.back() = '.';
     throw ProgramError(text + " The other program or other values of --core-fill-ratio may do");
 }
@@ -237,6 +253,8 @@ CoreFill fill_core(const ShellStack& stack, const TetMesh& tets, const CoreFillO
     require_in_range(options, "core_fill");
     require_program(options);
     const StageProgress progress(interrupter, "core fill");
+    // Of a shell that fills the solid it has no triangles. Then no program is started, and the
+    // certificate says the same of an empty core.
     const VoidSurface surface = void_surface(stack, tets, holes);
     CoreFill made;
     made.report.program = options.program;
@@ -245,13 +263,18 @@ CoreFill fill_core(const ShellStack& stack, const TetMesh& tets, const CoreFillO
         const std::string name = "--core-fill " + name_in_table(options.program);
         const Handed handed = handed_over(surface);
         MesherTets mesher = run_mesher(handed.surface, options, interrupter);
+        // Before any tet is looked at: all that follows refers to points by their numbers.
         require_same_points(mesher, handed.surface, name);
         turn_positive(mesher);
+        // First what lies outside the void goes, then triangles that were cut are closed: a
+        // triangle can only be seen to be missing among the tets that stay.
         mesher.tets = fill::tets_inside(mesher, handed.surface);
         fill::close_cut_triangles(mesher, handed.surface);
         const std::vector<openvdb::Vec3s> points = fill::rounded_points(
             mesher.points, handed.index.size(), mesher.tets, made.report.moved_points);
         made.core = core_of(mesher, points, handed, surface);
+        // A stop that was asked for while the program ended is answered here, before the proof,
+        // which takes its time.
         progress.stop_if_interrupted(100);
     }
     made.report.certificate = certify_core(stack, tets, made.core, holes);

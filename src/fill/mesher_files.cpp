@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 template <typename Number> void append(std::string& text, Number value)
 {
+    // More than the longest double takes, so to_chars cannot fail.
     char digits[64];
     text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
 }
@@ -66,6 +67,7 @@ class Numbers
 public:
     explicit Numbers(fs::path path) : path_(std::move(path)), in_(path_)
     {
+        // A host program may have set a locale in which a point parts thousands.
         in_.imbue(std::locale::classic());
         if (!in_)
             fail("was not written");
@@ -79,6 +81,7 @@ public:
             fail("ends early, or has no number where one belongs");
         return value;
     }
+    // No number of points or tets beyond 32 bits can be held, so none is read.
     std::size_t count() { return next<std::uint32_t>(); }
     void skip(std::size_t numbers)
     {
@@ -149,9 +152,12 @@ MesherTets read_tetgen(const fs::path& stem)
     MesherTets made;
     Numbers nodes(with_ending(stem, ".1.node"));
     const std::size_t points = nodes.count();
+    // The head of a .node: points, dimension, attributes and boundary markers; only the last two
+    // say how much stands behind a point.
     nodes.skip(1);
     const std::size_t behind = nodes.count() + nodes.count();
     for (std::size_t i = 0; i < points; ++i) {
+        // Numbers begin at 0 as they do in the .poly, which is what says where TetGen begins.
         if (nodes.count() != i)
             nodes.fail("has no point " + std::to_string(i) + " in its place");
         made.points.push_back(nodes.point());
@@ -179,6 +185,7 @@ MesherTets read_tetgen(const fs::path& stem)
 void write_gmsh_input(const fs::path& geo, const fs::path& msh, const TriangleMesh& surface,
                       std::optional<double> edge_length, bool optimise)
 {
+    // Version 2.2, text (0), floats of 8 bytes.
     std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" +
                        std::to_string(surface.points.size()) + "\n";
     for (std::size_t i = 0; i < surface.points.size(); ++i) {
@@ -217,6 +224,7 @@ MesherTets read_gmsh_output(const fs::path& msh)
     MesherTets made;
     const std::size_t points = in.count();
     for (std::size_t i = 0; i < points; ++i) {
+        // Gmsh counts from 1 and was told to keep the numbers; new points come behind.
         if (in.count() != i + 1)
             in.fail("has no node " + std::to_string(i + 1) + " in its place");
         made.points.push_back(in.point());
@@ -230,6 +238,7 @@ MesherTets read_gmsh_output(const fs::path& msh)
     for (std::size_t e = 0; e < elements; ++e) {
         in.skip(1);
         const std::size_t type = in.count();
+        // Tags: how many there are, then they.
         in.skip(in.count());
         if (type >= kCorners.size() || kCorners[type] == 0)
             in.fail("has an element of type " + std::to_string(type));

@@ -29,6 +29,7 @@ using openvdb::Vec3I;
 using openvdb::Vec3s;
 using openvdb::Vec4I;
 
+/// A face of a tet, or a triangle of the surface (`wall`); `owner` is the tet or the triangle.
 struct Face {
     std::array<std::uint32_t, 3> turned; ///< the smallest corner first, in the face's direction
     bool wall;
@@ -40,6 +41,7 @@ struct Face {
     }
 };
 
+/// Those of the same corners come together, tets before walls.
 bool operator<(const Face& x, const Face& y)
 {
     return std::make_tuple(x.corners(), x.wall, x.turned, x.owner) <
@@ -62,6 +64,7 @@ std::vector<Face> sorted_faces(const MesherTets& made, const TriangleMesh& surfa
         faces.push_back(face_of(surface.triangles[t], true, t));
     const auto smallest = [](const Face& face) { return face.turned[0]; };
     const std::size_t points = std::max(made.points.size(), surface.points.size());
+    // By the smallest corner first: as many buckets as points, each with a few faces.
     return bucket_sort<Face>(std::array{std::move(faces)}, points, smallest, std::less<>());
 }
 
@@ -87,6 +90,7 @@ public:
     Untangling(std::vector<Vec3s>& points, std::size_t fixed, const std::vector<Vec4I>& tets)
         : points_(points), fixed_(fixed), tets_(tets), around_(points.size())
     {
+        // Which tets a point has, once for all rounds: points move, tets do not change.
         for (std::uint32_t t = 0; t < tets.size(); ++t)
             for (int corner = 0; corner < 4; ++corner)
                 around_[tets[t][corner]].push_back(t);
@@ -101,6 +105,7 @@ public:
             bool changed = false;
             for (const Vec4I& tet : tets_)
                 for (int corner = 0; corner < 4 && flat(tet); ++corner)
+                    // Points of the surface are the shell's and must not move by a bit.
                     if (tet[corner] >= fixed_ && improve(tet[corner])) {
                         moved[tet[corner]] = 1;
                         changed = true;
@@ -172,6 +177,8 @@ private:
             for (const Vec3d& direction : directions()) {
                 points_[point] = Vec3s(here + step * direction);
                 const auto badness_there = badness(point);
+                // From where the point stands and not from the best so far, so the order of
+                // directions decides only between equals, for the first.
                 if (badness_there < least) {
                     least = badness_there;
                     best = points_[point];
@@ -215,6 +222,8 @@ Neighbours neighbours_of(const MesherTets& made, const TriangleMesh& surface)
         for (std::size_t i = first; walls > 0 && i < first + owners; ++i)
             // Seen from its tet, the triangle runs as it does seen from outside the void.
             neighbours.walls[faces[i].owner].push_back(faces[i].turned == faces[last - 1].turned);
+        // A wall parts the inside from the outside, so nothing hangs together across it. A face of
+        // three tets or more parts them too: the certificate refuses it.
         if (walls > 0 || owners != 2)
             continue;
         const Face &x = faces[first], &y = faces[first + 1];
@@ -249,6 +258,8 @@ std::vector<Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surfa
     std::vector<char> seen(made.tets.size(), 0);
     std::vector<Vec4I> kept;
     for (std::uint32_t root = 0; root < made.tets.size(); ++root) {
+        // A piece begins at a tet with a wall, which says how its tets have to be turned. A piece
+        // without any is none of the void's.
         if (seen[root] || neighbours.walls[root].empty())
             continue;
         // Inside the void the root runs as its wall says.
@@ -257,6 +268,7 @@ std::vector<Vec4I> tets_inside(const MesherTets& made, const TriangleMesh& surfa
         std::ptrdiff_t votes = 0;
         for (const Oriented& one : piece)
             for (const bool agrees : neighbours.walls[one.tet])
+                // A count decides and no single wall, for single tets may be turned wrongly.
                 votes += agrees ? 1 : -1;
         if (votes <= 0)
             continue;
@@ -281,6 +293,7 @@ void close_cut_triangles(MesherTets& inside, const TriangleMesh& surface)
         const auto corners = faces[first].corners();
         if (last - first != 1)
             continue;
+        // A triangle of the surface that no tet has.
         if (faces[first].wall)
             missing.push_back(faces[first].owner);
         // Ascending, and new points have the largest numbers.

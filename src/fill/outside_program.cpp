@@ -41,9 +41,12 @@ struct Spawn {
         ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
         ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(),
                                            O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        // Into one file in the order in which they came: which of the two streams a program
+        // complains on differs.
         ::posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
         ::posix_spawnattr_init(&attributes);
         ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+        // 0 makes it the leader of a new group, whose number is its own.
         ::posix_spawnattr_setpgroup(&attributes, 0);
         sigset_t signals;
         ::sigemptyset(&signals);
@@ -79,6 +82,7 @@ std::vector<std::string> environment_with_home(const fs::path& home)
 {
     std::vector<std::string> entries;
     for (char** entry = environ; entry && *entry; ++entry)
+        // Of two entries of a name some programs take the first and some the last.
         if (std::strncmp(*entry, "HOME=", 5) != 0)
             entries.emplace_back(*entry);
     entries.push_back("HOME=" + home.string());
@@ -102,6 +106,8 @@ public:
     {
         if (ended_)
             return;
+        // A negative number means the group. SIGKILL, since a program may catch anything else, and
+        // its files are removed with the folder.
         ::kill(-id_, SIGKILL);
         int status = 0;
         while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
@@ -113,6 +119,8 @@ public:
     /// Whether it has ended; `status` is then as waitpid gives it.
     bool ended(int& status)
     {
+        // Once it has been waited for, the number may belong to another process: it must not be
+        // killed any more.
         ended_ = ::waitpid(id_, &status, WNOHANG) == id_;
         return ended_;
     }
@@ -136,6 +144,8 @@ TemporaryFolder::TemporaryFolder()
     std::error_code failure;
     const fs::path base = fs::temp_directory_path(failure);
     std::string name = ((failure ? fs::path("/tmp") : base) / "vdb_shell.XXXXXX").string();
+    // Makes the folder with rights for its owner alone, under a name that nobody could have taken
+    // before.
     if (!::mkdtemp(name.data()))
         throw WriteError(name + ": no folder can be made there: " + std::strerror(errno));
     path_ = name;
@@ -144,6 +154,7 @@ TemporaryFolder::TemporaryFolder()
 TemporaryFolder::~TemporaryFolder()
 {
     std::error_code ignored;
+    // A destructor that is run by an exception cannot tell of another one.
     fs::remove_all(path_, ignored);
 }
 
@@ -186,6 +197,7 @@ std::string run_program(const fs::path& program, const std::vector<std::string>&
                                     pointers_to(all).data(), pointers_to(environment).data());
     if (error != 0)
         fail(program, std::string("cannot be started: ") + std::strerror(error), "");
+    // From here on every way out ends the program.
     Child child(id);
     const auto start = std::chrono::steady_clock::now();
     int status = 0;
@@ -199,6 +211,7 @@ std::string run_program(const fs::path& program, const std::vector<std::string>&
         // Short beside any meshing, and long enough to cost nothing.
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    // Read once it has ended: before, a line could be cut in the middle.
     std::string said = text_of(output);
     if (WIFSIGNALED(status))
         fail(program, "was ended by signal " + std::to_string(WTERMSIG(status)), said);
