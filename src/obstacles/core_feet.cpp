@@ -53,6 +53,7 @@ public:
             const exact::Triangle corners{inner_.points[c[0]], inner_.points[c[1]],
                                           inner_.points[c[2]]};
             // By place and not by vertex, for vertices may share the point.
+            // The triangles at the foot touch the segment there, and do not stand in its way.
             const bool own = std::find(corners.begin(), corners.end(), from) != corners.end();
             met = met || (!own && exact::segment_touches_triangle(from, to, corners));
         });
@@ -70,6 +71,8 @@ Vec3s barycentric(const TriangleMesh& mesh, const Vec3I& t, const Vec3d& point)
     const Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
     const Vec3d normal = (b - a).cross(c - a);
     const double area = normal.lengthSqr();
+    // Clamped, since the point may be off the triangle by a rounding; the division below makes up
+    // for it. Cores have no triangles without area (require_sound).
     const auto weight = [&](const Vec3d& p, const Vec3d& q) {
         return std::clamp((p - point).cross(q - point).dot(normal) / area, 0.0, 1.0);
     };
@@ -84,11 +87,13 @@ struct CoreOf {
 CoreOf core_of(const std::vector<CoreMesh>& cores, std::size_t triangle)
 {
     CoreOf found;
+    // The cores stand one after the other in joined_cores.
     while (triangle >= found.first + cores[found.core].mesh.triangles.size())
         found.first += cores[found.core++].mesh.triangles.size();
     return found;
 }
 
+/// Of the whole pillar, along its layers.
 double length_of(const ShellStack& stack, std::size_t vertex)
 {
     double sum = 0;
@@ -111,6 +116,8 @@ std::vector<CoreFoot> find_core_feet(const ShellStack& stack, const Cores& cores
         const Vec3s& end = inner.points[v];
         const NearestPoint nearest = on_cores.nearest(Vec3d(end));
         feet[v].distance = float(nearest.distance);
+        // A shell that is kept at a distance ends at the surface around the cores: what is left to
+        // that one counts, while the foot is on the core itself.
         const double left =
             options.distance > 0 ? on_kept_out.nearest(Vec3d(end)).distance : nearest.distance;
         if (left > options.reach * length_of(stack, v) || sight.blocked(end, Vec3s(nearest.point)))
@@ -128,6 +135,7 @@ void mark_core_stops(ShellStack& stack, const std::vector<CoreFoot>& feet)
     for (PrismShell& layer : stack.layers)
         for (std::size_t v = 0; v < layer.stop.size(); ++v)
             if (feet[v].core >= 0)
+                // In every layer, for the reason is that of the pillar as a whole.
                 layer.stop[v] = StopReason::core;
 }
 
@@ -163,6 +171,8 @@ std::vector<CoreFoot> feet_of_tet_points(const ShellStack& stack, const TetMesh&
     std::vector<CoreFoot> of_points(tets.points.size());
     for (std::size_t i = 0; i < of_points.size(); ++i)
         if (const std::uint32_t v = tets.source_vertex[i];
+            // By place: a tet's point has the vertex of its pillar, on whichever surface it lies,
+            // and only the innermost one has a foot.
             v < inner.size() && tets.points[i] == inner[v])
             of_points[i] = feet[v];
     return of_points;

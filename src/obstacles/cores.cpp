@@ -101,6 +101,7 @@ void add_part(Together& all, const TriangleMesh& mesh)
     all.mesh.points.insert(all.mesh.points.end(), mesh.points.begin(), mesh.points.end());
     for (const Vec3I& t : mesh.triangles)
         all.mesh.triangles.push_back(t + Vec3I(points));
+    // Fills in the triangles that have just been added and leaves those before.
     all.part.resize(all.mesh.triangles.size(), std::uint32_t(all.first.size() - 1));
 }
 
@@ -110,6 +111,7 @@ std::vector<std::array<std::uint32_t, 2>> contacts_between(const Together& all)
     const TriangleMesh& mesh = all.mesh;
     return overlapping_triangles(
         mesh.points, mesh.triangles, [&](std::uint32_t a, std::uint32_t b) {
+            // Contacts within a part are for its own check.
             return all.part[a] != all.part[b] &&
                    exact::triangles_touch(mesh.points, mesh.triangles[a], mesh.triangles[b]);
         });
@@ -127,6 +129,7 @@ void require_no_contact(const std::string& surface, const std::vector<CoreMesh>&
         return "triangle " + std::to_string(triangle - all.first[part]) + " of " +
                (part == 0 ? surface : core_named(cores[part - 1]));
     };
+    // The lower index is that of the earlier part, so the second is of a core in any case.
     const auto [first, second] = contacts.front();
     throw GeometryError(
         core_named(cores[all.part[second] - 1]) + " crosses or touches " +
@@ -251,16 +254,22 @@ Cores prepare_cores(const TriangleMesh& surface, const std::string& name,
         add_part(all, core.mesh);
     }
     progress.stop_if_interrupted(30);
+    // Before anything is asked of insides: a winding number says where a part is only if nothing
+    // touches.
     require_no_contact(name, cores, all);
     for (std::size_t i = 0; i < cores.size(); ++i)
         require_inside(surface, name, cores, i);
     Cores prepared{std::move(cores), {}};
     const TriangleMesh joined = joined_cores(prepared.given);
     if (options.distance == 0) {
+        // Every point becomes a vertex of the surface that is grown on, and one without a triangle
+        // has no fan.
         prepared.kept_out = without_unused_points(joined);
         return prepared;
     }
     prepared.kept_out = offset_surface(joined, options.distance, interrupter);
+    // The distance is only kept if what is around the cores holds all of them (docs/theory.md,
+    // "Cores").
     require_held(prepared.given, prepared.kept_out);
     require_room(surface, name, prepared.kept_out, options.distance);
     return prepared;

@@ -23,6 +23,8 @@ using openvdb::Vec3s;
 Vec3I renumbered(Vec3I triangle, const VertexRange& dropped)
 {
     for (int k = 0; k < 3; ++k)
+        // Vertices of the cores are one range, so all behind it move up by its length. Refinement
+        // appends vertices of the surface behind them.
         if (triangle[k] >= dropped.first)
             triangle[k] -= dropped.count;
     return triangle;
@@ -62,6 +64,8 @@ TriangleMesh join_cores(TriangleMesh surface, const TriangleMesh& kept_out)
     const auto first = std::uint32_t(surface.points.size());
     surface.points.insert(surface.points.end(), kept_out.points.begin(), kept_out.points.end());
     for (const Vec3I& t : kept_out.triangles)
+        // Turned round: a core is the wall of a cavity to the solid between (docs/theory.md,
+        // "Cores").
         surface.triangles.emplace_back(first + t[0], first + t[2], first + t[1]);
     return surface;
 }
@@ -69,6 +73,7 @@ TriangleMesh join_cores(TriangleMesh surface, const TriangleMesh& kept_out)
 ShellStack join_cores(ShellStack stack, const TriangleMesh& kept_out)
 {
     for (PrismShell& layer : stack.layers) {
+        // The inner point of a core's vertex is the outer one: it is pinned, in every layer.
         layer.inner.insert(layer.inner.end(), kept_out.points.begin(), kept_out.points.end());
         layer.stop.resize(layer.inner.size(), StopReason::pinned);
         TriangleMesh both =
@@ -113,6 +118,7 @@ bool shares_core_point(const ShellStack& stack, const VertexRange& cores)
     const std::vector<Vec3s>& outer = stack.surface(0);
     const auto first = outer.begin() + std::ptrdiff_t(cores.first);
     std::vector<Vec3s> points(first, first + std::ptrdiff_t(cores.count));
+    // Sorted once, and then asked for each point of each surface.
     std::sort(points.begin(), points.end(), before);
     for (std::size_t k = 0; k < stack.surfaces(); ++k)
         for (std::uint32_t v = 0; v < outer.size(); ++v)

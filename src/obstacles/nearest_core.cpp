@@ -41,8 +41,12 @@ double segments_squared(const Vec3d& p, const Vec3d& d, const Vec3d& q, const Ve
     const Vec3d r = p - q;
     const double a = d.dot(d), b = d.dot(e), c = e.dot(e), f = e.dot(r), g = d.dot(r);
     const double determinant = a * c - b * b;
+    // Parallel segments, or a segment that is a point, have no one nearest pair: any s will do, as
+    // t is found for it.
     double s = determinant > 0 ? clamped((b * f - c * g) / determinant) : 0;
     double t = c > 0 ? (b * s + f) / c : 0;
+    // The nearest place on the second line is beyond its segment: it is an end then, and s is
+    // sought again for that.
     if (t < 0 || t > 1) {
         t = clamped(t);
         s = a > 0 ? clamped((b * t - g) / a) : 0;
@@ -116,6 +120,8 @@ NearestPoint NearestOnMesh::nearest(const Vec3d& point) const
 
 double least_distance(const TriangleMesh& first, const TriangleMesh& second)
 {
+    // The distance is found among vertices first, which a tree does fast; then only triangles whose
+    // boxes are nearer than that are held against each other.
     const double bound = bound_on_distance(first, second);
     std::vector<FloatBox> boxes;
     boxes.reserve(second.triangles.size());

@@ -85,6 +85,8 @@ TriangleMesh without_unused_points(const TriangleMesh& mesh)
             number[t[k]] = 1;
     TriangleMesh used;
     for (std::size_t v = 0; v < number.size(); ++v)
+        // The mark of a used point makes way for its new number, which is also what an unused one
+        // gets, and nobody asks for.
         if (std::exchange(number[v], std::uint32_t(used.points.size())) != 0)
             used.points.push_back(mesh.points[v]);
     for (const Vec3I& t : mesh.triangles)
@@ -107,6 +109,7 @@ TriangleMesh offset_surface(const TriangleMesh& mesh, double distance, Interrupt
     for (int round = 0; round < kMostRounds; ++round) {
         TriangleMesh around = contour(*lowered(*field, iso), contouring, nullptr, interrupter);
         const double found = least_distance(around, mesh);
+        // Measured on the float32 that the shell will be held against, so nothing is left to trust.
         if (found >= distance)
             return without_unused_points(around);
         // A hundredth of a voxel more, or the rounds would only come ever nearer.
