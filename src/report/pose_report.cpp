@@ -43,6 +43,8 @@ void pose_lines(std::ostringstream& out, const PoseReport& pose)
     line(out, "distortion",
          "mean " + number(pose.mean_distortion) + ", " + number(double(pose.distorted), 12) +
              " tets beyond the bound, worst " + number(pose.most_distortion));
+    // Said only where it happened, as both are about parts of the shell that are not as tested as
+    // the rest (docs/theory.md, "Posed shells").
     if (pose.skin_crossings > 0)
         line(out, "",
              "the skin crosses itself: " + number(double(pose.skin_crossings), 12) +
@@ -56,9 +58,13 @@ void pose_lines(std::ostringstream& out, const PoseReport& pose)
 
 std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)
 {
+    // The report of the shell at rest, with what a pose changes put over it. It was read from a
+    // file and may be anything: what is no JSON gives no object here, and no exception of the
+    // parser's.
     ordered_json json = ordered_json::parse(at_rest, nullptr, false);
     if (!json.is_object())
         throw ReadError(posed.source + ": the report of the shell at rest is no JSON object");
+    // Through its text, so that a key means the same in both reports.
     const ordered_json now = ordered_json::parse(report_json(posed, with_costs));
     for (const char* key : {"mesh", "prisms", "tets", "conformity", "quality", "volume",
                             "certificate", "overlaps", "pose"})

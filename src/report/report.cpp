@@ -54,6 +54,7 @@ ordered_json read_json(const ReadReport& read)
             {"largest_rounding", read.largest_rounding}};
 }
 
+/// The surface that a level set or a wrap gave, before anything was resampled.
 ordered_json contour_json(const ContourReport& contour)
 {
     return {{"method", name_in_table(contour.method)},
@@ -89,6 +90,7 @@ ordered_json mesh_json(const ShellReport& report)
     return json;
 }
 
+/// Lengths in world units; `interior_depth` is the depth of the deepest voxel.
 ordered_json field_json(const FieldReport& field)
 {
     return {{"origin", field.origin},
@@ -178,11 +180,14 @@ ordered_json layers_json(const ShellReport& report)
     return layers;
 }
 
+/// What gave way where layers were cut: points that were moved to keep tets positive, and pillars
+/// that could not be cut (docs/theory.md, "Layers, and shells scaled down").
 ordered_json cut_json(const LayerReport& cut)
 {
     return {{"moved_points", cut.moved}, {"uncut_pillars", cut.uncut}, {"empty_layers", cut.empty}};
 }
 
+/// Of the core alone: other figures of the report are those of the shell.
 ordered_json core_fill_json(const CoreFillReport& fill)
 {
     return {{"program", name_in_table(fill.program)},
@@ -295,6 +300,8 @@ ordered_json certificate_json(const StackCertificate& certificate)
     return json;
 }
 
+/// In the order in which stages ran. Memory is the most that the process had held by the end of
+/// each.
 ordered_json costs_json(const std::vector<StageCost>& stages)
 {
     ordered_json costs = ordered_json::array();
@@ -324,6 +331,8 @@ void add_surface(ordered_json& json, const ShellReport& report)
     json["mesh"] = mesh_json(report);
     json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
     json["remesh"] = report.remesh ? remesh_json(*report.remesh) : ordered_json();
+    // The number of triangles before; null says that nothing was subdivided, as 0 would look like a
+    // count.
     json["subdivided_from"] =
         report.subdivided_from > 0 ? ordered_json(report.subdivided_from) : ordered_json();
 }

@@ -24,6 +24,7 @@ namespace vdb_shell
 namespace
 {
 
+/// Only reasons that ended a line: most surfaces have two or three of them.
 std::string stop_text(const LineReport& lines)
 {
     std::string text;
@@ -91,6 +92,7 @@ void taper_line(std::ostringstream& out, const ShellReport& report)
         text += std::to_string(tets) + (tets < 3 ? ", " : " tets: ");
     for (std::size_t tets = 1; tets <= 3; ++tets)
         text += number(report.taper->prisms_by_tets[tets], 12) + (tets < 3 ? ", " : "");
+    // The shell is then the one before tapering, and the figures above are of what was given up.
     if (report.taper->undone)
         text += "; UNDONE, for it was not certified";
     line(out, "taper", text);
@@ -157,6 +159,7 @@ void concession_lines(std::ostringstream& out, const ShellReport& report)
                  number(report.scale->pinned, 12) + " of them pinned");
 }
 
+/// As many as the defect names, and a mark that there are more.
 std::string first_of(const Defect<std::uint32_t>& elements)
 {
     std::string text;
@@ -316,6 +319,7 @@ std::string faults_of(const ShellReport& report)
     return wrong;
 }
 
+/// What a pose cannot change is left out, as it stands in the report of the shell at rest.
 std::string posed_report_text(const ShellReport& report)
 {
     std::ostringstream out;

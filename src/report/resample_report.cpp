@@ -18,6 +18,7 @@ using nlohmann::ordered_json;
 namespace
 {
 
+/// Of the triangles of one surface.
 ordered_json figures_json(const TriangleFigures& figures)
 {
     return {{"min_angle_degrees", degrees(figures.min_angle_radians)},
@@ -37,6 +38,8 @@ std::string angles_text(const TriangleFigures& figures)
            number(figures.under_30_degrees, 12) + " under 30";
 }
 
+/// Both ways, as neither bounds the other: what was cut off shows in the first only, what was made
+/// up in the second.
 std::string farthest_text(const DistanceFigures& there, const DistanceFigures& back)
 {
     return "farthest input to result " + number(there.max) + ", result to input " +
@@ -98,6 +101,7 @@ void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
 void remesh_lines(std::ostringstream& out, const RemeshReport& remesh)
 {
     std::string text = number(remesh.before, 12) + " triangles to " + number(remesh.triangles, 12);
+    // Capitals, for the user asked for other triangles and did not get them.
     if (remesh.kept_input)
         text += ": THE INPUT ITSELF, no other was within the tolerance";
     line(out, "remesh",
@@ -123,6 +127,7 @@ void refine_lines(std::ostringstream& out, const RefineReport& refine)
         const RefineRound& round = refine.rounds[k];
         std::string text = number(round.triangles, 12) + " triangles, " + number(round.tets, 12) +
                            " tets, fill " + percent(round.fill);
+        // Round 0 has added no tets to divide by.
         if (k > 0)
             text += ", gained per added tet " + number(refine.gain_per_tet(k), 3);
         line(out, ("  round " + number(k, 12)).c_str(), text);

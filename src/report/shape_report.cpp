@@ -49,6 +49,7 @@ ordered_json bounds_json(const SurfaceBounds& bounds)
 void shape_lines(std::ostringstream& out, const ShellReport& report)
 {
     const QualityReport& quality = report.quality;
+    // One, so that a shell without tets has shares of 0 and no division by it.
     const double tets = double(std::max<std::size_t>(report.signs.tets, 1));
     line(out, "shape",
          "under 5 degrees " + percent(double(quality.slivers) / tets) + ", SOFA-bad " +
@@ -56,6 +57,8 @@ void shape_lines(std::ostringstream& out, const ShellReport& report)
              number(quality.amips.mean) + ", worst " + number(quality.amips.max) +
              ", edge ratio worst " + number(quality.edge_ratio.max));
     const SurfaceBounds& bounds = report.surface_bounds;
+    // What any shell of the surface has to bear, so that a bad figure is not laid at the shell's
+    // door (docs/theory.md, "What the surface bounds").
     line(out, "  at best",
          "by the surface's own triangles: AMIPS mean from " + number(bounds.amips.mean) +
              ", worst from " + number(bounds.amips.max) + ", edge ratio worst from " +
@@ -80,6 +83,7 @@ ordered_json wanted_json(const BoundsReport& report)
     for (const WantedBound& bound : report.bounds) {
         ordered_json causes, first = ordered_json::array();
         for (std::size_t i = 0; i < kShortCauses; ++i)
+            // Every cause has a key, also where no tet falls short by it.
             causes[name_in_table(ShortCause(i))] = bound.causes[i];
         for (const ShortTet& tet : bound.first)
             first.push_back({{"tet", tet.tet},
@@ -110,6 +114,7 @@ void wanted_lines(std::ostringstream& out, const BoundsReport& report)
                 if (bound.causes[i] > 0)
                     text +=
                         ", " + number(bound.causes[i], 12) + " by " + name_in_table(ShortCause(i));
+            // One is enough to go and look at; the JSON has more.
             text += "; the first is tet " + number(bound.first[0].tet, 12) + " of prism " +
                     number(bound.first[0].prism, 12);
         }

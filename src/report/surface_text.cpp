@@ -81,6 +81,7 @@ void read_lines(std::ostringstream& out, const ReadReport& read)
              " polygons triangulated, " + number(read.welded_vertices, 12) + " vertices welded, " +
              number(read.unused_vertices, 12) + " unused, " +
              number(read.skipped_faces.size(), 12) + " faces skipped");
+    // A file that was read as it stands has no other frame to tell of.
     if (read.placement.moves())
         line(out, "  placed", placement_text(read.placement));
 }
@@ -93,6 +94,7 @@ void surface_lines(std::ostringstream& out, const ShellReport& report)
     if (report.read)
         read_lines(out, *report.read);
     if (report.repair)
+        // The repair has lines of its own, the same that the command prints for a repair alone.
         out << "repair\n" << repair_text(*report.repair);
     if (report.wrap)
         wrap_lines(out, *report.wrap);
