@@ -21,6 +21,8 @@ namespace
 using nlohmann::json;
 using openvdb::Vec3s;
 
+/// World units of the files, in doubles: the two may have been read about different origins, and
+/// their own coordinates cannot be compared then. Precondition: as many points.
 PointChange change_of(const std::vector<Vec3s>& first, const Placement& first_placement,
                       const std::vector<Vec3s>& second, const Placement& second_placement)
 {
@@ -30,6 +32,7 @@ PointChange change_of(const std::vector<Vec3s>& first, const Placement& first_pl
         const double distance =
             (second_placement.in_file(second[v]) - first_placement.in_file(first[v])).length();
         sum += distance;
+        // The first of equal ones, so that the vertex that is named is the same each time.
         if (distance > change.largest) {
             change.largest = distance;
             change.at = v;
@@ -39,6 +42,8 @@ PointChange change_of(const std::vector<Vec3s>& first, const Placement& first_pl
     return change;
 }
 
+/// One entry for each option, by its path. An empty object is not flattened, for it would become a
+/// null.
 json flat_options(const std::string& text)
 {
     try {
@@ -59,6 +64,7 @@ std::vector<std::array<std::string, 3>> different_options(const std::string& fir
                                                           const std::string& second)
 {
     const json a = flat_options(first), b = flat_options(second);
+    // The keys of both, for an option may be missing in the file of another version.
     json all = a;
     all.update(b);
     std::vector<std::array<std::string, 3>> different;
@@ -68,6 +74,7 @@ std::vector<std::array<std::string, 3>> different_options(const std::string& fir
     return different;
 }
 
+/// Bits of a shell are its coordinates about its origin: equal ones elsewhere are another shell.
 bool same_placement(const Placement& a, const Placement& b)
 {
     return a.origin == b.origin && a.unit == b.unit;
@@ -78,6 +85,7 @@ bool same_placement(const Placement& a, const Placement& b)
 ShellFigures shell_figures(const ShellFile& file)
 {
     const ShellStack& stack = file.stack;
+    // Lengths and volumes are told in the file's unit, while points are in that of the mesh.
     const double unit = file.placement.unit, cubed = unit * unit * unit;
     ShellFigures figures;
     figures.vertices = stack.surface(0).size();
@@ -119,6 +127,8 @@ ShellComparison compare_shells(const ShellFile& first, const ShellFile& second)
     const ShellStack &a = first.stack, &b = second.stack;
     comparison.same_triangles =
         a.triangles() == b.triangles() && a.surface(0).size() == b.surface(0).size();
+    // By the numbers of their points: tets of other points are compared too, as poses have the same
+    // ones.
     comparison.same_tets = first.tets.tets == second.tets.tets;
     if (!comparison.same_triangles)
         return comparison;

@@ -27,6 +27,7 @@ struct Row {
     bool share = false; ///< of some whole: printed in per cent
 };
 
+/// One table for both forms, so that a figure cannot be in one and not in the other.
 const std::vector<Row>& rows()
 {
     using Of = const ShellFigures&;
@@ -107,6 +108,7 @@ std::string comparison_text(const ShellComparison& c, const std::string& first,
     std::ostringstream out;
     out.imbue(std::locale::classic());
     out << "A  " << first << "\nB  " << second << '\n' << verdict(c) << "\n\n";
+    // As wide as the longest figure of A; those of B come last and need no width.
     std::size_t width = 4;
     for (const Row& row : rows())
         width = std::max(width, cell(row, c.first).size() + 2);

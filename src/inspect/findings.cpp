@@ -59,10 +59,10 @@ public:
     {
         add(kind, defect.count, defect.first);
     }
-    template <typename Element>
     /// What was not found is not listed: no finding has the count 0. Of elements only the first few
     /// are told, because a bad mesh may have as many as it has triangles; the count is exact
     /// nevertheless.
+    template <typename Element>
     void add(const Kind& kind, std::size_t count, const std::vector<Element>& elements)
     {
         if (count == 0)

@@ -18,6 +18,7 @@ namespace
 
 using nlohmann::ordered_json;
 
+/// `kind` is for programs and does not change; `text` and `mend` are for people.
 ordered_json findings_json(const std::vector<Finding>& findings)
 {
     ordered_json list = ordered_json::array();
