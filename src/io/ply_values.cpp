@@ -137,6 +137,8 @@ private:
         PlyProperty property;
         std::string_view word = cut_word(line);
         property.is_list = word == "list";
+        // "list", the type of its length, the type of its values, its name; a single value has only
+        // the last two.
         if (property.is_list) {
             property.count_type = type(cut_word(line));
             word = cut_word(line);
@@ -184,6 +186,7 @@ private:
                 (element.name == "face" ? faces : strips) |= element.count > 0;
             }
         }
+        // Faces number the vertices of one list. Of two lists nothing would say which is meant.
         if (vertex_elements != 1)
             refuse(name_, "the header declares " + std::to_string(vertex_elements) +
                               " vertex elements where 1 is needed");

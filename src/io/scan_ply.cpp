@@ -109,6 +109,7 @@ void read_vertices(PlyScan& ply, const PlyElement& element)
     for (const PlyProperty& property : element.properties) {
         axes.push_back(property.is_list || property.name.size() != 1 ? kAxes.npos
                                                                      : kAxes.find(property.name));
+        // An id is a whole number; a float of that name is something else, and is stepped over.
         const bool real = property.type == PlyType::float32 || property.type == PlyType::float64;
         if (property.name == "id" && !property.is_list && !real)
             id = &property;
@@ -190,6 +191,8 @@ void add_texture(PlyScan& ply)
     for (std::size_t k = 0; k < ply.polygon.size(); ++k) {
         const std::uint32_t vertex = ply.polygon[k];
         texture.vertices.push_back(vertex);
+        // Vertices without texture coordinates, or faces that stand before their vertices in the
+        // file.
         if (!own && vertex >= ply.of_vertex.size()) {
             texture.texture.push_back(TextureScan::kNone);
             continue;
@@ -204,6 +207,7 @@ void add_texture(PlyScan& ply)
 /// runs the other way round, and is turned so that all are seen from the same side.
 void add_strip(PlyScan& ply, const std::vector<std::uint32_t>& strip, const Place& place)
 {
+    // Two restarts in a row, or one at the end of the list, as writers put it.
     if (strip.empty())
         return;
     require_three(ply, strip.size(), place);

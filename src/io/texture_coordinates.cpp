@@ -36,6 +36,8 @@ void require_all(const std::string& name, const TextureScan& texture)
 {
     std::size_t corner = 0, without = 0;
     for (const std::uint32_t index : texture.texture)
+        // A surface that has none at all is told so as a whole; one that lacks some is told which
+        // face.
         without += index == TextureScan::kNone;
     if (texture.values.empty() || without == texture.texture.size())
         refuse(name, "it has no texture coordinates");
@@ -61,6 +63,7 @@ TextureCoordinates texture_of_scan(const std::string& name, FileScan scan,
                                    const Coordinates& coordinates, const TextureScan& texture)
 {
     require_all(name, texture);
+    // Kept from the scan, which gives its own points to the mesh.
     const std::vector<openvdb::Vec3s> points = scan.points;
     const std::vector<std::uint32_t> first_equal = first_equal_point(points);
     TextureCoordinates made;
@@ -71,6 +74,7 @@ TextureCoordinates texture_of_scan(const std::string& name, FileScan scan,
     for (const std::uint32_t size : texture.face_sizes) {
         polygon.clear();
         for (std::size_t k = first; k < first + size; ++k)
+            // Welded as mesh_of_scan welds, so that the polygon is tidied to the same corners.
             polygon.push_back(first_equal[texture.vertices[k]]);
         const std::size_t triangles = tidy_polygon(polygon) ? polygon.size() - 2 : 0;
         for (std::size_t n = 0; n < triangles; ++n) {

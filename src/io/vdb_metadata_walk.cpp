@@ -53,6 +53,7 @@ void walk_delayed_load(VdbCursor& walk, std::uint32_t size)
     walk_list(walk, walk.number<std::uint32_t>("the size of a list"),
               count * sizeof(DelayedLoadMetadata::MaskType));
     const auto second = walk.number<std::uint32_t>("the size of a list");
+    // That number stands for a file without the second list.
     if (second != std::numeric_limits<std::uint32_t>::max())
         walk_list(walk, second, count * sizeof(DelayedLoadMetadata::CompressedSizeType));
     walk.require(walk.at() == end, "lists of sizes of another length than stated");
@@ -89,6 +90,8 @@ void walk_scale(VdbCursor& walk)
     doubles<3>(walk); // voxel size
     const auto inverse = doubles<3>(walk);
     doubles<6>(walk);
+    // OpenVDB goes by the inverse where it looks up voxels and by the scale where it tells places:
+    // the two must not disagree.
     constexpr double kRounding = 1e-6;
     for (std::size_t i = 0; i < 3; ++i)
         walk.require(std::abs(scale[i] * inverse[i] - 1.0) < kRounding,
@@ -129,6 +132,7 @@ std::vector<VdbEntry> walk_metadata(VdbCursor& walk)
         const std::string_view type = walk.text("a metadata type");
         const std::uint64_t begin = walk.at() + sizeof(std::uint32_t);
         walk_value(walk, std::string(type));
+        // Behind its length.
         entries.push_back({name, type, walk.bytes().substr(begin, walk.at() - begin)});
     }
     return entries;

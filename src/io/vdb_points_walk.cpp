@@ -84,6 +84,7 @@ private:
         const auto header = walk_.number<std::uint8_t>("the header of the attributes");
         walk_.require(header == 1, "leaves of different attributes");
         const auto count = walk_.number<std::uint64_t>("the number of attributes");
+        // OpenVDB counts passes by 16 bits, of which every attribute takes two.
         constexpr std::uint64_t kMost = std::numeric_limits<std::uint16_t>::max() / 2;
         walk_.require(count > 0 && count <= kMost && count <= walk_.left(),
                       "an impossible number of attributes");
@@ -93,8 +94,11 @@ private:
             const std::string codec(walk_.text("an attribute's codec"));
             const openvdb::NamePair type(value, codec);
             walk_.require(AttributeArray::isRegistered(type), "an attribute of an unknown type");
+            // Asked of OpenVDB itself, since a codec stores a value in other sizes than its type
+            // has.
             sizes_.push_back(AttributeArray::create(type, 1, 1)->storageTypeSize());
             if (type == openvdb::points::GroupAttributeArray::attributeType())
+                // A group is one bit of an array of bytes, so each such array has room for eight.
                 group_bits += 8;
         }
         names(count, count, /*distinct=*/true);
@@ -166,6 +170,8 @@ private:
                 pages.push_back(page_size());
                 left = std::uint64_t(pages.back().bytes);
             }
+            // Invariant: `left` are the bytes of the last page that no leaf has taken yet. A page
+            // ends with an array, never within one.
             walk_.require(one.bytes <= left, "values that go beyond their page");
             left -= one.bytes;
         }
@@ -185,6 +191,7 @@ private:
         } else {
             walk_.require(page.stored < 0 && page.stored > std::numeric_limits<std::int32_t>::min(),
                           "a page without bytes");
+            // A page that is not compressed has one number for both sizes.
             page.bytes = -page.stored;
         }
         return page;

@@ -50,6 +50,8 @@ bool has_seal(std::string_view bytes)
     std::size_t same = 0;
     for (std::size_t i = 0; i < kMark.size(); ++i)
         same += bytes[kUuid + i] == kMark[i];
+    // One wrong character is let pass here, so that check_seal finds the file damaged and not
+    // without a seal.
     return same + 1 >= kMark.size();
 }
 
@@ -94,6 +96,8 @@ std::size_t place_of(std::string_view bytes, const VdbEntry& entry, const std::s
         const std::size_t end = std::min(entry.value.find('\n', line), entry.value.size());
         std::istringstream words{std::string(entry.value.substr(line, end - line))};
         std::string first, values, digits;
+        // Lines of attributes have two words only, for their values lie scattered among the bytes
+        // of their grid.
         if (words >> first >> values >> digits && first == name && digits.size() == kPartDigits)
             return std::size_t(entry.value.data() - bytes.data()) + end - kPartDigits;
         line = end + 1;
@@ -137,6 +141,8 @@ void seal_vdb(const fs::path& path)
     try {
         bytes = read_whole_file(path);
     } catch (const ReadError& error) {
+        // The file is an output that is being written. As an error of a library it is told of that
+        // output (core/output_set.cpp), and not of an input.
         throw openvdb::IoError(error.what());
     }
     std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
@@ -149,6 +155,7 @@ void seal_vdb(const fs::path& path)
     for (const Part& part : parts_of(bytes, walk_outline(walk)))
         if (part.place)
             put(part.place, part.digits);
+    // Last, as it is the digest of all other bytes, those of the parts' digests among them.
     put(kUuid, uuid_of(bytes));
     file.close();
     if (!file)

@@ -164,6 +164,7 @@ private:
         // OpenVDB keeps a child's address and a value in the same place.
         walk_.require(disjoint(children, active), "an active value where a child is");
         walk_values(walk_, coding_, values, count_bits(active), Blocks::decompressed);
+        // Where the children are does not matter to what follows, only how many there are.
         for (std::uint32_t child = count_bits(children); child > 0; --child)
             if (level == 1)
                 leaves_.push_back(

@@ -68,6 +68,7 @@ std::vector<GridBasePtr> read_opened(openvdb::io::File& file, const std::string&
         throw ReadError(path + ": has no " + text_of(kinds) + "; it has " + list_of(*all));
     std::vector<GridBasePtr> grids;
     for (const std::string& name : names) {
+        // By its metadata: grids of other types have not been walked, and nothing may decode them.
         if (!is_wanted(*metadata_of(name), kinds))
             throw ReadError(path + ": grid " + vdb_shell::quoted(name) + " is no " +
                             text_of(kinds) + "; the file has " + list_of(*all));
@@ -102,6 +103,8 @@ void write_volumes(const std::filesystem::path& path, const std::vector<GridBase
 {
     std::set<std::string> names;
     for (const GridBasePtr& grid : grids)
+        // OpenVDB would tell them apart by a number that readers do not see, and Houdini renames
+        // them.
         if (!names.insert(grid->getName()).second)
             throw InvalidOption(path.string() + ": two grids of the name " +
                                 vdb_shell::quoted(grid->getName()));

@@ -78,6 +78,7 @@ void write_obj(std::ostream& out, const TriangleMesh& mesh, const Placement& pla
         put(out, point, placement);
     }
     for (const openvdb::Vec3I& t : mesh.triangles)
+        // OBJ counts from 1.
         out << "f " << std::to_string(t[0] + 1) << ' ' << std::to_string(t[1] + 1) << ' '
             << std::to_string(t[2] + 1) << '\n';
 }
