@@ -42,6 +42,7 @@ AttributeHandle<T> handle_of(const PointLeaf& leaf, const char* attribute, std::
                              const std::string& name)
 {
     const auto* found = leaf.attributeSet().getConst(attribute);
+    // In each leaf anew: those of a damaged file need not have the same attributes.
     if (!found || !found->hasValueType<T>() || found->stride() != 1 || found->size() != rows)
         throw ReadError(name + ": attribute \"" + attribute +
                         "\" is missing in a part of the grid, or of another type or length");
@@ -60,6 +61,8 @@ bool possible(const CoreFoot& foot)
 
 } // namespace
 
+/// Feet belong to the innermost points, one for each vertex. All other points have a foot of no
+/// core, so that the columns are as long as the grid's others.
 std::vector<CoreFoot> feet_by_id(const ShellPoints& points, const std::vector<CoreFoot>& feet)
 {
     std::vector<CoreFoot> by_id(points.position.size());
@@ -72,6 +75,7 @@ std::vector<CoreFoot> feet_by_vertex(const ShellPoints& points, const std::vecto
                                      const std::string& name)
 {
     std::vector<CoreFoot> feet;
+    // What other points have is not looked at: nobody asks for it.
     for (const std::uint32_t id : points.id.back()) {
         if (!possible(by_id[id]))
             throw ReadError(name + ": point " + std::to_string(id) +
@@ -98,6 +102,8 @@ std::vector<CoreFoot> read_core_feet(const openvdb::points::PointDataGrid& grid,
                                      const ShellPoints& points, const std::string& name)
 {
     const auto first = grid.tree().cbeginLeaf();
+    // The first leaf speaks for the grid. Where another one lacks the columns, handle_of refuses
+    // the file.
     if (!first || !first->attributeSet().getConst(kCore))
         return {};
     std::vector<CoreFoot> by_id(points.position.size());

@@ -43,6 +43,8 @@ CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const 
     CoreGrids grids;
     PointGridBuilder own(kCorePointsGrid, core.points);
     own.add("id", ids(core.points.size()));
+    // Houdini and its users take `rest` for places at rest. A posed shell has those under that
+    // name, and its exact positions under another.
     own.add(position_attribute(rest.posed()), core.points);
     if (rest.posed())
         own.add("rest", rest.core);
@@ -61,6 +63,8 @@ CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const 
         centres.push_back(centre_of(all, tet));
         for (int k = 0; k < 4; ++k)
             corners.push_back(
+                // Three numberings meet here: that of the joined tets, that of the shell's points
+                // by id, and that of the core's own points, which goes on behind the shell's.
                 std::int32_t(tet[k] < tets.points.size()
                                  ? points.id_of_tet_point[tet[k]]
                                  : points.position.size() + (tet[k] - tets.points.size())));
@@ -92,6 +96,8 @@ CoreTets read_core_grids(const CoreGrids& grids, const ShellCounts& counts,
     core.tets.resize(std::size_t(counts.core_tets));
     tets.indices("tet", 4, shell_points + core.points.size(),
                  [&](std::size_t id, openvdb::Index k, std::uint32_t value) {
+                     // A point of the shell that no tet of it has is no point of the joined mesh;
+                     // the core has a point of its own there.
                      if (value < shell_points && shell.tet_point[value] == ShellPoints::kUnused)
                          tets.fail("attribute \"tet\" of " + std::to_string(id) + ": point " +
                                    std::to_string(value) + " has no \"tet_point\"");

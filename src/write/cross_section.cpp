@@ -27,6 +27,8 @@ namespace
 
 void to_pixels(CutDrawing& drawing, const PictureFrame& frame)
 {
+    // All shapes by the same arithmetic, so that corners which were equal before are equal
+    // afterwards.
     for (CutPolygon& polygon : drawing.tets)
         for (openvdb::Vec2d& corner : polygon.corner)
             corner = frame.place(corner);
@@ -66,6 +68,8 @@ OptionList describe(CrossSectionOptions& o)
 Image draw_cross_section(const PrismShell& shell, const TetMesh& tets,
                          const CrossSectionOptions& options, const SectionFrame& shown)
 {
+    // By the surface and not by all that is drawn, which differs from shell to shell of the same
+    // surface.
     const CutPlane plane = cut_plane(options, shown.surface);
     CutDrawing drawing;
     drawing.tets = cut_tets(tets, prism_tints(shell.triangles), plane);

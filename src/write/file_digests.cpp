@@ -25,6 +25,7 @@ std::string in_words(const std::string& name)
 {
     if (name == "metadata")
         return "its metadata";
+    // Names of our grids have no dot, so what is behind one is an attribute.
     const std::size_t dot = name.find('.');
     if (dot == name.npos)
         return "grid " + vdb_shell::quoted(name);
@@ -36,10 +37,14 @@ std::string in_words(const std::string& name)
 
 void add_digests(openvdb::MetaMap& metadata, const openvdb::GridPtrVec& grids)
 {
+    // The first place is for the metadata, whose digest can only be made when all other entries are
+    // there.
     std::vector<NamedDigest> all(1);
     for (const openvdb::GridBase::Ptr& grid : grids)
         for (NamedDigest& one : digests_of(*grid))
             all.push_back(std::move(one));
+    // The count stands beside the entry, so that an entry that was taken out of the file leaves a
+    // trace.
     metadata.insertMeta(kDigestCountKey, openvdb::Int32Metadata(std::int32_t(all.size())));
     all.front() = digest_of_metadata(metadata, kDigestsKey);
     std::string text;
@@ -66,6 +71,8 @@ StatedDigests::StatedDigests(const openvdb::MetaMap& metadata, fs::path path)
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
         NamedDigest one;
+        // What follows the digest is the seal of the bytes (io/vdb_seal.h), which is looked at
+        // before OpenVDB opens the file.
         if (!(words >> one.name >> one.hex))
             throw ReadError(path_.string() + ": metadata \"" + kDigestsKey +
                             "\" has a line without a digest");
@@ -79,6 +86,8 @@ void StatedDigests::require(const openvdb::GridBase& grid) const
     if (stated_.empty())
         return;
     const std::vector<NamedDigest> found = digests_of(grid);
+    // What the grid has and the file does not state counts as changed too (require_same): somebody
+    // has added it.
     for (const NamedDigest& one : found)
         require_same(one);
     // What is stated and gone is changed as well.

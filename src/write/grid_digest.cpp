@@ -38,6 +38,7 @@ void add_metadata(Digest& digest, const openvdb::MetaMap& metadata, const Wanted
         std::ostringstream bytes;
         entry->second->write(bytes);
         digest.add_text(entry->first);
+        // Two entries of the same bytes may be of different types, a number and a string.
         digest.add_text(entry->second->typeName());
         digest.add_text(bytes.str());
     }
@@ -68,6 +69,8 @@ template <typename Node> void add_inner(Digest& digest, const Node& node, const 
     digest.add(node.origin().data(), sizeof(openvdb::Coord));
     add_mask(digest, node.getChildMask());
     add_mask(digest, node.getValueMask());
+    // Of a place with a child the value means nothing, and OpenVDB keeps a pointer there. It counts
+    // as zero.
     std::vector<typename Node::ValueType> values(Node::NUM_VALUES);
     for (openvdb::Index i = 0; i < Node::NUM_VALUES; ++i)
         if (!node.isChildMaskOn(i))
@@ -99,6 +102,7 @@ template <typename Leaf> Words leaf_digest(const Leaf& leaf, const AsStored& as_
     digest.add(leaf.origin().data(), sizeof(openvdb::Coord));
     add_mask(digest, leaf.getValueMask());
     std::array<typename Leaf::ValueType, Leaf::SIZE> values;
+    // Inactive voxels too: a level set has its signs there.
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
         values[i] = as_stored(leaf.getValue(i));
     digest.add(values.data(), sizeof values);
@@ -158,7 +162,9 @@ std::vector<NamedDigest> digests_of_points(const PointDataGrid& grid)
     const auto leaves = add_grid(whole, grid);
     std::vector<NamedDigest> found{{grid.getName(), ""}};
     if (!leaves.empty()) {
+        // One for all leaves: a grid whose leaves differ in it is refused by its own reader.
         const auto& descriptor = leaves.front()->attributeSet().descriptor();
+        // Groups are bits of an attribute. Which bit is whose stands in the descriptor only.
         for (const auto& [name, bit] : descriptor.groupMap()) {
             whole.add_text(name);
             whole.add_number(std::uint64_t(bit));
@@ -167,6 +173,7 @@ std::vector<NamedDigest> digests_of_points(const PointDataGrid& grid)
             Digest digest;
             const AttributeArray& first = leaves.front()->constAttributeArray(place);
             digest.add_text(name);
+            // The codec as well, since the same bytes mean other values under another one.
             digest.add_text(first.valueType() + "/" + first.codecType());
             digest.add_number(first.stride());
             const std::size_t at = place;

@@ -47,6 +47,8 @@ std::string digest_of(const ShellFile& file)
     return digest.hex();
 }
 
+/// For the legend of the page: every reason has a count, in the order of its number, which is what
+/// the array `stop` has.
 Json counts_of_pins_and_stops(const ShellStack& stack, const std::vector<StopReason>& stops)
 {
     std::array<std::size_t, kStopReasonCount> counts{};
@@ -66,6 +68,7 @@ PageBlock block_of(const PageShell& shown, const ShellFile& file)
 {
     PageBlock block;
     const ShellStack& stack = file.stack;
+    // Of the whole pillar, from the outermost surface to the innermost.
     const std::vector<StopReason> stops = hull_of(stack).stop;
     block.about = counts_of_pins_and_stops(stack, stops);
     block.about["vertices"] = stack.surface(0).size();
@@ -74,6 +77,7 @@ PageBlock block_of(const PageShell& shown, const ShellFile& file)
     block.about["layers"] = stack.layers.size();
     block.about["skin"] = stack.skin;
     block.about["core_tets"] = file.core.tets.size();
+    // The page says then that what is drawn is not the shell itself, while all counts are.
     block.about["coarser"] = shown.coarser();
     block.about["parameters"] = file.parameters_json;
     std::vector<std::uint8_t> shown_stops;
@@ -103,6 +107,8 @@ PageBlock block_of(const PageFrame& frame, const ShellFile& file)
 
 void write_data(std::ostream& out, const std::string& id, const std::string& base64)
 {
+    // Browsers neither run nor show a script of this type, and base 64 has no character that could
+    // end it.
     out << "<script type=\"text/plain\" id=\"" << id << "\">" << base64 << "</script>\n";
 }
 
@@ -130,9 +136,12 @@ void HtmlPage::add(const std::string& label, const ShellFile& file)
         require_consistent(file.stack, file.tets);
         require_consistent_core(file.stack, file.tets, file.core);
     } catch (const InvalidOption& error) {
+        // Which of the frames it is, the shell itself does not know.
         throw InvalidOption(label + ": " + error.what());
     }
     const std::string digest = digest_of(file);
+    // What is the same in all frames is taken from the first one, once. Later ones bring places and
+    // figures only.
     if (p.frames.empty()) {
         p.shown = page_shell(file, p.most_shown_prisms);
         p.shell = block_of(p.shown, file).base64();

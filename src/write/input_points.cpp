@@ -24,6 +24,8 @@ InputPoints input_points_of(const RemeshMap& map)
     return input;
 }
 
+/// Asked before writing, as the reader refuses what does not hold: no file is made that cannot be
+/// read.
 void require_consistent(const InputPoints& input, std::size_t vertices)
 {
     const auto refuse = [](const std::string& what) {

@@ -21,6 +21,7 @@ openvdb::points::PointDataGrid::Ptr make_input_points_grid(const InputPoints& in
     }
     PointGridBuilder builder(kInputPointsGrid, input.points);
     builder.add("id", id);
+    // P of an OpenVDB point is relative to its voxel and need not give the same float again.
     builder.add("rest", input.points);
     builder.add_tuples("corner", 3, corners);
     builder.add("weights", input.weights);
@@ -33,6 +34,7 @@ InputPoints read_input_points_grid(const openvdb::points::PointDataGrid& grid, s
     const PointGridReader reader(grid, count, name);
     InputPoints input;
     reader.positions("rest", input.points);
+    // Three floats that have to be finite, as a position's have.
     reader.positions("weights", input.weights);
     input.corners.resize(input.points.size());
     reader.indices("corner", 3, vertices,

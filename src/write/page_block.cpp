@@ -34,6 +34,7 @@ std::string deflated(const std::string& bytes)
     // In pieces: zlib counts bytes in 32 bits.
     constexpr std::size_t kPiece = 1U << 20U;
     std::vector<unsigned char> buffer(kPiece);
+    // Once even for no bytes, as an empty stream has an end that has to be written.
     for (std::size_t begin = 0, end = 0; begin == 0 || begin < bytes.size(); begin = end) {
         end = std::min(begin + kPiece, bytes.size());
         // The type of the library's input is not const, though it only reads.
@@ -42,6 +43,7 @@ std::string deflated(const std::string& bytes)
         do {
             stream.next_out = buffer.data();
             stream.avail_out = uInt(buffer.size());
+            // A buffer that is filled to its end says that there may be more to take.
             deflate(&stream, end == bytes.size() ? Z_FINISH : Z_NO_FLUSH);
             out.append(reinterpret_cast<const char*>(buffer.data()),
                        buffer.size() - stream.avail_out);
@@ -60,6 +62,7 @@ void PageBlock::add_array(const char* name, const std::vector<T>& values, std::s
     const std::size_t begin = bytes_.size(), count = values.size();
     bytes_.resize(begin + count * sizeof(T));
     for (std::size_t i = 0; i < count; ++i) {
+        // In unsigned numbers, which wrap round: the sums in the browser wrap round the same way.
         const auto difference = T(values[i] - (i < stride ? T(0) : values[i - stride]));
         for (std::size_t byte = 0; byte < sizeof(T); ++byte)
             bytes_[begin + byte * count + i] = char((difference >> (8 * byte)) & 255U);
@@ -89,6 +92,7 @@ std::string PageBlock::base64() const
     const std::string text =
         all.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     std::string bytes;
+    // The length first, for the reader has to know where JSON ends and arrays begin.
     for (std::size_t byte = 0; byte < 4; ++byte)
         bytes += char((text.size() >> (8 * byte)) & 255U);
     bytes += text;

@@ -40,6 +40,7 @@ ShellStack picked(const ShellStack& stack, const Coarsened& coarse)
     ShellStack result;
     result.skin = stack.skin;
     result.tapered = stack.tapered;
+    // The diagonals are the page's own: those of the shell are of other prisms.
     SplitOptions split;
     split.rule = SplitRule::vertex_index;
     for (const PrismShell& layer : stack.layers) {
@@ -83,6 +84,7 @@ PageShell numbered(const ShellStack& stack, const TetMesh& tets, const CoreTets&
 
 std::uint16_t share(double value, double low, double high)
 {
+    // A flat shell has a box without height in one direction.
     const double s = high > low ? (value - low) / (high - low) : 0;
     return std::uint16_t(std::lround(std::clamp(s, 0.0, 1.0) * 65535));
 }
@@ -100,6 +102,7 @@ std::vector<double> least_degrees(const TetMesh& tets)
 std::vector<double> least_around(const TetMesh& tets, const std::vector<double>& degrees,
                                  std::size_t vertices)
 {
+    // A vertex without any tet has nothing bad around it.
     std::vector<double> least(vertices, kRegularDegrees);
     for (std::size_t t = 0; t < tets.tets.size(); ++t)
         for (int corner = 0; corner < 4; ++corner) {
@@ -136,6 +139,7 @@ std::vector<std::size_t> counts_of_bins(const std::vector<double>& values, doubl
     std::vector<std::size_t> counts(bins, 0);
     for (const double value : values) {
         const double bin = largest > 0 ? value / largest * double(bins) : 0;
+        // The largest value falls into the last bin, and not into one beyond.
         ++counts[std::min(std::size_t(std::max(bin, 0.0)), bins - 1)];
     }
     return counts;
@@ -143,6 +147,8 @@ std::vector<std::size_t> counts_of_bins(const std::vector<double>& values, doubl
 
 void place_points(PageFrame& frame, const PageShell& shown, const ShellFile& file)
 {
+    // With all points of the outermost surface, also those that are not drawn, so that a coarser
+    // drawing is no larger in its window.
     frame.box = bounds_of(file.stack.surface(0));
     const auto include = [&](const Vec3s& point) {
         const Vec3d p(point);
@@ -170,11 +176,13 @@ void place_points(PageFrame& frame, const PageShell& shown, const ShellFile& fil
 PageShell page_shell(const ShellFile& file, std::size_t most_prisms)
 {
     const ShellStack& stack = file.stack;
+    // Four triangles are the least that a closed surface has.
     const std::size_t wanted = std::max<std::size_t>(most_prisms / stack.layers.size(), 4);
     if (stack.triangles().size() <= wanted)
         return numbered(stack, file.tets, file.core);
     const Coarsened coarse = coarsen({stack.surface(0), stack.triangles()}, wanted);
     const ShellStack few = picked(stack, coarse);
+    // Tets of a core have corners among all of the shell's points, most of which are gone.
     PageShell shown = numbered(few, make_tets(few), {});
     shown.from = coarse.from;
     shown.all_vertices = stack.surface(0).size();
@@ -193,6 +201,8 @@ PageFrame page_frame(const PageShell& shown, const ShellFile& file)
         frame.thickness.push_back(
             share(thickness[shown.coarser() ? shown.from[v] : v], 0, frame.thickest));
     frame.thickness_counts = counts_of_bins(thickness, frame.thickest, PageFrame::kThicknessBins);
+    // Without a core the shell's own tets are taken as they are: a copy of all of them is not
+    // small.
     const TetMesh joined = file.core.empty() ? TetMesh{} : joined_tets(file.tets, file.core);
     const TetMesh& tets = file.core.empty() ? file.tets : joined;
     const std::vector<double> degrees = least_degrees(tets);

@@ -61,11 +61,15 @@ Window window_of(const ShellFile& file, const ViewOptions& view)
 {
     const ViewAxes axes = view_axes(view);
     const bool posed = file.rest.posed();
+    // The frame of all poses is that of the shell at rest, which is the same in every frame of a
+    // sequence.
     const std::vector<Vec3s>& outer = posed ? file.rest.surface[0] : file.stack.surface(0);
     Window window;
     if (posed || view.turntable > 0) {
         const Ball ball = ball_of(outer);
         const Vec3d centre = axes.in_view(ball.centre);
+        // A ball looks the same from all sides, so the object does not grow and shrink as the view
+        // turns.
         const double reach = ball.radius * (posed ? kPosedRoom : 1.0);
         window.add({centre.x() - reach, centre.y() - reach});
         window.add({centre.x() + reach, centre.y() + reach});
@@ -152,6 +156,7 @@ void write_picture_pair(const fs::path& path, const ShellFile& left, const Shell
     section.all = joined(section.all, section_frame(hull_of(right.stack)).all);
     Window window = window_of(left, options.view);
     const Window other = window_of(right, options.view);
+    // Both at one scale and in one place, or differences could not be seen.
     window.add(other.low);
     window.add(other.high);
     require_writable(path);

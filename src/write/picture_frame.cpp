@@ -24,6 +24,8 @@ PictureFrame frame_of(const openvdb::Vec2d& low, const openvdb::Vec2d& high, int
     const double wide = high[0] - low[0], tall = high[1] - low[1];
     const double longer = std::max(wide, tall);
     frame.margin = kMargin * longer_pixels;
+    // The margin is a part of the picture's size and not added to it, so a picture is as wide as
+    // was asked.
     const double room = longer_pixels - 2.0 * frame.margin;
     frame.scale = longer > 0.0 ? room / longer : 1.0;
     const auto pixels = [&](double side) {

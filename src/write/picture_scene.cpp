@@ -47,6 +47,7 @@ const Scale share_scale{{{0.0, Vec3f(0.97f, 0.95f, 0.83f)},
                          {0.67, Vec3f(0.25f, 0.55f, 0.70f)},
                          {1.0, Vec3f(0.24f, 0.38f, 0.62f)}}};
 
+/// Beyond the ends of the scale the colours of its ends.
 Vec3f at(const Scale& scale, double value)
 {
     if (value <= scale.front().value)
@@ -74,6 +75,7 @@ void colour_by_quality(const PictureSubject& subject, Colours& colours)
     for (std::size_t t = 0; t < angle.size(); ++t) {
         colours.tet[t] = at(quality_scale, angle[t]);
         if (tets.prism[t] != kCorePrism)
+            // Seen from outside only the triangle shows, so it tells the worst of what is below.
             worst[tets.prism[t]] = std::min(worst[tets.prism[t]], angle[t]);
     }
     for (std::size_t p = 0; p < worst.size(); ++p)
@@ -86,6 +88,7 @@ void colour_by_thickness(const PictureSubject& subject, Colours& colours)
     std::vector<double> length(subject.stack.surface(0).size());
     for (std::size_t v = 0; v < length.size(); ++v)
         length[v] = thickness_of(subject.stack, v);
+    // Of this shell, so colours of two shells tell shares and not lengths.
     const double longest = *std::max_element(length.begin(), length.end());
     for (std::size_t p = 0; p < triangles.size(); ++p) {
         const Vec3I& t = triangles[p];
@@ -102,6 +105,7 @@ Colours colours_of(const PictureSubject& subject, PictureColours by)
     const TetMesh& tets = subject.tets;
     Colours colours{std::vector<Vec3f>(tets.tets.size(), tint_colour(kCoreTint)),
                     std::vector<Vec3f>(subject.stack.triangles().size(), skin_colour)};
+    // One layer alone has the first colour of the scale, and no division by 0.
     const double deepest = std::max<double>(1, double(subject.stack.layers.size()) - 1);
     const std::vector<std::uint8_t> tints = prism_tints(subject.stack.triangles());
     switch (by) {
@@ -168,8 +172,10 @@ void add_section(const CutPolygon& polygon, const Vec3f& colour, const Cut& cut,
         p[cut.plane.up] = polygon.corner[std::size_t(i)][1];
         return p;
     };
+    // A fan from the first corner, as sections of tets are convex.
     for (int i = 1; i + 1 < polygon.corners; ++i) {
         ShadedTriangle made = cut.triangle({corner(0), corner(i), corner(i + 1)});
+        // Exactly on the plane, whatever rounding would make of it: what is in front is left out.
         made.in_front = {0.0, 0.0, 0.0};
         made.colour = colour;
         made.lit = false;
@@ -202,6 +208,7 @@ std::vector<ShadedTriangle> picture_scene(const PictureSubject& subject,
     if (section.axis == Axis::view) {
         for (std::vector<Vec3s>* points : {&outer, &inner, &tets.points})
             *points = turned(*points, cut.from_cut);
+        // All is in the view's axes already, so nothing is left to turn.
         cut.from_cut = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         section.axis = Axis::z;
         cut.plane = cut_plane(section, bounds_of(outer));
@@ -222,6 +229,7 @@ std::vector<ShadedTriangle> picture_scene(const PictureSubject& subject,
         }
     } else {
         for (ShadedTriangle& triangle : scene)
+            // Behind the plane everywhere: nothing is cut away from a surface that is shown whole.
             triangle.in_front = {-1.0, -1.0, -1.0};
     }
     return scene;

@@ -72,6 +72,7 @@ void append(const PointIndexGrid& index, PointDataTree& tree, const std::string&
     if (!first)
         return;
     openvdb::points::appendAttribute<T>(tree, name, openvdb::zeroVal<T>(), column.elements);
+    // Attributes are appended to all leaves alike, so the place is the same in each.
     const auto position = tree.cbeginLeaf()->attributeSet().find(name);
     std::vector<PointDataTree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
@@ -87,6 +88,7 @@ void append(const PointIndexGrid& index, PointDataTree& tree, const std::string&
         }
         // Floats are left as they are: compacting takes -0 and 0 for the same value.
         if (std::is_integral_v<T>)
+            // Equal numbers all over a leaf, as layers and pins mostly are, are stored once.
             array.compact();
     };
     for_each_index(leaves.size(), fill, 1);
@@ -126,6 +128,7 @@ void PointGridBuilder::add_tuples(const std::string& name, openvdb::Index stride
         return; // no leaf has an array
     append<std::int32_t>(*index_, grid_->tree(), name, {column.data(), stride, stride});
     for (openvdb::Index element = 0; element < stride; ++element)
+        // From the same column by its stride, so nothing is copied.
         append<std::int32_t>(*index_, grid_->tree(), name + std::to_string(element),
                              {column.data() + element, stride, 1});
 }

@@ -57,6 +57,7 @@ void add_stop_reasons(PointGridBuilder& builder, const ShellStack& stack, const 
                                    [&](std::size_t i) { return layer.stop[points.vertex[i]]; }));
     };
     add("stop_reason", stack.layers.back());
+    // Only then are there two reasons for a vertex; other files go without the column.
     if (on_both_sides(stack))
         add(kOuterStop, stack.layers.front());
 }
@@ -163,6 +164,7 @@ PointDataGrid::Ptr make_tet_points(const ShellStack& stack, const TetMesh& tets,
 
 const Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex)
 {
+    // The innermost surface has nothing below it: its points look back up.
     const bool last = surface == stack.layers.size();
     return stack.surface(last ? surface - 1 : surface + 1)[vertex];
 }
@@ -197,6 +199,7 @@ std::vector<Vec3s> layer_normals(const std::vector<Vec3s>& points,
     }
     std::vector<Vec3s> normals(points.size(), Vec3s(0.0f));
     for (std::size_t i = 0; i < sum.size(); ++i)
+        // A point whose triangles cancel or have no area keeps a normal of 0.
         if (sum[i].normalize(0.0))
             normals[i] = Vec3s(sum[i]);
     return normals;
@@ -278,6 +281,7 @@ ShellCounts counts_of(const ShellStack& stack, const TetMesh& tets, const CoreTe
     std::int64_t points = vertices;
     for (const PrismShell& layer : stack.layers)
         for (std::size_t v = 0; v < layer.outer.size(); ++v)
+            // As number_points counts: below a pinned pillar a surface has no point of its own.
             points += layer.pinned(v) ? 0 : 1;
     const auto layers = std::int64_t(stack.layers.size());
     return {vertices,
@@ -297,6 +301,7 @@ PointGrids make_point_grids(const ShellStack& stack, const TetMesh& tets,
 {
     const ShellPoints points = number_points(stack, tets);
     PointGrids grids;
+    // The three only read what they share.
     run_together([&] { grids.tets = make_tet_points(stack, tets, points); },
                  [&] { grids.points = make_points(stack, points, feet, rest); },
                  [&] { grids.prisms = make_prisms(stack, points); });

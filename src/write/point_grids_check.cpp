@@ -227,6 +227,7 @@ void require_consistent_core(const ShellStack& stack, const TetMesh& tets, const
 {
     require_size(core.source_vertex.size(), core.points.size(), "the core's list of vertices");
     require_finite(core.points, "a point of the core is not finite");
+    // Only below the surface is there a void to fill.
     require(core.tets.empty() || stack.skin == 0, "a core within a shell outside the surface", 0);
     const std::size_t points = tets.points.size() + core.points.size();
     const auto most = std::size_t(std::numeric_limits<std::int32_t>::max());

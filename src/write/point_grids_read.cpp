@@ -48,6 +48,8 @@ Rows read_rows(const Reader& reader, const ShellCounts& counts)
     read("source_vertex", std::size_t(counts.vertices), rows.vertex);
     read("layer", std::size_t(counts.layers) + 1, rows.layer);
     read("stop_reason", kStopReasonCount, rows.stop);
+    // As the writer does: the column is there only where there are layers on both sides of the
+    // skin.
     if (counts.skin > 0 && counts.skin < counts.layers)
         read(kOuterStop, kStopReasonCount, rows.outer_stop);
     // Shifted by one, so that -1 for "no tet uses it" becomes 0 and one test of range covers both.
@@ -151,6 +153,7 @@ void read_tet_points(const Reader& reader, const Rows& rows, const ShellCounts& 
     std::size_t found = 0;
     std::vector<bool> seen(count, false);
     for (std::size_t id = 0; id < rows.rest.size(); ++id) {
+        // A point that no tet has, as that of a vertex all of whose triangles are pinned.
         if (rows.tet_point[id] == 0)
             continue;
         const std::size_t point = rows.tet_point[id] - 1;
@@ -173,6 +176,7 @@ std::vector<std::array<std::uint32_t, 6>> read_prisms(const Reader& reader,
                                                       const ShellCounts& counts, ShellStack& stack)
 {
     const auto prisms = std::size_t(counts.prisms), layers = std::size_t(counts.layers);
+    // Before the division, which would round a wrong number to a plausible one.
     if (prisms % layers != 0)
         reader.fail("the metadata says " + std::to_string(prisms) + " prisms in " +
                     std::to_string(layers) + " layers");
@@ -234,6 +238,8 @@ void read_tets(const Reader& reader, const Rows& rows, const ShellCounts& counts
                    [&](std::size_t id, auto, std::uint32_t value) {
                        const auto faces = std::uint32_t(counts.prisms / counts.layers);
                        tets.prism[id] = value % faces;
+                       // Below 256, for the metadata allow no more layers
+                       // (ShellStack::kMostLayers).
                        tets.prism_layer[id] = std::uint8_t(value / faces);
                    });
 }

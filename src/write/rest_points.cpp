@@ -7,6 +7,7 @@
 namespace vdb_shell
 {
 
+/// Places alone change: triangles, splits and reasons are those of every pose.
 ShellStack rest_stack(const ShellFile& file)
 {
     ShellStack stack = file.stack;

@@ -81,6 +81,9 @@ Flat flat_of(const ShadedTriangle& t, const PictureFrame& frame)
     if (flat.empty)
         return flat;
     for (std::size_t k = 0; k < 3; ++k) {
+        // The weight of a corner is the share of the area beyond the side opposite to it, so it is
+        // 0 along that side. The sign of the area cancels: triangles seen from behind have positive
+        // weights inside too.
         const Vec2d &from = c[(k + 1) % 3], &to = c[(k + 2) % 3];
         const Vec2d along = to - from;
         flat.weight[k] = {(along.y() * from.x() - along.x() * from.y()) / twice_area,
@@ -135,17 +138,21 @@ private:
         double depth = 0, in_front = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             weight[k] = flat.weight[k].at(x + 0.5, row + 0.5);
+            // A centre on a common side is inside of both neighbours, and the first one keeps it.
             if (weight[k] < 0)
                 return;
             depth += weight[k] * t.corner[k].z();
             in_front += weight[k] * t.in_front[k];
         }
         DepthSample& sample = samples_[place(x, row)];
+        // What is cut away leaves the sample to what lies behind.
         if (in_front > 0 || depth <= sample.depth)
             return;
         sample.depth = depth;
         sample.colour = flat.colour;
         for (std::size_t k = 0; k < 3; ++k) {
+            // Weight k falls to 0 at the side from corner k + 1 to the next, which is the bit of
+            // that corner.
             const bool drawn = (t.edges >> ((k + 1) % 3)) & 1;
             if (drawn && weight[k] * flat.edge_samples[k] < kEdgePixels * kSamples) {
                 sample.colour += flat.edge_strength * (edge_colour - flat.colour);

@@ -28,6 +28,7 @@ void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& pl
     node.replace_extension(".node");
     ele.replace_extension(".ele");
     write_together(with, [&](OutputSet& set) {
+        // In one set, so that a reader never finds the one file with the other of an earlier run.
         set.write_stream(ele, [&](std::ostream& out) { write_tetgen_ele(out, tets); });
         set.write_stream(node, [&](std::ostream& out) { write_tetgen_node(out, tets, placement); });
     });
@@ -75,6 +76,7 @@ void write_tets(const fs::path& path, const TetMesh& tets,
         return write_stream_atomically(
             path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, extras); },
             with);
+    // Both have no place for the extras of points.
     void (*write)(std::ostream&, const TetMesh&, const Placement&) = nullptr;
     if (extension == ".mesh")
         write = write_medit;

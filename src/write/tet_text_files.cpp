@@ -58,6 +58,8 @@ void write_gmsh_entities(TextOut& text, const TetMesh& tets, const Placement& pl
 void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& placement)
 {
     TextOut text(out);
+    // TetGen's readers pass over lines that begin with #. The numbers behind are those of points,
+    // dimensions, attributes and boundary markers.
     text << "# index x y z source_vertex layer\n" << tets.points.size() << " 3 2 0\n";
     const std::vector<std::int32_t> vertex = signed_numbers(tets.source_vertex);
     const std::vector<std::int32_t> layer = signed_numbers(tets.layer);
@@ -107,8 +109,11 @@ void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placeme
 {
     TextOut text(out);
     const std::size_t points = tets.points.size(), count = tets.tets.size();
+    // Version, text, and bytes of a size_t as a binary file would have them.
     text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
     write_gmsh_entities(text, tets, placement);
+    // One block, its tags from 1 on without a gap; then the block: of dimension 3, entity 1,
+    // without parameters.
     text << "$Nodes\n1 " << points << " 1 " << points << "\n3 1 0 " << points << '\n';
     for (std::size_t i = 0; i < points; ++i)
         text << i + 1 << '\n';

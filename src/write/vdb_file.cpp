@@ -184,6 +184,7 @@ void require_consistent_rest(const ShellFile& file)
 /// With digests of all that it holds.
 void write_sealed(const fs::path& path, openvdb::GridPtrVec grids, openvdb::MetaMap metadata)
 {
+    // Last of all, as the digest is of all other entries; the seal needs the bytes of the file.
     add_digests(metadata, grids);
     write_vdb_archive(path, std::move(grids), metadata);
     seal_vdb(path);
@@ -230,6 +231,7 @@ openvdb::GridPtrVec volumes_of(const ShellFile& file, bool half)
 {
     openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, half, file.placement),
                                 named_copy(file.depth, kDepthGrid, half, file.placement)};
+    // Whoever made the grid may have left it without a class, and tools pick volumes by it.
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
     for (const GridBase::Ptr& vectors : {file.rest_volume, file.velocity_volume}) {
         if (!vectors)
@@ -370,6 +372,7 @@ FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
         openvdb::io::File file(path.string());
         open_file(file);
         std::string chosen = name;
+        // A file of one float grid needs no name; of several none is taken for the right one.
         if (name.empty()) {
             int found = 0;
             const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();

@@ -139,6 +139,8 @@ fs::path points_place(const openvdb::MetaMap& metadata, const fs::path& path)
 
 void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellInfo& info)
 {
+    // Each schema has what the one before it has and more, so reading ends where the file's own
+    // schema does. What it does not say keeps its default: one layer, below the surface.
     if (info.schema < kLayeredSchema)
         return;
     info.layers = count_entry(metadata, path, kLayersKey);
@@ -162,6 +164,8 @@ void read_layers(const openvdb::MetaMap& metadata, const fs::path& path, ShellIn
 
 void read_placement(const openvdb::MetaMap& metadata, const fs::path& path, Placement& placement)
 {
+    // Neither: coordinates are those of the file as they stand. One alone is damage, which entry()
+    // tells.
     if (!metadata[kOriginKey] && !metadata[kUnitKey])
         return;
     placement.origin = entry<openvdb::Vec3d>(metadata, path, kOriginKey);
@@ -187,6 +191,8 @@ std::int32_t as_int32(std::size_t value)
 
 int schema_for(const ShellCounts& counts)
 {
+    // The lowest schema that can say what the shell is, so that older readers take as many files as
+    // they can.
     if (counts.posed)
         return kPosedSchema;
     if (counts.core_tets > 0)
@@ -298,6 +304,7 @@ ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& p
     info.creator = entry<std::string>(metadata, path, kCreatorKey);
     info.orientation = entry<std::string>(metadata, path, kOrientationKey);
     info.checksum = entry<std::string>(metadata, path, kChecksumKey);
+    // For people and programs that list a file. Which grids are read is decided by the counts.
     std::istringstream names(entry<std::string>(metadata, path, kGridsKey));
     for (std::string name; names >> name;)
         info.grids.push_back(name);

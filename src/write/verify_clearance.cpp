@@ -56,6 +56,7 @@ Verification verify_clearance(const ShellFile& file, std::vector<CoreMesh> cores
 {
     const json report = json::parse(file.report_json, nullptr, false);
     CoreOptions options;
+    // The claim is taken from the file, and the cores from the user.
     options.distance = stated_of_cores(report, "distance").value_or(0);
     const TriangleMesh surface{file.stack.surface(0), file.stack.triangles()};
     if (file.stack.skin != 0)
@@ -75,6 +76,7 @@ Verification verify_clearance(const ShellFile& file, std::vector<CoreMesh> cores
             detail << *claimed;
         else
             detail << "nothing";
+        // Equal and not nearly so: both are computed from the same floats in the same order.
         const bool far_enough = least >= options.distance && (!claimed || *claimed == least);
         return {kWhat, clear && far_enough, detail.str()};
     } catch (const GeometryError& error) {

@@ -74,6 +74,7 @@ const std::vector<openvdb::Vec3s>& skin_of(const ShellFile& file)
 /// be the right one.
 Verification verify_surface(const ShellFile& file, const json& report)
 {
+    // The skin is the surface that the shell was built of; the others are for the certificate.
     const MeshCheck check = check_mesh({skin_of(file), file.stack.triangles()});
     const double crossings = stated(report, "/mesh/self_intersections");
     const bool sound = check.closed() && check.manifold() && check.inconsistent_edges.count == 0 &&
@@ -200,6 +201,7 @@ Verification verify_core(const ShellFile& file, const StackCertificate& shell, c
     const double tets = stated(report, "/core_fill/tets");
     const double volume = stated(report, "/core_fill/volume");
     TetMesh alone = joined_tets(file.tets, file.core);
+    // The figures that the file states are those of the core's own tets.
     alone.tets = file.core.tets;
     const double found = tet_volume(alone);
     bool fits = false;

@@ -59,6 +59,8 @@ ViewAxes view_axes(const ViewOptions& options)
     const double sine = std::sin(azimuth), cosine = std::cos(azimuth);
     const double level = std::cos(elevation), height = std::sin(elevation);
     ViewAxes axes;
+    // At azimuth 0 seen from +z where y is up, and from -y where z is: the front, in programs of
+    // either kind.
     if (options.up == UpAxis::y) {
         axes.right = {cosine, 0.0, -sine};
         axes.towards = {sine * level, height, cosine * level};
@@ -66,6 +68,7 @@ ViewAxes view_axes(const ViewOptions& options)
         axes.right = {cosine, sine, 0.0};
         axes.towards = {sine * level, -cosine * level, height};
     }
+    // Square to both and right-handed, so pictures are not mirrored.
     axes.up = axes.towards.cross(axes.right);
     return axes;
 }

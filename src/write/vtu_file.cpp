@@ -65,6 +65,7 @@ void write_cells(TextOut& text, const TetMesh& tets)
 {
     const std::size_t count = tets.tets.size();
     // `offsets` has the end of each cell in the list of corners, not its start.
+    // 64 bits, for four corners a tet pass 32 bits at half a billion tets.
     std::vector<std::int64_t> corners(4 * count), ends(count);
     for (std::size_t t = 0; t < count; ++t) {
         for (std::size_t corner = 0; corner < 4; ++corner)
@@ -95,6 +96,7 @@ void write_feet(TextOut& text, const std::vector<CoreFoot>& feet)
 {
     if (feet.empty())
         return;
+    // A column each, as VTK has arrays of one type only.
     std::vector<std::int32_t> core, triangle;
     std::vector<openvdb::Vec3s> uvw;
     std::vector<float> distance;
@@ -139,6 +141,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
     text << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
             "byte_order=\""
          << byte_order() << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n";
+    // Before the piece: arrays of the file stand outside of it, and have their own lengths.
     write_input(text, extras.input, placement);
     text << "<Piece NumberOfPoints=\"" << tets.points.size() << "\" NumberOfCells=\""
          << tets.tets.size() << "\">\n<PointData>\n";
