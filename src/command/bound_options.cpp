@@ -110,6 +110,7 @@ std::string help_of(const BoundOption& bound)
     return choices.empty() ? help : help + choices + ")";
 }
 
+/// Tells CLI11 of the flag, and keeps what it hands back: its words are asked for by apply().
 void add_to_parser(CLI::App& app, BoundOption& bound)
 {
     const Option& option = bound.option;
@@ -164,6 +165,7 @@ std::string text_of_file(const std::filesystem::path& preset)
     return text.str();
 }
 
+/// Sets what a text of JSON says, from a file or of a purpose. `name` opens messages.
 void set_from_text(BoundOptions& bound, const std::string& text, const std::string& name)
 {
     nlohmann::ordered_json json = parse_options(text, name);
@@ -181,6 +183,7 @@ void set_from_text(BoundOptions& bound, const std::string& text, const std::stri
     set_known_from_json(json, bound.sections, name);
 }
 
+/// What was given on the command line wins over all that was set before.
 void set_given(BoundOption& bound)
 {
     Option& option = bound.option;
@@ -238,6 +241,8 @@ bool is_there(BoundOptions& bound, const std::string& needed)
         // default.
         return was_given(*other) || !(other->option.get() == other->default_value);
     // The value itself, or the extension of a file.
+    // The field of an option that can be given several times does not show what was given; there
+    // the words are asked.
     if (!other->option.repeated) {
         const std::string text = text_of(other->option.get());
         return one_of_them(text) || one_of_them(lower_case_extension(text));
@@ -248,6 +253,8 @@ bool is_there(BoundOptions& bound, const std::string& needed)
     });
 }
 
+/// `needs` as Option has it: "--repair", "--output .png", or several of them with " or " between,
+/// one of which is enough.
 bool has_what_it_needs(BoundOptions& bound, const std::string& needs)
 {
     const std::string separator = " or ";

@@ -67,6 +67,8 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
     const FloatGridPtr thickness = read_thickness_grid(arguments.thickness_grid);
     ShellResult result;
     if (is_level_set(arguments)) {
+        // Not left aside: whoever asks for it has a surface far away, and would go on without what
+        // was meant to help.
         if (arguments.read.recentre || arguments.read.rescale)
             throw InvalidOption(name + ": --recentre and --rescale are for triangles; a level set "
                                        "has a transform of its own");
@@ -89,6 +91,7 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
         result = build_shell(read.mesh, options, name, in_place(thickness, placement).get(),
                              interrupter, read_cores(arguments.cores, arguments.read, placement));
         result.report.read = read.report;
+        // The first frame that gets here decides, and it runs alone (run_steps.cpp).
         if (context.sequence && !context.sequence->voxel_size)
             context.sequence->voxel_size = result.report.field.voxel_size * placement.unit;
     }
@@ -111,11 +114,14 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
     file.core_feet = std::move(result.core_feet);
     if (result.core)
         file.core = std::move(*result.core);
+    // Only what remeshing has made can say where the points before it lie.
     if (result.remesh_map)
         file.input = input_points_of(*result.remesh_map);
     if (result.report.read)
         file.placement = result.report.read->placement;
     file.parameters_json = options_json(options);
+    // The report as it is now, before anything was written: it cannot tell of the file that it
+    // stands in.
     file.report_json = report_json(result.report, false);
     if (wants_vdb(outputs)) {
         file.surface = result.level_set;
@@ -165,6 +171,7 @@ void require_partners(const BuildArguments& arguments)
         throw InvalidOption("--core-distance needs --core FILE");
 }
 
+/// All that can be refused without reading a file, and before any work.
 void require_sensible(const BuildArguments& arguments)
 {
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)

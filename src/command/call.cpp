@@ -69,6 +69,7 @@ struct Subcommand {
     bool gathers_frames = false;
 };
 
+/// None has a key, for a file of options says what a shell is made like and not how a call is run.
 OptionSections describe(GlobalArguments& a)
 {
     const Option threads =
@@ -238,6 +239,7 @@ void Call::Parts::add_commands()
         [this](Context& context) { return run_options(a.options, entries(), context.out); });
 }
 
+/// The global options first, under no name.
 std::vector<CommandEntry> Call::Parts::entries() const
 {
     std::vector<CommandEntry> entries{{"", "", &global}};
@@ -247,6 +249,7 @@ std::vector<CommandEntry> Call::Parts::entries() const
     return entries;
 }
 
+/// After parse(). The parser wants one command and takes no second one.
 Subcommand& Call::Parts::given()
 {
     for (Subcommand& command : commands)

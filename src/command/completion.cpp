@@ -15,6 +15,7 @@ namespace vdb_shell::command
 namespace
 {
 
+/// All words by which the option can be given, the negation of a flag and the shorthand with them.
 std::vector<std::string> flags_of(const Option& option)
 {
     std::vector<std::string> flags = option.names;

@@ -57,6 +57,8 @@ void Context::say(LogLevel of, const std::string& text) const
     err << one_line(json);
 }
 
+/// Keys that the message does not have are left out and not empty, so that a reader can ask whether
+/// they are there.
 void Context::say(const std::exception& error) const
 {
     if (format == MessageFormat::text)

@@ -39,6 +39,8 @@ void bring_into(const Placement& placement, const Placement& own, std::vector<Ve
 void take_core_files(Option& option, std::vector<std::string>& files)
 {
     option.kind = OptionKind::text;
+    // A text from now on: words that it had stay allowed, and are told in the help with what they
+    // meant.
     option.repeated = true;
     option.help += " (" + option.choices.front() + ", " + option.choices.back() +
                    "). Or FILE: a closed surface inside (or FILE.vdb:GRID, a level set) that the "

@@ -64,6 +64,7 @@ double triangles_of(const ShellOptions& shell, const TriangleMesh& mesh, double 
     return count * std::pow(4.0, shell.subdivide.levels);
 }
 
+/// In the order in which CostNumbers is documented.
 double sum_of(const CostNumbers& numbers, const Size& size)
 {
     // Two slopes for triangles: from kCoarseFrom on growth begins on a coarser surface
@@ -89,6 +90,8 @@ double other_file(const std::string& extension, double triangles, double tets)
     return found == by_triangle.end() ? 0 : found->second * triangles;
 }
 
+/// Of all outputs. A format that the model does not know, as those of pictures and pages, counts as
+/// nothing.
 double disk_of(const Outputs& outputs, const Size& size, const CostNumbers& vdb)
 {
     // Three tets a prism, as it has without pins and tapering: the most that there can be.
@@ -188,6 +191,8 @@ CallCost estimate_pose(const PoseArguments& arguments)
 {
     const ShellFile shell = read_shell(arguments.shell);
     const ShellStack rest = rest_stack(shell);
+    // Read as `pose` reads it: what it would refuse is refused here, and the area is that of the
+    // pose.
     const TriangleMesh skin{read_posed_skin({arguments.mesh, arguments.format, arguments.rest_mesh},
                                             rest, shell.placement, arguments.shell),
                             rest.triangles()};

@@ -49,6 +49,7 @@ OptionSections describe(DeformArguments& a)
         output_options(a.call, "The volumes and points in the pose: .vdb")};
 }
 
+/// One line a grid. What is unusual is told only where it happened.
 std::string figures_of_deform(const DeformFigures& f, bool points)
 {
     char line[256];
@@ -120,14 +121,12 @@ FilePlan plan_deform(const DeformArguments& arguments)
 
 int run_deform(const DeformArguments& arguments, Context& context)
 {
-    // Made anew, for reading adds the file in which a shell keeps its points: no output may replace
-    // that either.
+    // Made anew: where a shell keeps its points is known only when it is opened.
     FilePlan plan = plan_deform(arguments);
     SignalInterrupter interrupter(context);
     MappedShell posed = map_shell(arguments.posed, plan);
     const std::unique_ptr<ShellMap> from = map_before(arguments, posed, plan);
-    // Before any voxel is asked for, so that what is carried there and back comes back to where it
-    // was.
+    // Before any voxel is carried, so that what goes there and back comes back.
     make_linear_alike(*from, *posed.map);
     std::unique_ptr<ShellMap> velocity;
     // Before the first volume, whose work would be lost.

@@ -114,6 +114,7 @@ int print_file(std::ostream& out, const fs::path& path)
     const std::uintmax_t bytes = fs::file_size(path, none);
     if (none)
         throw ReadError(path.string() + ": " + none.message());
+    // The formats go by extensions in any case of letters.
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -135,6 +136,7 @@ int print_file(std::ostream& out, const fs::path& path)
             return success;
         }
     print_row(out, "use", "no command reads the extension \"" + extension + "\"");
+    // The status says what a command would say of the file.
     return read_error;
 }
 

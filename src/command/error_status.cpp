@@ -101,6 +101,8 @@ std::string message_of(const std::exception& error)
     return dynamic_cast<const std::bad_alloc*>(&error) ? "out of memory" : error.what();
 }
 
+/// Front to back: the file, then the element, or else the option with its value and limit. What no
+/// form fits stays in the message alone.
 ErrorFacts facts_of(const std::exception& error)
 {
     ErrorFacts facts;

@@ -108,6 +108,7 @@ std::vector<Step> steps_of(const EstimateArguments& arguments, GlobalArguments& 
     return plan_steps(words, global, context);
 }
 
+/// Of a whole call: the first frame is read and counted, the others are taken to cost the same.
 Estimate estimate_words(const EstimateArguments& arguments, const Context& context)
 {
     GlobalArguments global;
@@ -130,6 +131,7 @@ template <typename Body> void with_errors_of_call(const Body& body)
     }
 }
 
+/// One for a call, or one for each surface, all with the options of `build` that were given.
 std::vector<Estimate> estimates_of(const EstimateArguments& arguments, const Context& context)
 {
     std::vector<Estimate> estimates;
@@ -140,6 +142,7 @@ std::vector<Estimate> estimates_of(const EstimateArguments& arguments, const Con
     for (const std::string& mesh : arguments.words) {
         BuildArguments build = arguments.build;
         build.mesh = mesh;
+        // Threads are those of this command: it has the flag that the build would have.
         estimates.push_back({"build", 1, int(thread_count()), estimate_build(build)});
     }
     return estimates;

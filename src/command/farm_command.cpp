@@ -137,6 +137,7 @@ std::vector<std::string> words_of_line(const std::string& line, const std::strin
     }
 }
 
+/// Line by line, so that an error names the line; the first one ends it.
 std::vector<FarmCall> calls_in(const fs::path& list, const Context& context)
 {
     std::ifstream in(list);
@@ -183,6 +184,7 @@ std::size_t chunk_of(const FarmArguments& arguments, const FarmJob& job,
     return std::max({least, std::size_t(1), cost ? chunk_for(*cost, steps) : 1});
 }
 
+/// Also throws for what the engine's form cannot hold, which is why a plan makes the text as well.
 std::string text_of_job(const FarmArguments& arguments, const FarmJob& job)
 {
     switch (arguments.engine) {
@@ -204,6 +206,7 @@ FarmJob job_of(const FarmArguments& arguments, const Context& context, bool with
     job.program = !arguments.program.empty()          ? arguments.program
                   : arguments.engine == Engine::slurm ? own_program()
                                                       : "vdb_shell";
+    // Where relative names of the calls are meant from: that is the folder of who writes the job.
     job.home = fs::current_path();
     fs::path folder = arguments.folder;
     if (folder.empty())

@@ -54,6 +54,7 @@ std::vector<std::string> shared_words(const std::vector<std::string>& words)
     return shared;
 }
 
+/// What a call may not have on a farm, though it may have it here.
 void require_for_farm(const Call& call, const std::vector<std::string>& words)
 {
     const std::string name = call.name();
@@ -97,6 +98,8 @@ std::optional<FileWord> file_word(const std::string& word, std::optional<int> fr
     return std::nullopt;
 }
 
+/// Notes which words name files of the first frame, in the form that they have with tokens: engines
+/// that carry files to workers need to know them.
 void take_files(FarmCall& farm, const std::vector<Step>& steps)
 {
     for (const Step& step : steps)
@@ -112,6 +115,7 @@ void take_files(FarmCall& farm, const std::vector<Step>& steps)
     for (std::size_t w = 0; w < farm.words.size(); ++w) {
         std::optional<FileWord> file = file_word(farm.words[w], first.frame, inputs);
         named += file ? 1 : 0;
+        // Inputs first: no file is both, for the plan has refused that.
         if (!file && (file = file_word(farm.words[w], first.frame, first.outputs)))
             file->output = true;
         if (file) {
@@ -153,6 +157,7 @@ FarmCall plan_words(const std::vector<std::string>& words, const std::string& pl
         farm.manifest = fs::absolute(global.manifest).lexically_normal();
     global.resume = global.keep_going = true; // as tasks will have it
     const std::vector<Step> steps = plan_steps(words, global, context);
+    // The words of one frame can be planned and estimated by themselves; those with tokens cannot.
     farm.first_words = steps.front().words;
     Call first;
     first.parse(farm.first_words);
@@ -215,6 +220,8 @@ FarmCall plan_call(const std::vector<std::string>& words, const std::string& pla
                    const Context& context)
 {
     const std::string begin = place.empty() ? "" : place + ": ";
+    // What is thrown keeps its kind, by which the status of the command goes, and gets the line of
+    // the list.
     try {
         return plan_words(words, begin, context);
     } catch (const CLI::ParseError& error) {

@@ -51,6 +51,8 @@ std::string add_cost(const FarmCall& call, int cpus, StepCost& dearest)
 
 } // namespace
 
+/// The largest time and the largest memory, which need not be those of the same call. One call that
+/// is not known leaves all tasks without a limit: they share one.
 std::optional<StepCost> dearest_step(const std::vector<FarmCall>& calls, int cpus,
                                      const Context& context)
 {

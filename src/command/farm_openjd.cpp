@@ -92,6 +92,8 @@ std::string range_text(std::vector<int> frames)
     return text;
 }
 
+/// Makes the parts of the template from the inside to the outside. Steps come before parameters,
+/// for each step adds the folders that it needs.
 class Template
 {
 public:
@@ -186,6 +188,7 @@ private:
         return words;
     }
 
+    /// What starts a command, and how it is ended.
     ordered_json run_action(const ordered_json& args) const
     {
         ordered_json run{{"command", "{{Param.Program}}"}, {"args", args}};
@@ -198,6 +201,7 @@ private:
         return {{"actions", actions}};
     }
 
+    /// The chunks of a call, each as a text of frames.
     ordered_json parts_of(std::size_t call) const
     {
         ordered_json parts = ordered_json::array();

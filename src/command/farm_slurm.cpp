@@ -124,6 +124,8 @@ void write_directives(std::ostream& out, const FarmJob& job)
     out << "#SBATCH --requeue\n#SBATCH --open-mode=append\n";
 }
 
+/// All that differs from job to job as variables, so that the functions are the same in every
+/// script.
 void write_values(std::ostream& out, const FarmJob& job)
 {
     out << "\nset -u\nname=" << quoted(job.name) << "\nprogram=" << quoted(job.program)
@@ -143,6 +145,7 @@ void write_calls(std::ostream& out, const FarmJob& job)
     }
 }
 
+/// What each number of the array is to do. A task of several calls runs one after the other.
 void write_tasks(std::ostream& out, const FarmJob& job)
 {
     out << "\ntask() {\n    case $1 in\n";
@@ -181,6 +184,7 @@ void write_joins(std::ostream& out, const FarmJob& job)
 
 } // namespace
 
+/// Lines for sbatch have to stand before the first command; functions before what calls them.
 std::string slurm_script(const FarmJob& job, const std::string& file)
 {
     std::ostringstream out;

@@ -38,6 +38,7 @@ ordered_json words_of(const FarmJob& job, const FarmRun& run)
     return words;
 }
 
+/// --expect, since a task that never ran has left no manifest that could be missed.
 ordered_json join_words(const FarmJob& job, std::size_t c)
 {
     const FarmCall& call = job.calls[c];

@@ -102,6 +102,8 @@ int run_info(const FileArguments& arguments, Context& context)
     if (arguments.json) {
         nlohmann::ordered_json json;
         json["parameters"] = stored_json(arguments.file, "parameters", file.parameters_json);
+        // Parsed and not passed on as text: what is printed is one JSON object, whatever stands in
+        // the file.
         json["report"] = stored_json(arguments.file, "report", file.report_json);
         context.out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
                     << '\n';

@@ -77,6 +77,7 @@ void FilePlan::add_input(const fs::path& path)
     }
     const std::optional<Identity> identity = identity_of(path);
     if (!identity) {
+        // An option that was left out; so callers add all paths without asking.
         if (!path.empty())
             missing_.push_back(path);
         return;
@@ -91,6 +92,7 @@ void FilePlan::add_input(const fs::path& path)
 
 void FilePlan::add_output(const fs::path& path)
 {
+    // Where the bytes will go: behind links, and with the reason told where nothing can be written.
     const OutputTarget target = find_output_target(path);
     std::optional<Identity> identity = identity_of(target.path);
     if (!identity) {

@@ -182,6 +182,8 @@ std::optional<Token> variable_token(const std::string& text, std::size_t begin)
     return longer_name ? std::nullopt : std::optional(Token{begin, at - begin, width});
 }
 
+/// The first token at `from` or behind it. All ways to write one are looked for, and none can be
+/// read as another.
 std::optional<Token> next_token(const std::string& path, std::size_t from)
 {
     // Folders may well be named after people and places: me@there, take#2.
@@ -221,13 +223,14 @@ FrameList parse_frames(const std::string& text, const std::string& flag)
     return RangeReader(text, flag).read();
 }
 
+/// From left to right, each part as long as it goes. So the text is the same for the same list,
+/// which names of files rely on (farm_openjd.cpp).
 std::string frames_text(const std::vector<int>& frames)
 {
     std::string text;
     for (std::size_t begin = 0; begin < frames.size();) {
         std::size_t end = begin + 1;
         const int step = end < frames.size() ? frames[end] - frames[begin] : 0;
-        // As far as the step stays the same.
         while (end < frames.size() && frames[end] - frames[end - 1] == step)
             ++end;
         // Two of them are a range only where they are neighbours: "1-2", but "1,9".

@@ -41,6 +41,8 @@ struct Finding {
     std::string what; ///< empty where it is done
 };
 
+/// From the worst to the best: not noted, failed, noted but gone. That the bytes are still the same
+/// is not asked: a thousand frames would have to be read.
 Finding finding_of(const Manifest& manifest, std::optional<int> frame)
 {
     const std::optional<ManifestEntry> entry = manifest.find(frame);

@@ -39,8 +39,7 @@ void write_option(std::ostream& out, const Option& option)
     if (option.kind != OptionKind::flag) {
         out << " \\fI" << (option.kind == OptionKind::text ? "text" : "value") << "\\fR";
         const std::string value = text_of(option.get());
-        // The default. That of a name is empty as a rule, and an option without one would be told
-        // to be "unset".
+        // The default, where it says something: most texts have an empty one.
         if (option.kind != OptionKind::text && value != "unset")
             out << " [" << escaped(value) << ']';
     }

@@ -103,6 +103,7 @@ ManifestEntry entry_of(const ordered_json& json)
     return entry;
 }
 
+/// Throws what the parser throws; callers say of which file (with_file).
 ordered_json parsed(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
@@ -162,6 +163,7 @@ std::string Manifest::command_in(const fs::path& file)
     return with_file(file, [&] { return parsed(file).at("command").get<std::string>(); });
 }
 
+/// A file that is not there yet is a manifest without entries.
 Manifest::Entries Manifest::read() const
 {
     if (!fs::exists(file_))
@@ -218,6 +220,7 @@ bool Manifest::outputs_are_there(const ManifestEntry& entry,
     return true;
 }
 
+/// The mutex keeps threads of this process apart, the lock of the folder other processes.
 void Manifest::put(const ManifestEntry& entry)
 {
     const std::lock_guard lock(mutex_);

@@ -32,6 +32,7 @@ MappedShell map_shell(const std::filesystem::path& path, FilePlan& plan)
     return shell;
 }
 
+/// Null says that the file's own shell is at rest; callers then take that.
 std::unique_ptr<ShellMap> map_at_rest(const MappedShell& shell)
 {
     if (!shell.file.rest.posed())

@@ -71,6 +71,7 @@ std::vector<fs::path> files_of(const fs::path& path, const Outputs& outputs)
         return {path, points_file_of(path)};
     if (path.extension() == ".ele") {
         other.replace_extension(".node");
+        // Then the other name writes the two, and this one nothing.
         const bool both = std::count(outputs.paths.begin(), outputs.paths.end(), other) > 0;
         return both ? std::vector<fs::path>{} : std::vector<fs::path>{path, other};
     }

@@ -22,7 +22,11 @@ PoseCache::Pose PoseCache::get(const std::filesystem::path& mesh,
         if (known != poses_.end())
             pose = known->second;
         else
+            // Under the lock: whoever asks next finds that somebody is at work on it, and waits for
+            // the future.
             poses_.emplace_back(mesh, promise.get_future().share());
+        // The oldest goes. Who waits for it has a future of his own, so nothing is lost but the
+        // work, if it is wanted again.
         if (poses_.size() > kMost)
             poses_.pop_front();
     }
@@ -34,6 +38,7 @@ PoseCache::Pose PoseCache::get(const std::filesystem::path& mesh,
         promise.set_value(made);
         return made;
     } catch (...) {
+        // Those who wait must not wait for ever.
         promise.set_exception(std::current_exception());
         throw;
     }

@@ -95,6 +95,8 @@ std::vector<Vec3s> read_posed_skin(const PosedSurface& posed, const ShellStack& 
                            {skin.size(), at_rest.triangles(), std::move(numbers),
                             "the surface of " + shell.string()});
     }
+    // Welded, as the shell's surface was; the pose has to follow, whichever of its vertices are
+    // equal.
     ReadResult rest = read_placed(posed.rest_mesh, InputFormat::by_extension, placement, true);
     TriangleMesh moved = rest.mesh;
     moved.points = read_points(posed, placement,

@@ -119,6 +119,8 @@ double Progress::seconds_left(double share) const
     return share < kLeast ? -1.0 : seconds_since(start_) * (1.0 - share) / share;
 }
 
+/// On a terminal one line is written over and over; into a file or a pipe a line for each stage, as
+/// what was written cannot be taken back there.
 void Progress::show_text(const StepProgress& step, double share)
 {
     const std::string frame = step.frame_ ? "frame " + std::to_string(*step.frame_) + ": " : "";
@@ -196,6 +198,7 @@ void StepProgress::clear_line_of(Progress& all)
 void StepProgress::advance(const std::string& stage, double share, bool at_once)
 {
     const auto now = std::chrono::steady_clock::now();
+    // Stages may report thousands of times a second; a person reads five lines.
     if (!at_once && now - shown_ < kBetweenLines)
         return;
     const std::lock_guard lock(all_.mutex_);

@@ -124,6 +124,7 @@ private:
     struct Result {
         int status = success;
         bool begun = false, done = false, left_out = false;
+        /// What it has said, until all before it have been printed.
         std::string out, err;
     };
 
@@ -260,6 +261,7 @@ private:
     {
         Call call;
         call.parse(step.words);
+        // Planned anew: the plan of the whole sequence was made minutes or hours ago.
         const FilePlan plan = call.plan();
         if (!manifest_)
             return run_call(step, call, context);
@@ -286,6 +288,7 @@ private:
             manifest_->put(entry);
             throw;
         }
+        // After the run, which may have fixed it.
         entry.voxel_size = sequence_.voxel_size;
         for (const FilePlan::Entry& output : plan.outputs())
             // What went into a pipe is gone, and cannot be asked for its digest.
@@ -375,6 +378,7 @@ private:
     std::optional<Progress> progress_;
     Sequence sequence_;
     std::vector<Result> results_;
+    /// The first step that nobody has begun, and whether none is to be begun any more.
     std::atomic<std::size_t> next_{0};
     std::atomic<bool> stop_{false};
     std::mutex mutex_; ///< of what follows, and of results' texts

@@ -114,6 +114,7 @@ void require_repeatable(const FilePlan& plan, const GlobalArguments& global)
         throw InvalidOption("-: standard input is read once, and --manifest needs its digest");
 }
 
+/// Fills in the files of the step as well, which a dry run prints and a manifest notes.
 FilePlan plan_of(Step& step)
 {
     Call call;
@@ -173,6 +174,7 @@ Step gathered(const std::vector<std::string>& words, const FrameList& list)
     return step;
 }
 
+/// The words of each step; their files are not known yet.
 std::vector<Step> steps_of(const std::vector<std::string>& words, const GlobalArguments& global,
                            const Context& context)
 {

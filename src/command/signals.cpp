@@ -58,12 +58,15 @@ void say(const char* text)
 
 void on_signal(int number)
 {
+    // The second signal of a person who waits ends the process, whatever an outside program leaves
+    // behind.
     const bool first = signal_number == 0;
     signal_number = number;
     if (files_are_committed_now() || (first && polite_stops > 0))
         return;
     // _exit runs no destructor, so the temporary files have to go here.
     remove_temporaries_on_signal();
+    // After the files are gone, so that who reads the line may start again.
     say(stopped_by(number));
     // The status is that of a shell for a process that a signal ended: 128 and its number.
     ::_exit(signal_base + number);

@@ -35,6 +35,8 @@ ReadResult read_standard_input(const ReadOptions& options, InputFormat format)
     const TemporaryFile spool(fs::temp_directory_path(), "standard-input." + name_in_table(format),
                               0600);
     std::ofstream out(spool.path(), std::ios::binary);
+    // Writing an empty stream out would set the stream to failed, and be told as a disk that is
+    // full.
     if (std::cin.peek() == std::char_traits<char>::eof())
         throw ReadError("-: standard input is empty");
     out << std::cin.rdbuf();

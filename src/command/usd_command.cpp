@@ -43,6 +43,7 @@ int run_usd(const UsdArguments& arguments, Context& context)
     for_each_frame(
         arguments.frames, plan_usd(arguments), context, [&](std::size_t i, ShellFile shell) {
             shells.push_back(std::move(shell));
+            // Houdini's geometry has no grids for the stage to refer to.
             const bool volumes = !houdini::has_geometry_extension(names[i]);
             samples.push_back({numbered ? context.gathered[i] : double(i + 1), &shells.back(),
                                volumes ? names[i] : std::filesystem::path()});

@@ -77,6 +77,7 @@ int run_volumes(const VolumesArguments& arguments, Context& context)
     CoordinateInputs inputs;
     inputs.map = shell.map.get();
     inputs.stack = &shell.file.stack;
+    // Null for a shell that is at rest itself.
     inputs.rest = rest.get();
     // Outlives the grids, whose inputs point into it.
     SurfaceCoordinates texture;
