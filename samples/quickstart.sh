@@ -3,7 +3,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bash .ci/install_packages.sh build
-cmake --preset release -DVDB_SHELL_BUILD_TESTS=OFF
+# A clean build takes less by folders; one that is there already keeps the way it is built.
+[ -e build/release/CMakeCache.txt ] || unity=-DVDB_SHELL_UNITY=ON
+cmake --preset release -DVDB_SHELL_BUILD_TESTS=OFF ${unity:-}
 cmake --build --preset release
 out=build/quickstart
 mkdir -p "$out"
