@@ -96,16 +96,15 @@ TEST(Taper, FewerTetsOfBetterShape)
 
 TEST(Taper, TetsThatBreakSofasRuleGetFewerWhereTheyCostMore)
 {
-    for (const auto& [name, mesh] :
-         {std::pair("sphere", test::icosphere(1, 3)),
-          std::pair("torus", test::torus(2, 0.7, 32, 16)),
-          std::pair("box", test::gridded_box(Vec3d(0), Vec3d(1, 2, 3), 5))}) {
-        SCOPED_TRACE(name);
+    for (const auto& shape : {std::pair("sphere", test::icosphere(1, 3)),
+                              std::pair("torus", test::torus(2, 0.7, 32, 16)),
+                              std::pair("box", test::gridded_box(Vec3d(0), Vec3d(1, 2, 3), 5))}) {
+        SCOPED_TRACE(shape.first);
         ShellOptions options = tapered(CoreSurface::stitched);
         options.layers.layers = 2;
         const auto broken = [&](double cost) {
             options.taper.poor_cost = cost;
-            const ShellResult result = build_shell(mesh, options);
+            const ShellResult result = build_shell(shape.second, options);
             expect_sound(result);
             return double(result.report.quality.sofa_bad) / double(result.report.signs.tets);
         };
