@@ -114,9 +114,11 @@ public:
     void for_each_overlap_without(const Marks& marks, const FloatBox& query, Visit&& visit) const
     {
         const FourBoxes wanted = FourBoxes::same(query);
+        const bool any = marks != Marks{kNoMark, kNoMark, kNoMark};
         descend(
             [&](std::size_t node, const FourBoxes& boxes) {
-                return without(marks, node, boxes.overlaps(wanted));
+                const unsigned met = boxes.overlaps(wanted);
+                return any ? without(marks, node, met) : met;
             },
             [&](std::size_t at) { return visit(item_[at]); });
     }

@@ -12,8 +12,10 @@
 
 #include "core/bucket_sort.h"
 #include "core/crowded_pairs.h"
+#include "core/layered_pairs.h"
 #include "core/parallel.h"
 #include "core/polled_stop.h"
+#include "core/triangle_piece.h"
 #include "core/unit_vector.h"
 
 #include <algorithm>
@@ -42,65 +44,6 @@ constexpr std::size_t kMostNearGroup = 1024;
 // Groups that one thread takes at a time: they share the memory of one list of nearby boxes.
 constexpr std::size_t kTriangleGroupsInPart = 16;
 
-/// A convex part with four corners, in their order around it. It is cut across, in the middle of
-/// the longer two of opposite sides, so a long one becomes shorter and not thinner.
-struct TrianglePiece {
-    std::array<Vec3d, 4> corner;
-    double pad;
-    std::uint32_t item;
-    Marks marks;
-
-    /// All of a triangle: the corner between its longer sides is there twice.
-    TrianglePiece(const std::vector<Vec3s>& points, const Vec3I& t, std::uint32_t i, Marks m)
-        : pad(0), item(i), marks(m)
-    {
-        std::array<Vec3d, 3> p;
-        for (int k = 0; k < 3; ++k) {
-            p[std::size_t(k)] = Vec3d(points[t[k]]);
-            for (int axis = 0; axis < 3; ++axis)
-                pad = std::max(pad, std::abs(p[std::size_t(k)][axis]));
-        }
-        // Each of at most forty middles is off by half a unit in the last place: 5e-15 of it.
-        pad *= 1e-13;
-        std::size_t shortest = 0;
-        for (std::size_t k = 1; k < 3; ++k)
-            if ((p[(k + 1) % 3] - p[k]).lengthSqr() <
-                (p[(shortest + 1) % 3] - p[shortest]).lengthSqr())
-                shortest = k;
-        corner = {p[(shortest + 2) % 3], p[shortest], p[(shortest + 1) % 3], p[(shortest + 2) % 3]};
-    }
-    FloatBox box() const
-    {
-        PaddedBox box;
-        for (const Vec3d& p : corner)
-            box.add(p);
-        return box.padded(pad);
-    }
-    bool divisible() const { return longer_of_opposite(longer_side()) > 1e6 * pad * pad; }
-    TrianglePiece halve()
-    {
-        // From side k to the opposite one.
-        const std::size_t k = longer_side();
-        TrianglePiece other = *this;
-        corner[(k + 1) % 4] = other.corner[k] = 0.5 * (corner[k] + corner[(k + 1) % 4]);
-        corner[(k + 2) % 4] = other.corner[(k + 3) % 4] =
-            0.5 * (corner[(k + 2) % 4] + corner[(k + 3) % 4]);
-        return other;
-    }
-
-private:
-    /// The squared length of side k, from corner k to the next, or of the opposite one.
-    double longer_of_opposite(std::size_t k) const
-    {
-        return std::max((corner[k + 1] - corner[k]).lengthSqr(),
-                        (corner[(k + 3) % 4] - corner[k + 2]).lengthSqr());
-    }
-    std::size_t longer_side() const
-    {
-        return longer_of_opposite(0) > longer_of_opposite(1) ? 0 : 1;
-    }
-};
-
 /// The directions in which a triangle is seen from one of its corners: the shorter arc between two
 /// of length 1. Without them it is everywhere.
 struct Arc {
@@ -117,6 +60,16 @@ struct Arc {
         // As far as the arc is from its chord at most, which is in the middle.
         return box.padded(pad + std::max(0.0, 1 - 0.5 * (from + to).length()));
     }
+    /// The corners of a triangle around it, for the tangents at its ends meet beyond its middle.
+    FlatCorners corners() const
+    {
+        const Vec3d sum = from + to;
+        if (sum.length() > 1e-3)
+            return {from, to, sum * (2 / sum.lengthSqr()), from};
+        // Around the whole sphere.
+        return {Vec3d(2, 2, 2), Vec3d(2, -2, -2), Vec3d(-2, 2, -2), Vec3d(-2, -2, 2)};
+    }
+    bool surely_apart(const Arc&) const { return false; }
     /// An arc of nearly half a circle has no middle that is certain.
     bool divisible() const
     {

@@ -9,8 +9,8 @@
 
 #include "inspect/marks.h"
 
-#include "core/box_pairs.h"
 #include "core/parallel.h"
+#include "core/triangle_piece.h"
 #include "mesh/ray_through.h"
 
 namespace vdb_shell
@@ -34,12 +34,13 @@ Ray inward_from(const TriangleMesh& mesh, const Vec3I& t)
 /// Along a sharp edge the other side is always near, however fine the voxels are. So triangles with
 /// a common corner do not count, and all that have one are passed over at once: there may be as
 /// many as there are triangles.
-std::vector<BoxTree::Marks> corners_as_marks(const std::vector<Vec3I>& triangles)
+std::vector<BoxTree::Marks> corners_as_marks(const std::vector<Vec3I>& triangles,
+                                             const std::vector<std::uint32_t>& triangle_of_box)
 {
     std::vector<BoxTree::Marks> marks;
-    marks.reserve(triangles.size());
-    for (const Vec3I& t : triangles)
-        marks.push_back({t[0], t[1], t[2]});
+    marks.reserve(triangle_of_box.size());
+    for (const std::uint32_t t : triangle_of_box)
+        marks.push_back({triangles[t][0], triangles[t][1], triangles[t][2]});
     return marks;
 }
 
@@ -57,8 +58,9 @@ std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh,
         if (!left_out[t])
             others.push_back(mesh.triangles[t]);
     BoxTree tree;
-    tree.build(triangle_boxes(mesh.points, others));
-    tree.mark(corners_as_marks(others));
+    const PartBoxes parts = part_boxes(mesh.points, others);
+    tree.build(parts.boxes);
+    tree.mark(corners_as_marks(others, parts.triangle));
     // Each index writes its own slot and the answers are collected in order, so threads do not
     // matter.
     for_each_index(thin.size(), [&](std::size_t t) {
@@ -67,8 +69,9 @@ std::vector<std::uint32_t> find_thin_triangles(const TriangleMesh& mesh,
             return;
         const Vec3I& own = mesh.triangles[t];
         tree.for_each_on_ray_without(
-            {own[0], own[1], own[2]}, ray.from, ray.along, voxel_size, [&](int other) {
-                thin[t] = leaves_through(mesh, others[std::size_t(other)], ray) < voxel_size;
+            {own[0], own[1], own[2]}, ray.from, ray.along, voxel_size, [&](int box) {
+                const Vec3I& other = others[parts.triangle[std::size_t(box)]];
+                thin[t] = leaves_through(mesh, other, ray) < voxel_size;
                 return thin[t] == 0; // one is enough
             });
     });

@@ -14,6 +14,7 @@
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/triangle_piece.h"
 
 #include <algorithm>
 #include <limits>
@@ -190,8 +191,16 @@ public:
         : mesh_(mesh), boxes_(boxes), pieces_(pieces), component_of_(component_of), shared_(shared),
           crossed_(pieces.size())
     {
-        if (pieces.size() > 1)
-            tree_.build(boxes);
+        // An open piece has no inside.
+        std::vector<openvdb::Vec3I> closed;
+        for (std::uint32_t t = 0; t < component_of.size() && pieces.size() > 1; ++t)
+            if (pieces[component_of[t]].closed) {
+                closed.push_back(mesh.triangles[t]);
+                closed_.push_back(t);
+            }
+        PartBoxes parts = part_boxes(mesh.points, closed);
+        part_ = std::move(parts.triangle);
+        tree_.build(std::move(parts.boxes));
         for (const auto& [a, b] : crossing) {
             crossed_[a].push_back(b);
             crossed_[b].push_back(a);
@@ -203,7 +212,6 @@ public:
     int depth(std::uint32_t c) const
     {
         int depth = 0;
-        // An open piece has no inside.
         for (const std::uint32_t other : crossed_[c])
             depth +=
                 pieces_[other].closed && encloses(mesh_, boxes_, pieces_[other], pieces_[c], true);
@@ -224,7 +232,7 @@ public:
 
 private:
     struct Hit {
-        std::uint32_t piece;
+        std::uint32_t piece, triangle;
         bool crosses, on_surface;
     };
 
@@ -235,23 +243,28 @@ private:
         const openvdb::Vec3s& point = mesh_.points[own_point(pieces_[c].triangles)];
         FloatBox ray = FloatBox::around(point);
         ray.hi[2] = std::numeric_limits<float>::infinity();
-        std::vector<Hit> hits;
+        // Of a triangle the ray may meet several parts.
+        Indices triangles;
         const Indices& crossed = crossed_[c];
         tree_.for_each_overlap(ray, [&](int i) {
-            const auto t = static_cast<std::uint32_t>(i);
-            const std::uint32_t other = component_of_[t];
-            if (other == c || !pieces_[other].closed ||
-                std::binary_search(crossed.begin(), crossed.end(), other))
-                return;
+            const std::uint32_t t = closed_[part_[std::size_t(i)]], other = component_of_[t];
+            if (other != c && !std::binary_search(crossed.begin(), crossed.end(), other))
+                triangles.push_back(t);
+        });
+        std::sort(triangles.begin(), triangles.end());
+        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+        std::vector<Hit> hits;
+        for (const std::uint32_t t : triangles) {
             const openvdb::Vec3I& corner = mesh_.triangles[t];
-            Hit hit{other, false, false};
+            Hit hit{component_of_[t], t, false, false};
             hit.crosses =
                 exact::crossing_above(point, mesh_.points[corner[0]], mesh_.points[corner[1]],
                                       mesh_.points[corner[2]], hit.on_surface) != 0;
             hits.push_back(hit);
+        }
+        std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
+            return a.piece != b.piece ? a.piece < b.piece : a.triangle < b.triangle;
         });
-        std::sort(hits.begin(), hits.end(),
-                  [](const Hit& a, const Hit& b) { return a.piece < b.piece; });
         return hits;
     }
 
@@ -270,7 +283,9 @@ private:
     const std::vector<Piece>& pieces_;
     const Indices& component_of_;
     const std::vector<char>& shared_;
-    BoxTree tree_; ///< over the triangles
+    Indices closed_; ///< triangles of closed pieces
+    Indices part_;   ///< for each box of the tree a place among these
+    BoxTree tree_;   ///< over parts of them
     std::vector<Indices> crossed_;
 };
 

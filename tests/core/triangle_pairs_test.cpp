@@ -96,6 +96,29 @@ TEST(overlapping_triangles, of_those_left_out_none_is_asked)
     EXPECT_FALSE(pairs.empty());
 }
 
+/// Large oblique triangles close behind one another, whose corners are off their planes by up to
+/// `uneven` times the distance between two.
+Soup layers(std::size_t count, float uneven)
+{
+    std::mt19937 random(9);
+    std::uniform_real_distribution<float> off(-uneven, uneven);
+    Soup soup;
+    const auto corner = [&](float x, float y, std::size_t layer) {
+        return Vec3s(x, y, 700 - x - y + float(layer) + off(random));
+    };
+    for (std::size_t i = 0; i < count; ++i)
+        soup.add(corner(0, 0, i), corner(1000, 200, i), corner(300, 900, i));
+    return soup;
+}
+
+TEST(overlapping_triangles, miss_no_pair_of_layers_that_cross)
+{
+    const Soup soup = layers(1500, 1);
+    const Pairs pairs = by_brute_force(soup);
+    EXPECT_GT(pairs.size(), 300u);
+    EXPECT_EQ(soup.found(), pairs);
+}
+
 /// Triangles that share corners and edges by index, up to all of them: around point 0, or around
 /// the edge of points 0 and 1, with other points in few places, so that many touch.
 Soup random_stars(std::size_t count, int reach, bool around_an_edge)
@@ -170,6 +193,7 @@ TEST(overlapping_triangles, few_are_asked_about_where_none_touch)
     for (const std::uint32_t n : {2000U, 8000U}) {
         EXPECT_LT(asked(two_cones(n / 2)), 50 * n);
         EXPECT_LT(asked(pages_of_an_edge(n)), 50 * n);
+        EXPECT_LT(asked(layers(n, 0.25F)), 50 * n);
     }
 }
 
