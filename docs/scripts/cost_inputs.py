@@ -140,6 +140,19 @@ def one_vertex(n):
     return points, [(a, b, half) for a, b in rim] + [(b, a, half + 1) for a, b in rim]
 
 
+def fan_caps(n):
+    """A cylinder whose caps are fans about their middles."""
+    around = n // 4
+    rim = [(math.cos(2 * math.pi * i / around), math.sin(2 * math.pi * i / around)) for i in range(around)]
+    points = [(x, y, z) for z in (0, 1) for x, y in rim] + [(0, 0, 0), (0, 0, 1)]
+    triangles = []
+    for i in range(around):
+        j = (i + 1) % around
+        triangles += [(i, j, around + i), (j, around + j, around + i), (2 * around, j, i),
+                      (2 * around + 1, around + i, around + j)]
+    return points, triangles
+
+
 def fans_at_a_point(n):
     """Small tets that have one corner in common."""
     source, points, triangles = random.Random(3), [(0, 0, 0)], []
@@ -210,5 +223,5 @@ def long_rim(n):
 
 
 MAKERS = {maker.__name__: maker for maker in (
-    tet_faces, tet_boundaries, height_field, one_repeated, all_doubled, fins, one_vertex, fans_at_a_point,
+    tet_faces, tet_boundaries, height_field, one_repeated, all_doubled, fins, one_vertex, fan_caps, fans_at_a_point,
     nested_spheres, deep_spheres, many_components, holes_of_sphere, needles, soup, in_one_voxel, long_rim)}

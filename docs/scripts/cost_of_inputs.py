@@ -78,7 +78,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
     parser.add_argument("page", type=pathlib.Path)
-    parser.add_argument("--sizes", type=int, nargs="+", default=[8000, 32000, 100000])
+    parser.add_argument("--sizes", type=int, nargs="+", default=[8000, 32000, 128000])
     parser.add_argument("--inputs", nargs="+", choices=MAKERS, default=list(MAKERS))
     parser.add_argument("--commands", nargs="+", choices=COMMANDS, default=list(COMMANDS))
     parser.add_argument("--limit", type=int, default=60)

@@ -108,6 +108,13 @@ public:
                     return true;
                 });
     }
+    /// The same until visit(i) returns false.
+    template <class Visit> void for_each_overlap_while(const FloatBox& query, Visit&& visit) const
+    {
+        const FourBoxes wanted = FourBoxes::same(query);
+        descend([&](std::size_t, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
+                [&](std::size_t at) { return visit(item_[at]); });
+    }
     /// The same but for boxes that carry one of these marks, until visit(i) returns false.
     /// Precondition: mark().
     template <class Visit>

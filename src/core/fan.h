@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/orient3d_filter.h"
+
 #include <openvdb/Types.h>
 
 #include <array>
@@ -50,5 +52,29 @@ private:
     std::size_t count_;
     Spokes spoke_; ///< the last is followed by the first, as often as lanes need it
 };
+
+/// Fan::surely_embedded for as many triangles as there may be: the same tests, one after the other.
+/// A vertex of a hundred thousand triangles has too many pairs for exact tests of each.
+template <class Rim>
+bool large_fan_surely_embedded(const openvdb::Vec3d& apex, std::size_t count, const Rim& rim)
+{
+    const auto spoke = [&](std::size_t i) -> openvdb::Vec3d {
+        return rim(i < count ? i : 0) - apex;
+    };
+    openvdb::Vec3d sum(0.0);
+    for (std::size_t i = 0; i < count; ++i)
+        sum += spoke(i).cross(spoke(i + 1));
+    const auto k = int(openvdb::math::MaxIndex(openvdb::math::Abs(sum))), j = (k + 1) % 3;
+    const auto below = [&](const openvdb::Vec3d& s) { return s[j] * sum[k] - s[k] * sum[j] < 0; };
+    std::size_t rises = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const openvdb::Vec3d u = spoke(i), w = spoke(i + 1);
+        // The margin of Fan::surely_embedded.
+        if (exact::certain_triple_sign(sum, u, w, 3 * exact::kOrientError) <= 0)
+            return false;
+        rises += below(u) && !below(w);
+    }
+    return rises == 1;
+}
 
 } // namespace vdb_shell

@@ -91,16 +91,27 @@ bool clear_around_by_pairs(const GrowState& s, int u, int v, const Vec3d& x)
     return true;
 }
 
+/// Pair by pair the middle of a cylinder's cap would take time by the square of its triangles.
+bool large_inner_fan_surely_embedded(const GrowState& s, int u, int v, const Vec3d& x)
+{
+    const VertexTriangles::Range rim = s.mesh->rims.of(static_cast<std::size_t>(u));
+    const auto inner = [&](int w) -> const Vec3d& { return w == v ? x : s.b[w]; };
+    return rim.size() > Fan::kMost &&
+           large_fan_surely_embedded(inner(u), rim.size(), [&](std::size_t i) -> const Vec3d& {
+               return inner(static_cast<int>(rim.first[i]));
+           });
+}
+
 /// The same; nearly always doubles show it for all of them at once.
 bool clear_around(const GrowState& s, int u, int v, const Vec3d& x)
 {
     Fan fan;
-    if (!set_inner_fan(s, u, v, x, fan))
-        return clear_around_by_pairs(s, u, v, x);
-    if (fan.surely_embedded())
-        return true;
     const VertexTriangles::Range rim = s.mesh->rims.of(static_cast<std::size_t>(u));
     const std::size_t count = rim.size();
+    if (!set_inner_fan(s, u, v, x, fan))
+        return large_inner_fan_surely_embedded(s, u, v, x) || clear_around_by_pairs(s, u, v, x);
+    if (fan.surely_embedded())
+        return true;
     const auto vertex = [&](std::size_t i) {
         return static_cast<int>(rim.first[i < count ? i : 0]);
     };

@@ -27,30 +27,6 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-/// Fan::surely_embedded for as many triangles as there may be: the same tests, one after the other.
-/// A vertex of a hundred thousand triangles has too many pairs for exact tests of each.
-bool large_fan_surely_embedded(const std::vector<Vec3s>& points, std::size_t apex,
-                               const VertexTriangles::Range& rim)
-{
-    const std::size_t count = rim.size();
-    const Vec3d origin(points[apex]);
-    const auto spoke = [&](std::size_t i) { return Vec3d(points[rim.first[i % count]]) - origin; };
-    Vec3d sum(0.0);
-    for (std::size_t i = 0; i < count; ++i)
-        sum += spoke(i).cross(spoke(i + 1));
-    const auto k = int(openvdb::math::MaxIndex(openvdb::math::Abs(sum))), j = (k + 1) % 3;
-    const auto below = [&](const Vec3d& s) { return s[j] * sum[k] - s[k] * sum[j] < 0; };
-    std::size_t rises = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3d u = spoke(i), w = spoke(i + 1);
-        // The margin of Fan::surely_embedded.
-        if (exact::certain_triple_sign(sum, u, w, 3 * exact::kOrientError) <= 0)
-            return false;
-        rises += below(u) && !below(w);
-    }
-    return rises == 1;
-}
-
 /// Whether doubles show it for certain; false tells nothing.
 bool surely_embedded(const std::vector<openvdb::Vec3s>& points, std::size_t apex,
                      const VertexTriangles::Range& rim)
@@ -58,11 +34,10 @@ bool surely_embedded(const std::vector<openvdb::Vec3s>& points, std::size_t apex
     // An open fan has no rim here. Its pairs are tested one by one.
     if (rim.size() < 3)
         return false;
-    if (rim.size() > Fan::kMost)
-        return large_fan_surely_embedded(points, apex, rim);
-    const Fan fan(openvdb::Vec3d(points[apex]), rim.size(),
-                  [&](std::size_t i) { return openvdb::Vec3d(points[rim.first[i]]); });
-    return fan.surely_embedded();
+    const auto point = [&](std::size_t i) { return Vec3d(points[rim.first[i]]); };
+    const Vec3d origin(points[apex]);
+    return rim.size() > Fan::kMost ? large_fan_surely_embedded(origin, rim.size(), point)
+                                   : Fan(origin, rim.size(), point).surely_embedded();
 }
 
 /// Of two triangles that have one corner in common: whether a plane through it surely has the

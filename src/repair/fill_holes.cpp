@@ -12,6 +12,7 @@
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/stage_progress.h"
+#include "core/triangle_piece.h"
 #include "mesh/boundary_loops.h"
 #include "repair/fill_patch.h"
 #include "repair/hole_walk.h"
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace vdb_shell::repair
 {
@@ -62,16 +64,28 @@ public:
 
     const std::vector<std::uint32_t>& around(std::uint32_t point) const { return around_[point]; }
 
-    template <typename Visit> void for_each_overlap(const FloatBox& box, const Visit& visit) const
+    /// Each triangle that has a part near one of these boxes, once, until visit(t) returns false.
+    template <typename Visit>
+    void for_each_near(const std::vector<FloatBox>& boxes, const Visit& visit)
     {
-        for (const Part& part : parts_)
-            part.tree.for_each_overlap(box, [&](int i) { visit(part.begin + std::size_t(i)); });
+        ++search_;
+        seen_.resize(mesh_.triangles.size(), 0);
+        bool on = true;
+        for (const FloatBox& box : boxes)
+            for (auto part = parts_.begin(); on && part != parts_.end(); ++part)
+                part->tree.for_each_overlap_while(box, [&](int i) {
+                    const std::size_t t = part->begin + part->triangle[std::size_t(i)];
+                    if (std::exchange(seen_[t], search_) != search_)
+                        on = visit(t);
+                    return on;
+                });
     }
 
 private:
     struct Part {
         std::size_t begin, end;
-        BoxTree tree;
+        BoxTree tree; ///< of parts of triangles: needles lie in each other's boxes
+        std::vector<std::uint32_t> triangle; ///< of each, from begin
     };
 
     void add_from(std::size_t begin)
@@ -88,16 +102,18 @@ private:
             begin = parts_.back().begin;
             parts_.pop_back();
         }
-        parts_.push_back({begin, end,
-                          tree_over(triangle_boxes(mesh_.points,
-                                                   {mesh_.triangles.begin() + std::ptrdiff_t(begin),
-                                                    mesh_.triangles.end()}))});
+        PartBoxes boxes = part_boxes(
+            mesh_.points, {mesh_.triangles.begin() + std::ptrdiff_t(begin), mesh_.triangles.end()});
+        parts_.push_back(
+            {begin, end, tree_over(std::move(boxes.boxes)), std::move(boxes.triangle)});
     }
 
     const TriangleMesh& mesh_;
     std::vector<char> on_rim_;
     std::vector<std::vector<std::uint32_t>> around_; ///< by point, those of rims only
     std::vector<Part> parts_;
+    std::vector<std::uint32_t> seen_; ///< by triangle: the last search that came to it
+    std::uint32_t search_ = 0;
 };
 
 /// What the fill of a hole has to know of the surface around it. The surface has the earlier fills
@@ -166,7 +182,7 @@ public:
     /// such a pair. `rest` holds the old triangles. Old ones without area are passed over: they are
     /// no fault of the fill, and the exact test is not defined for them.
     /// Counts no further than to `enough`.
-    std::size_t count_crossings(const Surroundings& rest, std::size_t enough) const
+    std::size_t count_crossings(Surroundings& rest, std::size_t enough) const
     {
         const TriangleMesh& mesh = surface_.mesh;
         const std::vector<FloatBox> boxes =
@@ -187,13 +203,15 @@ public:
                 crossings +=
                     !exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]) &&
                     exact::triangles_touch(mesh.points, mine, c);
+                return crossings < enough;
             };
-            rest.for_each_overlap(box, meet);
-            fresh.for_each_overlap(box, [&](int other) {
-                // Of two new triangles the later one counts the pair.
-                if (triangles_ + std::size_t(other) < t)
-                    meet(triangles_ + std::size_t(other));
-            });
+            rest.for_each_near(part_boxes(mesh.points, {mine}).boxes, meet);
+            if (crossings < enough)
+                fresh.for_each_overlap_while(box, [&](int other) {
+                    // Of two new triangles the later one counts the pair.
+                    return triangles_ + std::size_t(other) >= t ||
+                           meet(triangles_ + std::size_t(other));
+                });
         }
         return crossings;
     }
@@ -274,9 +292,8 @@ private:
 };
 
 /// Fills one hole, or leaves the surface as it was.
-void fill_hole(WorkingSurface& surface, const Surroundings& rest, const Hole& hole,
-               std::size_t longest, bool keep_crossing, const StageProgress& progress,
-               HoleFill& fill)
+void fill_hole(WorkingSurface& surface, Surroundings& rest, const Hole& hole, std::size_t longest,
+               bool keep_crossing, const StageProgress& progress, HoleFill& fill)
 {
     const Rim rim = look_around(surface.mesh, rest, hole);
     Fills fills(rim, longest);
@@ -287,7 +304,8 @@ void fill_hole(WorkingSurface& surface, const Surroundings& rest, const Hole& ho
         if (patch.triangles.empty())
             continue;
         Trial trial(surface, hole, patch);
-        const std::size_t crossings = trial.count_crossings(rest, best ? fill.crossings : SIZE_MAX);
+        const std::size_t crossings =
+            trial.count_crossings(rest, best ? fill.crossings : HoleFill::kMostCounted);
         // Of fills with equally many crossings the first, which is the fairest, is kept.
         if (!best || crossings < fill.crossings) {
             best = method;

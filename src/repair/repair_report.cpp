@@ -56,7 +56,7 @@ std::string hole_text(const HoleFill& hole)
             << hole.new_points << " new points";
     if (hole.crossings > 0)
         out << ", every fill tried crosses the surface, the best in " << hole.crossings
-            << " pairs of triangles";
+            << (hole.crossings < HoleFill::kMostCounted ? "" : " or more") << " pairs of triangles";
     return out.str();
 }
 

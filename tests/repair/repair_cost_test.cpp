@@ -74,6 +74,25 @@ TEST(RepairCost, FacesOfATetMeshEnd)
     EXPECT_LT(seconds_of_repair(mesh), 60);
 }
 
+TEST(RepairCost, CrossingsOfAFillAreCountedToAThousand)
+{
+    // Pages of one edge: each page's fill touches all others.
+    TriangleMesh mesh;
+    mesh.points = {Vec3s(0, 0, 0), Vec3s(0, 0, 1)};
+    for (std::uint32_t i = 0; i < 1500; ++i) {
+        const double angle = 2 * M_PI * i / 1500;
+        mesh.points.emplace_back(float(std::cos(angle)), float(std::sin(angle)), 0.5F);
+        mesh.triangles.emplace_back(0, 1, i + 2);
+    }
+    const std::vector<HoleFill> holes = repair_mesh(mesh, {}).report.holes;
+    EXPECT_GT(holes.size(), 1000u);
+    for (const HoleFill& hole : holes)
+        EXPECT_LE(hole.crossings, HoleFill::kMostCounted);
+    EXPECT_TRUE(std::any_of(holes.begin(), holes.end(), [](const HoleFill& hole) {
+        return hole.crossings == HoleFill::kMostCounted;
+    }));
+}
+
 TEST(RepairCost, ThousandsOfCopiesOfATriangle)
 {
     TriangleMesh mesh = box({0, 0, 0}, {1, 1, 1});
