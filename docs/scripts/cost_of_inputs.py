@@ -4,7 +4,7 @@
 triangles, and writes the tables of docs/measurements/cost_of_inputs.md.
 
     cost_of_inputs.py COMMAND docs/measurements/cost_of_inputs.md [--sizes N ...] [--inputs NAME ...] [--results FILE]
-                      [--commands NAME ...] [--limit SECONDS]
+                      [--commands NAME ...] [--limit SECONDS] [--only-write]
 
 CPU seconds of one thread. The exponent is that of the last two sizes: seconds are about those of n to that power. A run
 that takes more CPU seconds than the limit is ended, and larger ones of that input are not tried. --results keeps finished
@@ -83,9 +83,10 @@ def main():
     parser.add_argument("--commands", nargs="+", choices=COMMANDS, default=list(COMMANDS))
     parser.add_argument("--limit", type=int, default=60)
     parser.add_argument("--results")
+    parser.add_argument("--only-write", action="store_true", help="the table of what --results has")
     options = parser.parse_args()
     results = Results(options.results)
-    for name in options.inputs:
+    for name in options.inputs if not options.only_write else []:
         slow = set()
         for n in options.sizes:
             points, triangles = MAKERS[name](n)
@@ -102,7 +103,7 @@ def main():
                         slow.add(command)
     head = ["input", "command", *(f"{n:,}" for n in options.sizes), "exponent"]
     rows = [row_of(name, command, results.runs, options.sizes) for name in options.inputs
-            for command in options.commands]
+            for command in options.commands if any(f"{name} {command} {n}" in results.runs for n in options.sizes)]
     replace_tables(options.page, table(head, rows))
 
 

@@ -4,10 +4,12 @@
 docs/reliability.md: how long the command takes to end, worst of many.
 
     signal_latencies.py COMMAND MESH docs/reliability.md [--signals N] [--results FILE] [--commands NAME ...] [--stages]
+                         [--section NAME]
 
 Looks at the folder after each signal: outputs all old or all new, nothing else in it, exit status 128 and the signal's number, or
 0 where the work was done. On a machine with other work the clock says little, so what is held against the limit is the time
-that the processor spent on the command between signal and end; both are told. --stages prints which stage of `build` each signal met. --results keeps what was measured.
+that the processor spent on the command between signal and end; both are told. --stages prints which stage of `build` each signal met.
+--results keeps what was measured.
 """
 import argparse
 import collections
@@ -85,7 +87,8 @@ def send(line, names, out, delay, number):
         wrong.append("outputs are torn, or something is left over")
     if status == 128 + number and spent > WANTED_SECONDS:
         wrong.append(f"{spent:.2f} s")
-    return {"seconds": latency if status == 128 + number else None, "processor": spent, "stage": stages[-1] if stages else "start", "wrong": wrong}
+    return {"seconds": latency if status == 128 + number else None, "processor": spent,
+            "stage": stages[-1] if stages else "start", "wrong": wrong}
 
 
 def series(line, names, out, count, seed):
@@ -116,6 +119,7 @@ def main():
     parser.add_argument("--results")
     parser.add_argument("--commands", nargs="+")
     parser.add_argument("--stages", action="store_true")
+    parser.add_argument("--section", default="signals", help="which table of the page")
     options = parser.parse_args()
     # A shell ignores some of them for what runs in the background, and whoever it starts ignores them too.
     for number in SIGNALS:
@@ -139,7 +143,7 @@ def main():
         for stage, seconds in stages.items():
             print(f"{stage}: {len(seconds)} signals, worst {1000 * max(seconds):.0f} ms")
     head = ["command", "seconds of a run", "signals", "answered", "median ms", "worst ms", "worst ms of the processor", "violations"]
-    replace_tables(options.page, table(head, [row(name, found) for name, found in results.runs.items()]), "signals")
+    replace_tables(options.page, table(head, [row(name, found) for name, found in results.runs.items()]), options.section)
 
 
 if __name__ == "__main__":
