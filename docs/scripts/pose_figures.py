@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures posed shells for docs/measurements/pose.md.
 
-    pose_figures.py BUILD_FOLDER MESH_FOLDER docs/measurements/pose.md [--frames N] [--only NAME ...] [--folder FOLDER]
+    pose_figures.py BUILD_FOLDER MESH_FOLDER docs/measurements/pose.md [--frames N] [--only NAME ...] [--shells SHELL ...] [--folder FOLDER]
 
 BUILD_FOLDER is that of a release build, with the command and the samples make_motion and pose_frames. Every surface is built with
-the defaults; then it is twisted by half a turn and squashed to half its length, in N frames each, and the sample creature walks in a
+the defaults, tapered, and for simulation; then it is twisted by half a turn and squashed to half its length, in N frames each, and the sample creature walks in a
 hundred. Seconds are those of the processor: of a build the command's, but for the share of the time that reading and writing take; of a
-frame those of pose_shell. Beside the page stands the same as JSON. With --only the rows of the other surfaces stay.
+frame those of pose_shell. Beside the page stands the same as JSON. With --only and --shells the other rows stay.
 """
 import argparse
 import json
@@ -25,17 +25,19 @@ TUNING = ["creature", "artist/rocker-arm", "paper/knot"]
 JUDGING = ["paper/teapot", "paper/jack", "paper/dragon_small_resolution", "paper/bunny_low_resolution", "artist/fandisk",
            "artist/cheburashka"]
 
+SHELLS = {"untapered": [], "tapered": ["--taper"], "for simulation": ["--for", "simulation"]}
+
 
 def mesh_of(name, meshes):
     return ROOT / "samples/meshes/creature.obj" if name == "creature" else meshes / f"{name}.obj"
 
 
-def sequence(options, name, motion, frames):
+def sequence(options, name, motion, frames, kind):
     """The frames' figures, and the seconds of the build."""
     stem = name.split("/")[-1]
     folder = options.folder / f"{stem}-{motion}"
     mesh, shell, report = mesh_of(name, options.meshes), options.folder / f"{stem}.vdb", options.folder / f"{stem}.json"
-    child = subprocess.Popen([options.build / "src/vdb_shell", "build", "-q", mesh, "-o", shell, "--report", report])
+    child = subprocess.Popen([options.build / "src/vdb_shell", "build", "-q", mesh, "-o", shell, "--report", report, *SHELLS[kind]])
     # wait4 and not wait: only it tells the resources of this child alone.
     _, status, usage = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)
@@ -47,7 +49,7 @@ def sequence(options, name, motion, frames):
     subprocess.run([options.build / "samples/make_motion", mesh, motion, str(frames), folder], check=True)
     lines = subprocess.run([options.build / "samples/pose_frames", shell, *sorted(folder.glob("*.obj"))], check=True,
                            capture_output=True, text=True).stdout
-    return {"name": name, "motion": motion, "triangles": json.loads(report.read_text())["mesh"]["triangles"], "build": built,
+    return {"name": name, "shell": kind, "motion": motion, "triangles": json.loads(report.read_text())["mesh"]["triangles"], "build": built,
             "frames": [json.loads(line) for line in lines.splitlines()]}
 
 
@@ -57,13 +59,35 @@ def row(result):
     crossing = [frame["certified_tets"] / frame["tets"] for frame in frames if frame["crossings"] > 0]
     seconds = statistics.mean(frame["seconds"] for frame in frames)
     ratios = [frame["jump_ratio"] for frame in frames[1:]]
-    return [result["name"].split("/")[-1], result["motion"], "tuning" if result["name"] in TUNING else "judging",
-            str(result["triangles"]), f"{sum(frame['certified'] for frame in embedded)} of {len(embedded)}",
-            f"{min(crossing):.4f} ({len(crossing)})" if crossing else "",
-            str(sum(frame["lost"] > 0 for frame in frames)), str(sum(frame["lost"] > frame["lost_demanded"] for frame in frames)),
-            f"{statistics.mean(frame['distorted'] / frame['tets'] for frame in frames) * 100:.2f}",
-            f"{seconds:.2f}", f"{seconds / result['build']:.2f}", f"{statistics.median(frame['jump_99'] for frame in frames[1:]):.2f}",
-            f"{statistics.median(ratios):.1f}", f"{max(ratios):.1f}"]
+    tapered = result["shell"] != "untapered"
+    # An inverted tet of a tapered shell has up to four points that count as lost; one is enough to know why.
+    unasked = [frame for frame in frames
+               if (frame["lost"] > 0 and frame["lost_demanded"] == 0 if tapered else frame["lost"] > frame["lost_demanded"])]
+    cells = [result["name"].split("/")[-1], *([result["shell"]] if tapered else []), result["motion"],
+             "tuning" if result["name"] in TUNING else "judging",
+             str(result["triangles"]), f"{sum(frame['certified'] for frame in embedded)} of {len(embedded)}"]
+    if tapered:
+        cells.append(str(sum(not frame["certified"] and frame["lost_demanded"] > 0 for frame in embedded)))
+    return cells + [
+        f"{min(crossing):.4f} ({len(crossing)})" if crossing else "",
+        str(sum(frame["lost"] > 0 for frame in frames)), str(len(unasked)),
+        f"{statistics.mean(frame['distorted'] / frame['tets'] for frame in frames) * 100:.2f}",
+        f"{seconds:.2f}", f"{seconds / result['build']:.2f}", f"{statistics.median(frame['jump_99'] for frame in frames[1:]):.2f}",
+        f"{statistics.median(ratios):.1f}", f"{max(ratios):.1f}"]
+
+
+def tables(results):
+    start, proof = ["surface"], ["motion", "half", "triangles", "certified, skin embedded"]
+    rest = ["least share of tets certified, skin crossing (frames)", "frames with lost pillars", "that the skin does not demand",
+            "distorted tets, %", "seconds a frame", "over a build", "jump, 99 %", "jump, median frame", "jump, worst frame"]
+    untapered = [row(result) for result in results if result["shell"] == "untapered"]
+    tapered = [row(result) for result in results if result["shell"] != "untapered"]
+    return [*table(start + proof + rest, untapered), "", "Tapered shells, and those for simulation:", "",
+            *table(start + ["shell"] + proof + ["not certified as the skin demands it"] + rest, tapered)]
+
+
+def order(result):
+    return list(SHELLS).index(result["shell"]), (TUNING + JUDGING).index(result["name"]), ["walk", "twist", "squash"].index(result["motion"])
 
 
 def main():
@@ -73,27 +97,26 @@ def main():
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("--frames", type=int, default=20)
     parser.add_argument("--only", nargs="+", help="names without their folder")
+    parser.add_argument("--shells", nargs="+", choices=SHELLS, default=list(SHELLS))
     parser.add_argument("--folder", type=pathlib.Path, help="for frames and shells; default: a temporary one")
+    parser.add_argument("--tables", action="store_true", help="measure nothing, write the tables anew")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         options.folder = options.folder or pathlib.Path(temporary)
         options.folder.mkdir(exist_ok=True)
-        results = []
-        for name in TUNING + JUDGING:
+        page = options.page.with_suffix(".json")
+        results = {(old["name"], old["shell"], old["motion"]): old for old in (json.loads(page.read_text()) if page.exists() else [])}
+        for name in [] if options.tables else TUNING + JUDGING:
             if options.only and name.split("/")[-1] not in options.only:
                 continue
-            for motion in (["walk"] if name == "creature" else []) + ["twist", "squash"]:
-                results.append(sequence(options, name, motion, 100 if motion == "walk" else options.frames))
-                print(" | ".join(row(results[-1])), flush=True)
-    if options.only:
-        done = {(result["name"], result["motion"]): result for result in results}
-        known = json.loads(options.page.with_suffix(".json").read_text())
-        results = [done.get((old["name"], old["motion"]), old) for old in known]
-    options.page.with_suffix(".json").write_text(json.dumps(results, indent=1) + "\n")
-    head = ["surface", "motion", "half", "triangles", "certified, skin embedded", "least share of tets certified, skin crossing (frames)",
-            "frames with lost pillars", "that the skin does not demand", "distorted tets, %", "seconds a frame", "over a build", "jump, 99 %", "jump, median frame",
-            "jump, worst frame"]
-    replace_tables(options.page, table(head, [row(result) for result in results]))
+            for kind in options.shells:
+                for motion in (["walk"] if name == "creature" else []) + ["twist", "squash"]:
+                    result = sequence(options, name, motion, 100 if motion == "walk" else options.frames, kind)
+                    results[name, kind, motion] = result
+                    print(" | ".join(row(result)), flush=True)
+                    # After each, for a run takes an hour.
+                    page.write_text(json.dumps(sorted(results.values(), key=order), indent=1) + "\n")
+    replace_tables(options.page, tables(sorted(results.values(), key=order)))
 
 
 if __name__ == "__main__":

@@ -14,8 +14,8 @@ class Call;
 struct DeformArguments;
 struct PoseArguments;
 
-/// What a call would cost, by a model that was fitted to measured ones (docs/farm.md has its
-/// errors: seconds within a factor of two, memory within a fifth, files within a factor of three).
+/// What a call would cost, by a model that was fitted to measured ones. docs/farm.md has its errors
+/// for each kind of call, the largest included: seconds are a guess, memory is nearly right.
 struct CallCost {
     std::string file;       ///< what the call is told of by
     double triangles = 0;   ///< that the shell is made of

@@ -56,6 +56,22 @@ std::array<Vector<2>, 1> square_to(const Vector<2>& n)
     return {Vector<2>{-n[1], n[0]}};
 }
 
+/// Three that span what is square to n.
+std::array<Vector<4>, 3> square_to(const Vector<4>& n)
+{
+    std::size_t pivot = 0;
+    while (n[pivot] == 0)
+        ++pivot;
+    std::array<Vector<4>, 3> axes;
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+        const std::size_t other = k < pivot ? k : k + 1;
+        axes[k].fill(0);
+        axes[k][other] = n[pivot];
+        axes[k][pivot] = -n[other];
+    }
+    return axes;
+}
+
 template <std::size_t N> struct Search;
 
 /// On a line: all have to point the same way.
@@ -116,27 +132,46 @@ Vector<3> exactly(const openvdb::Vec3s& p)
     return {Number(double(p[0])), Number(double(p[1])), Number(double(p[2]))};
 }
 
+/// Not std::shuffle, whose order differs from library to library. No order gives another answer.
+template <std::size_t N> bool any_solution(std::vector<Vector<N>> normals)
+{
+    std::mt19937 random;
+    for (std::size_t i = normals.size(); i > 1; --i)
+        std::swap(normals[i - 1], normals[random() % i]);
+    Vector<N> x;
+    return Search<N>::solve(normals, x);
+}
+
+Vector<3> difference(const Vector<3>& a, const Vector<3>& b)
+{
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
 } // namespace
 
 bool a_direction_sees(const openvdb::Vec3s& apex, const std::vector<Side>& sides)
 {
     const Vector<3> origin = exactly(apex);
-    const auto spoke = [&](const openvdb::Vec3s& p) {
-        Vector<3> s = exactly(p);
-        for (std::size_t k = 0; k < 3; ++k)
-            s[k] -= origin[k];
-        return s;
-    };
     std::vector<Vector<3>> normals;
     normals.reserve(sides.size());
     for (const Side& side : sides)
-        normals.push_back(cross(spoke(side[1]), spoke(side[0])));
-    // Not std::shuffle, whose order differs from library to library. No order gives another answer.
-    std::mt19937 random;
-    for (std::size_t i = normals.size(); i > 1; --i)
-        std::swap(normals[i - 1], normals[random() % i]);
-    Vector<3> x;
-    return Search<3>::solve(normals, x);
+        normals.push_back(
+            cross(difference(exactly(side[1]), origin), difference(exactly(side[0]), origin)));
+    return any_solution(std::move(normals));
+}
+
+bool a_point_sees(const std::vector<std::array<openvdb::Vec3s, 3>>& triangles)
+{
+    // In homogeneous coordinates: n . x - n . a w > 0, and w > 0.
+    std::vector<Vector<4>> normals{Vector<4>{0, 0, 0, 1}};
+    normals.reserve(triangles.size() + 1);
+    for (const auto& triangle : triangles) {
+        const Vector<3> a = exactly(triangle[0]);
+        const Vector<3> n =
+            cross(difference(exactly(triangle[1]), a), difference(exactly(triangle[2]), a));
+        normals.push_back({n[0], n[1], n[2], -dot<3>(n, a)});
+    }
+    return any_solution(std::move(normals));
 }
 
 } // namespace vdb_shell::exact

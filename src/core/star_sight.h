@@ -18,4 +18,8 @@ using Side = std::array<openvdb::Vec3s, 2>;
 /// nowhere.
 bool a_direction_sees(const openvdb::Vec3s& apex, const std::vector<Side>& sides);
 
+/// Whether some point makes a positive tet (a, b, c, point) with each of these triangles, wherever
+/// they lie. Always right, as above.
+bool a_point_sees(const std::vector<std::array<openvdb::Vec3s, 3>>& triangles);
+
 } // namespace vdb_shell::exact

@@ -14,6 +14,7 @@
 #include "growth/violations.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace vdb_shell::growth
 {
@@ -76,10 +77,17 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
     return volume6_lost(s, prolonged);
 }
 
-void mend_placed(GrowState& s, const StageProgress& progress)
+std::vector<std::uint8_t> mend_placed(GrowState& s, const StageProgress& progress, MendFrom from)
 {
     const MendSchedule& schedule = s.schedule.mend;
     std::vector<std::uint8_t> look(s.b.size(), 1), moved(s.b.size(), 1);
+    std::vector<std::uint8_t> failing(s.mesh->faces.size(), 1);
+    if (from == MendFrom::failures) {
+        failing = violating_faces(s, failing, true);
+        look = free_corners_of(s, failing);
+        moved.assign(moved.size(), 0);
+    }
+    std::vector<std::uint8_t> begun = look;
     std::vector<double> cut(s.b.size(), schedule.first_cut);
     for (int round = 0;; ++round) {
         progress.stop_if_interrupted(0);
@@ -87,13 +95,16 @@ void mend_placed(GrowState& s, const StageProgress& progress)
         const bool moving = round < schedule.moving_rounds;
         if (moving)
             untangle(s, first ? schedule.first_sweeps : schedule.sweeps, look, moved);
-        const std::vector<std::uint8_t> changed =
-            first ? std::vector<std::uint8_t>(s.mesh->faces.size(), 1) : faces_around(s, moved);
-        if (!shorten_around(s, violating_faces(s, changed, first),
+        std::vector<std::uint8_t> changed = faces_around(s, moved);
+        if (first)
+            std::transform(changed.begin(), changed.end(), failing.begin(), changed.begin(),
+                           std::bit_or<>());
+        if (!shorten_around(s, violating_faces(s, changed, first && from == MendFrom::twelve_tets),
                             moving ? schedule.cut_growth : schedule.last_cut_growth, cut, moved))
             break;
         look_around(*s.mesh, moved, look);
     }
+    return begun;
 }
 
 } // namespace vdb_shell::growth

@@ -5,6 +5,7 @@
 #include "growth/grow_state.h"
 #include "vdb_shell/step/directions.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace vdb_shell::growth
@@ -19,7 +20,14 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
                                    const std::vector<double>& length,
                                    const StageProgress& progress);
 
+/// Where inner points are moved first: wherever one of the twelve tets of a prism is not positive,
+/// or where the state's own tests fail. The first leaves more room for what comes after, the second
+/// moves fewer points.
+enum class MendFrom { twelve_tets, failures };
+
 /// The same where the inner points, rounded to float32, and the pins have been put by the caller.
-void mend_placed(GrowState& s, const StageProgress& progress);
+/// Gives the vertices at which mending began.
+std::vector<std::uint8_t> mend_placed(GrowState& s, const StageProgress& progress,
+                                      MendFrom from = MendFrom::twelve_tets);
 
 } // namespace vdb_shell::growth

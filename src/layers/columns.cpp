@@ -208,7 +208,7 @@ void mend_columns(Columns& c, const StageProgress& progress)
         // and the result does not depend on threads.
         for (std::size_t j = 1; j < c.layers(); ++j)
             for (std::uint32_t v = 0; v < corners[j].size(); ++v)
-                if (corners[j][v])
+                if (corners[j][v] && (c.fixed.empty() || !c.fixed[j][v]))
                     improved = mend_point(c, j, v) || improved;
     }
 }

@@ -19,6 +19,7 @@ struct Columns {
     const std::vector<openvdb::Vec3I>* triangles = nullptr;
     std::vector<std::vector<openvdb::Vec3s>> surface; ///< from the skin to the far end
     bool upside_down = false;                         ///< the skin is the inner surface
+    std::vector<std::vector<std::uint8_t>> fixed; ///< points that may not be mended; empty: none
     PrismTest test = PrismTest::twelve_tets;
     std::vector<std::uint8_t> order; ///< per triangle: index into growth::PrismTables
     VertexTriangles around;

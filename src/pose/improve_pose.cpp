@@ -11,6 +11,7 @@
 #include "growth/separating_planes.h"
 #include "growth/sweep.h"
 #include "growth/trust_radius.h"
+#include "growth/violations.h"
 
 #include <algorithm>
 #include <utility>
@@ -97,9 +98,50 @@ bool valid_at(GrowState& s, int v, const Vec3d& x)
     return true;
 }
 
+/// Whether the vertex or a neighbour is marked.
+bool beside(const GrowState& s, const std::vector<std::uint8_t>& marked, int v)
+{
+    const auto around = growth::neighbours(*s.mesh, v);
+    return marked[v] ||
+           std::any_of(around.begin(), around.end(), [&](int u) { return marked[u] != 0; });
+}
+
+/// Takes the largest share of the way that the tests allow; 0: none.
+double go_back(GrowState& s, int v, const Vec3d& goal)
+{
+    for (double share = 1; share > kLeastShare; share *= 0.5)
+        if (valid_at(s, v, growth::rounded(s.b[v] + share * (goal - s.b[v]))))
+            return share;
+    return 0;
+}
+
+/// Takes those that did not fail back at once, and then those of faces that fail by it away again,
+/// until none does: at worst all are where they were, which is valid.
+void bring_back_together(GrowState& s, const std::vector<int>& away, const std::vector<Vec3d>& goal,
+                         const std::vector<std::uint8_t>& failed)
+{
+    const std::vector<Vec3d> mended = s.b;
+    std::vector<std::uint8_t> moved(s.b.size(), 0);
+    for (const int v : away)
+        if (!failed[v]) {
+            s.b[v] = goal[v];
+            moved[v] = 1;
+        }
+    while (std::find(moved.begin(), moved.end(), 1) != moved.end()) {
+        const std::vector<std::uint8_t> bad = growth::free_corners_of(
+            s, growth::violating_faces(s, growth::faces_around(s, moved), false));
+        for (std::size_t v = 0; v < moved.size(); ++v) {
+            moved[v] = bad[v] && s.b[v] != mended[v];
+            if (moved[v])
+                s.b[v] = mended[v];
+        }
+    }
+}
+
 } // namespace
 
-void bring_back(const Parts& parts, const SkinSide& side, GrowState& s, const PoseState& state)
+void bring_back(const Parts& parts, const SkinSide& side, const std::vector<std::uint8_t>& failed,
+                GrowState& s, const PoseState& state)
 {
     std::vector<Vec3d> goal = s.b;
     std::vector<int> away;
@@ -110,21 +152,29 @@ void bring_back(const Parts& parts, const SkinSide& side, GrowState& s, const Po
         if (goal[v] != s.b[v])
             away.push_back(v);
     }
+    bring_back_together(s, away, goal, failed);
+    away.erase(std::remove_if(away.begin(), away.end(), [&](int v) { return s.b[v] == goal[v]; }),
+               away.end());
     box_ways(s, away, goal);
-    // One after another, as each changes what the next sees.
+    // One after another, as each changes what the next sees. What has failed is tried again where
+    // a neighbour has moved since.
+    std::vector<std::uint8_t> look(s.b.size(), 1);
     for (int pass = 0; pass < kPasses && !away.empty(); ++pass) {
         std::vector<int> left;
         for (const int v : away) {
-            bool there = false;
-            for (double share = 1; !there && share > kLeastShare; share *= 0.5) {
-                const Vec3d x = growth::rounded(s.b[v] + share * (goal[v] - s.b[v]));
-                if (!valid_at(s, v, x))
-                    continue;
-                there = share == 1;
-                break;
-            }
-            if (!there)
+            if (!look[v]) {
                 left.push_back(v);
+                continue;
+            }
+            look[v] = 0;
+            const double share = go_back(s, v, goal[v]);
+            if (share < 1)
+                left.push_back(v);
+            if (share > 0) {
+                look[v] = 1;
+                for (const int u : growth::neighbours(*s.mesh, v))
+                    look[u] = 1;
+            }
         }
         away = std::move(left);
     }
@@ -134,44 +184,55 @@ void improve_pose(const Parts& parts, const SkinSide& side, const PoseOptions& o
                   GrowState& s, PoseState& state, PoseReport& report, const StageProgress& progress)
 {
     growth::SeparatingPlanes planes;
-    for (int v = 0; v < s.mesh->vertices; ++v) {
-        const std::uint32_t point = point_at(parts, side.end, std::size_t(v));
-        s.trust_radius[v] =
-            point == Parts::kFree ? 0 : kRadius * growth::mean_edge(*s.mesh, s.b, v);
-    }
+    std::vector<std::uint8_t> sound(parts.all.size());
+    for_each_index(sound.size(), [&](std::size_t t) {
+        sound[t] = distortion(parts, state, t) <= options.most_distortion;
+    });
+    const auto all_sound = [&](std::uint32_t point) {
+        return std::all_of(parts.incident.begin() + parts.first[point],
+                           parts.incident.begin() + parts.first[point + 1],
+                           [&](std::uint32_t t) { return sound[t] != 0; });
+    };
+    const auto content = [&](std::size_t v) {
+        const std::uint32_t point = point_at(parts, side.end, v);
+        return near_carried(parts, state, point) &&
+               PointEnergy(parts, state, point, options.most_distortion).sound();
+    };
     std::vector<std::uint8_t> inactive(s.pinned.size());
     for_each_index(inactive.size(), [&](std::size_t v) {
         const std::uint32_t point = point_at(parts, side.end, v);
-        inactive[v] =
-            s.pinned[v] || (near_carried(parts, state, point) &&
-                            PointEnergy(parts, state, point, options.most_distortion).sound());
+        inactive[v] = s.pinned[v] || (near_carried(parts, state, point) && all_sound(point));
     });
     for (int round = 0; round < options.rounds; ++round) {
         progress.stop_if_interrupted(100 * round / options.rounds);
-        growth::separate_triangles(s, inactive, planes);
-        std::vector<std::uint8_t> moved(inactive.size(), 0);
-        for (int i = 0; i < kSweepsOfPass; ++i)
-            growth::sweep(s, planes, inactive, [&](int v, Vec3d& x) {
+        // What does not move needs no room.
+        for (int v = 0; v < s.mesh->vertices; ++v)
+            s.trust_radius[v] = inactive[v] ? 0 : kRadius * growth::mean_edge(*s.mesh, s.b, v);
+        growth::separate_triangles(s, inactive, planes, growth::TreeUpdate::refit);
+        std::vector<std::uint8_t> moved(inactive.size(), 0), asleep = inactive;
+        for (int i = 0; i < kSweepsOfPass; ++i) {
+            std::vector<std::uint8_t> now(inactive.size(), 0);
+            growth::sweep(s, planes, asleep, [&](int v, Vec3d& x) {
                 const std::uint32_t point = point_at(parts, side.end, std::size_t(v));
                 const PointEnergy energy(parts, state, point, options.most_distortion);
                 if ((energy.sound() && near_carried(parts, state, point)) ||
                     !propose(s, planes, v, energy, x))
                     return false;
                 state.place[point] = x;
-                moved[v] = 1;
+                now[v] = moved[v] = 1;
                 return true;
             });
-        ++report.rounds;
-        bool any = false;
-        for (int v = 0; v < s.mesh->vertices; ++v) {
-            bool near = moved[v];
-            for (const int u : growth::neighbours(*s.mesh, v))
-                near = near || moved[u];
-            inactive[v] = s.pinned[v] || !near;
-            any = any || moved[v];
+            // The others would be refused again.
+            for_each_index(asleep.size(), [&](std::size_t v) {
+                asleep[v] = inactive[v] || !beside(s, now, int(v));
+            });
         }
-        if (!any)
+        ++report.rounds;
+        if (std::find(moved.begin(), moved.end(), 1) == moved.end())
             break;
+        for_each_index(inactive.size(), [&](std::size_t v) {
+            inactive[v] = s.pinned[v] || !beside(s, moved, int(v)) || content(v);
+        });
     }
 }
 

@@ -6,13 +6,17 @@
 #include "pose/point_energy.h"
 #include "pose/skin_side.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace vdb_shell
 {
 
 /// Takes points that mending has moved back towards where the skin carries them, as far as the
 /// exact tests allow: mending shortens more than it has to, and differently in every frame.
-/// Precondition: a valid state.
-void bring_back(const RestShell::Parts& parts, const SkinSide& side, growth::GrowState& s,
+/// `failed` are the vertices that could not stay there. Precondition: a valid state.
+void bring_back(const RestShell::Parts& parts, const SkinSide& side,
+                const std::vector<std::uint8_t>& failed, growth::GrowState& s,
                 const PoseState& state);
 
 /// Moves points around tets that are distorted beyond the bound, and those that are not where they

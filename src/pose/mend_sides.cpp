@@ -10,12 +10,14 @@
 #include "growth/grow_state.h"
 #include "growth/mend_prolonged.h"
 #include "growth/prism.h"
+#include "layers/columns.h"
 #include "pose/improve_pose.h"
 #include "pose/inflate_lost.h"
 #include "pose/relax_pose.h"
 #include "vdb_shell/shell/sides.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -59,6 +61,52 @@ void put_between(const Parts& parts, const SkinSide& side, const std::vector<Vec
             const Vec3d off = parts.rest[point] - (from + share * pillar);
             state.place[point] = Vec3d(skin[v]) + share * (state.place[end] - Vec3d(skin[v])) + off;
         }
+}
+
+bool same_splits(const ShellStack& stack, std::size_t first, std::size_t last)
+{
+    for (std::size_t k = first + 1; k < last; ++k)
+        if (stack.splits[k].order != stack.splits[first].order)
+            return false;
+    return true;
+}
+
+/// Moves single points between the layers where rounding has turned a tet over, as cutting does
+/// (layers/columns.h). Not where the layers were cut along other diagonals each.
+void mend_between(const Parts& parts, const SkinSide& side, const std::vector<Vec3s>& skin,
+                  PoseState& state, const StageProgress& progress)
+{
+    const ShellStack& stack = parts.stack;
+    const std::size_t first = std::min(side.end, stack.skin), last = std::max(side.end, stack.skin);
+    if (last - first < 2 || !same_splits(stack, first, last))
+        return;
+    Columns columns;
+    columns.triangles = &stack.triangles();
+    columns.upside_down = side.outside;
+    columns.test = PrismTest::chosen_tets;
+    columns.around = triangles_around_vertices(skin.size(), stack.triangles());
+    for (const std::array<std::uint8_t, 3>& order : stack.splits[first].order)
+        columns.order.push_back(static_cast<std::uint8_t>(growth::order_index(order)));
+    const std::size_t count = last - first;
+    const auto point_of = [&](std::size_t j, std::size_t v) {
+        return point_at(parts, side.outside ? stack.skin - j : stack.skin + j, v);
+    };
+    for (std::size_t j = 0; j <= count; ++j) {
+        columns.surface.push_back(skin);
+        columns.fixed.emplace_back(skin.size(), 1);
+        for (std::size_t v = 0; v < skin.size(); ++v) {
+            const std::uint32_t point = point_of(j, v);
+            if (point == Parts::kFree || parts.skin_vertex[point] != Parts::kFree)
+                continue;
+            columns.surface[j][v] = Vec3s(state.place[point]);
+            columns.fixed[j][v] = point == point_of(count, v);
+        }
+    }
+    mend_columns(columns, progress);
+    for (std::size_t j = 1; j < count; ++j)
+        for (std::size_t v = 0; v < skin.size(); ++v)
+            if (!columns.fixed[j][v])
+                state.place[point_of(j, v)] = Vec3d(columns.surface[j][v]);
 }
 
 /// Growth's state with the inner points where they are carried. A cap of 0 keeps a vertex pinned.
@@ -118,9 +166,10 @@ void mend_side(const Parts& parts, const SkinSide& side, const std::vector<Vec3s
         mesh = reversed_surface(std::move(mesh));
     const Connectivity connectivity = growth::connect(skin.size(), mesh.triangles);
     GrowState s = state_of(parts, side, connectivity, skin, crossings, state);
-    growth::mend_placed(s, progress);
+    const std::vector<std::uint8_t> failed =
+        growth::mend_placed(s, progress, growth::MendFrom::failures);
     report.lost_demanded += inflate_lost(s, mesh, progress);
-    bring_back(parts, side, s, state);
+    bring_back(parts, side, failed, s, state);
     std::vector<std::uint8_t> valid(skin.size(), 0);
     const std::size_t lost = lost_vertices(s).size();
     for (std::size_t v = 0; v < skin.size(); ++v) {
@@ -133,6 +182,7 @@ void mend_side(const Parts& parts, const SkinSide& side, const std::vector<Vec3s
         relax_pose(parts, state, options.most_distortion, around_lost(parts, side, s), progress);
     report.lost_pillars += lost;
     put_between(parts, side, skin, valid, state);
+    mend_between(parts, side, skin, state, progress);
 }
 
 } // namespace

@@ -84,8 +84,9 @@ PointEnergy::CornerTet PointEnergy::corner_tet(const Parts& parts, const std::ve
 }
 
 PointEnergy::PointEnergy(const Parts& parts, const PoseState& state, std::uint32_t point,
-                         double bound)
-    : bound_(bound), to_carried_(state.carried[point] - state.place[point]),
+                         double bound, double weight_of_unsound)
+    : bound_(bound), weight_of_unsound_(weight_of_unsound),
+      to_carried_(state.carried[point] - state.place[point]),
       tether_(1 / (parts.spacing[point] * parts.spacing[point]))
 {
     for (std::uint32_t k = parts.first[point]; k < parts.first[point + 1]; ++k)
@@ -101,9 +102,30 @@ bool PointEnergy::sound() const
     });
 }
 
+void PointEnergy::add_half_space(const Vec3d& n, double least, double weight)
+{
+    half_spaces_.push_back({n, least, weight * tether_});
+}
+
+double PointEnergy::room_for(const Vec3d& step) const
+{
+    constexpr double kShareOfRoom = 0.9;
+    double share = 1;
+    for (const CornerTet& tet : tets_) {
+        const double along = tet.n.dot(step);
+        if (tet.determinant > 0 && along < 0)
+            share = std::min(share, -kShareOfRoom * tet.determinant / along);
+    }
+    return share;
+}
+
 double PointEnergy::at(const Vec3d& x) const
 {
     double sum = 0.5 * tether_ * (x - to_carried_).lengthSqr();
+    for (const HalfSpace& half : half_spaces_) {
+        const double missing = std::max(0.0, half.least - half.n.dot(x));
+        sum += 0.5 * half.weight * missing * missing;
+    }
     for (const CornerTet& tet : tets_) {
         const Positive d = positive(tet.determinant + tet.n.dot(x), tet.smoothing);
         if (!(d.value > 0))
@@ -111,7 +133,7 @@ double PointEnergy::at(const Vec3d& x) const
         const double norm = tet.norm + 2 * tet.b.dot(x) + tet.g2 * x.lengthSqr();
         const double over = norm / (3 * std::cbrt(d.value * d.value)) - bound_;
         if (over > 0)
-            sum += over * over;
+            sum += weight_of(tet) * over * over;
     }
     return sum;
 }
@@ -121,6 +143,11 @@ bool PointEnergy::newton(Vec3d& x) const
     Vec3d down = tether_ * to_carried_;
     Symmetric hessian;
     hessian.add_identity(tether_);
+    for (const HalfSpace& half : half_spaces_)
+        if (half.least > 0) {
+            down += half.weight * half.least * half.n;
+            hessian.add(half.weight, half.n);
+        }
     for (const CornerTet& tet : tets_)
         add(tet, down, hessian);
     return solve_positive(hessian, down, x);
@@ -136,12 +163,22 @@ void PointEnergy::add(const CornerTet& tet, Vec3d& down, Symmetric& hessian) con
     const Vec3d of_norm = 2.0 * tet.b;
     const double by_value = -2.0 / 3.0 * power / d.value * d.slope;
     const Vec3d gradient = power * of_norm + tet.norm * by_value * tet.n;
-    down -= 2 * over * gradient;
-    hessian.add(2, gradient);
-    hessian.add_identity(2 * over * 2 * tet.g2 * power);
-    hessian.add(2 * over * by_value, of_norm, tet.n);
-    hessian.add(2 * over * tet.norm * 10.0 / 9.0 * power / (d.value * d.value) * d.slope * d.slope,
+    const double twice = 2 * weight_of(tet);
+    down -= twice * over * gradient;
+    hessian.add(twice, gradient);
+    hessian.add_identity(twice * over * 2 * tet.g2 * power);
+    hessian.add(twice * over * by_value, of_norm, tet.n);
+    hessian.add(twice * over * tet.norm * 10.0 / 9.0 * power / (d.value * d.value) * d.slope *
+                    d.slope,
                 tet.n);
+}
+
+Vec3d carried_normal(const Parts& parts, const PoseState& state, std::size_t tet, const Vec3d& n)
+{
+    // Times the cofactors of the map.
+    const Jacobian j = jacobian(parts, state.place, tet);
+    return {j.row[1].cross(j.row[2]).dot(n), j.row[2].cross(j.row[0]).dot(n),
+            j.row[0].cross(j.row[1]).dot(n)};
 }
 
 double distortion(const Parts& parts, const PoseState& state, std::size_t tet)

@@ -15,6 +15,10 @@ struct PoseState {
     std::vector<openvdb::Vec3d> place, carried; ///< by point
 };
 
+/// How a plane that is tied to the tet turns, whose unit normal at rest is n: not of unit length.
+openvdb::Vec3d carried_normal(const RestShell::Parts& parts, const PoseState& state,
+                              std::size_t tet, const openvdb::Vec3d& n);
+
 /// Distortion as PoseOptions::most_distortion measures it; infinite for a tet that is not positive.
 double distortion(const RestShell::Parts& parts, const PoseState& state, std::size_t tet);
 
@@ -28,10 +32,17 @@ class PointEnergy
 {
 public:
     PointEnergy(const RestShell::Parts& parts, const PoseState& state, std::uint32_t point,
-                double bound);
+                double bound, double weight_of_unsound = 1);
 
     /// Whether every tet is within the bound.
     bool sound() const;
+
+    /// A half-space that the point should be in: where n.step >= least, n of unit length. What is
+    /// missing counts by its square, in units of the spacing, times the weight.
+    void add_half_space(const openvdb::Vec3d& n, double least, double weight);
+
+    /// The largest share of a step, at most 1, that takes no positive tet near to being flat.
+    double room_for(const openvdb::Vec3d& step) const;
 
     /// At a step from where the point is.
     double at(const openvdb::Vec3d& step) const;
@@ -53,11 +64,20 @@ private:
                                 const std::vector<openvdb::Vec3d>& place, std::size_t tet,
                                 std::uint32_t point);
     void add(const CornerTet& tet, openvdb::Vec3d& down, Symmetric& hessian) const;
+    double weight_of(const CornerTet& tet) const
+    {
+        return tet.smoothing > 0 ? weight_of_unsound_ : 1;
+    }
 
-    double bound_;
+    double bound_, weight_of_unsound_;
     openvdb::Vec3d to_carried_;
     double tether_;
     std::vector<CornerTet> tets_;
+    struct HalfSpace {
+        openvdb::Vec3d n;
+        double least, weight;
+    };
+    std::vector<HalfSpace> half_spaces_;
 };
 
 } // namespace vdb_shell

@@ -6,12 +6,13 @@
 
 #include "vdb_shell/pose/pose_shell.h"
 
-#include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "pose/mend_sides.h"
+#include "pose/part_faces.h"
 #include "pose/relax_pose.h"
 #include "pose/rest_parts.h"
+#include "pose/stored_points.h"
 #include "vdb_shell/options/option.h"
 
 #include <algorithm>
@@ -60,34 +61,6 @@ PoseState carry(const Parts& parts, const std::vector<Vec3s>& skin)
         16);
     state.place = state.carried;
     return state;
-}
-
-/// Points as they will be stored: the skin's as given, others rounded to float32.
-std::vector<Vec3s> stored_points(const Parts& parts, const PoseState& state,
-                                 const std::vector<Vec3s>& skin)
-{
-    std::vector<Vec3s> points;
-    points.reserve(state.place.size());
-    for (std::size_t p = 0; p < state.place.size(); ++p)
-        points.push_back(parts.skin_vertex[p] == Parts::kFree ? Vec3s(state.place[p])
-                                                              : skin[parts.skin_vertex[p]]);
-    return points;
-}
-
-/// Tets that are not positive, exactly.
-std::vector<std::uint32_t> inverted_tets(const Parts& parts, const std::vector<Vec3s>& points)
-{
-    std::vector<std::uint8_t> bad(parts.all.size());
-    for_each_index(parts.all.size(), [&](std::size_t t) {
-        const openvdb::Vec4I& tet = parts.all[t];
-        bad[t] =
-            exact::orient3d(points[tet[0]], points[tet[1]], points[tet[2]], points[tet[3]]) <= 0;
-    });
-    std::vector<std::uint32_t> list;
-    for (std::size_t t = 0; t < bad.size(); ++t)
-        if (bad[t])
-            list.push_back(static_cast<std::uint32_t>(t));
-    return list;
 }
 
 void tell_tets(const Parts& parts, const PoseState& state, const std::vector<Vec3s>& points,
@@ -168,16 +141,17 @@ PoseResult pose_shell(const RestShell& rest, const std::vector<Vec3s>& skin,
         report.free_points += colour.size();
     PoseState state = carry(parts, skin);
     report.inverted_carried = inverted_tets(parts, stored_points(parts, state, skin)).size();
+    const SkinCrossings crossings = find_skin_crossings(parts, state, skin, interrupter);
+    report.skin_crossings = crossings.pairs;
+    for (const std::uint8_t in : crossings.region)
+        report.excused_triangles += in;
     if (can_mend_sides(parts)) {
-        const SkinCrossings crossings = find_skin_crossings(parts, state, skin, interrupter);
-        report.skin_crossings = crossings.pairs;
-        for (const std::uint8_t in : crossings.region)
-            report.excused_triangles += in;
         mend_sides(parts, state, skin, crossings, options, report, progress);
     } else {
         report.rounds = static_cast<std::size_t>(
             relax_pose(parts, state, options.most_distortion,
                        std::vector<std::uint8_t>(parts.rest.size(), 1), progress));
+        part_faces(parts, state, skin, crossings, options, report, progress);
     }
     const std::vector<Vec3s> points = stored_points(parts, state, skin);
     tell_tets(parts, state, points, options.most_distortion, report);

@@ -8,8 +8,11 @@
 
 #include "vdb_shell/shell/shared_points.h"
 
+#include "mesh/topology.h"
+
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace vdb_shell
@@ -107,6 +110,76 @@ void colour_points(Parts& parts)
     }
 }
 
+void list_neighbours(Parts& parts)
+{
+    const std::vector<EdgeUse> uses = sorted_edge_uses(parts.stack.triangles());
+    for (std::size_t i = 1; i < uses.size(); ++i)
+        if (uses[i].edge == uses[i - 1].edge)
+            parts.neighbours.push_back({uses[i - 1].triangle, uses[i].triangle});
+}
+
+/// How a free face leaves one of its edges: at which angle around it, and whether the tet behind
+/// the face is on the side where angles grow.
+struct Leaf {
+    std::uint32_t face;
+    double angle;
+    bool tet_beyond;
+};
+Leaf leaf_at(const Parts& parts, const EdgeUse& use)
+{
+    const openvdb::Vec3I& face = parts.free.faces[use.triangle];
+    const openvdb::Vec4I& tet = parts.all[parts.free.tet[use.triangle]];
+    const auto at = [&](std::uint32_t p) { return Vec3d(parts.free.points[p]); };
+    const Vec3d from = at(use.edge[0]), along = (at(use.edge[1]) - from).unitSafe();
+    // The same two axes for all faces of the edge.
+    const Vec3d u = along.cross(std::abs(along[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)),
+                w = along.cross(u);
+    const auto third = face[(use.side + 2) % 3];
+    std::uint32_t opposite = tet[0];
+    for (int k = 0; k < 4; ++k)
+        if (tet[k] != face[0] && tet[k] != face[1] && tet[k] != face[2])
+            opposite = tet[k];
+    const Vec3d leaf = at(third) - from;
+    return {use.triangle, std::atan2(w.dot(leaf), u.dot(leaf)),
+            leaf.cross(at(opposite) - from).dot(along) > 0};
+}
+
+/// Where more than two free faces meet in an edge, those with void between them stand next to each
+/// other around it.
+void list_neighbour_faces(Parts& parts)
+{
+    const FreeFaces& free = parts.free;
+    const std::vector<EdgeUse> uses = sorted_edge_uses(free.faces);
+    std::vector<Leaf> leaves;
+    for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
+        leaves.clear();
+        for (last = first; last < uses.size() && uses[last].edge == uses[first].edge; ++last)
+            if (free.tet[uses[last].triangle] != FreeFaces::kNoTet)
+                leaves.push_back(leaf_at(parts, uses[last]));
+        std::sort(leaves.begin(), leaves.end(), [](const Leaf& x, const Leaf& y) {
+            return x.angle != y.angle ? x.angle < y.angle : x.face < y.face;
+        });
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            const Leaf &leaf = leaves[i], &next = leaves[(i + 1) % leaves.size()];
+            const std::uint32_t f = std::min(leaf.face, next.face),
+                                g = std::max(leaf.face, next.face);
+            if (!leaf.tet_beyond && next.tet_beyond && free.inner(g) && free.tet[f] != free.tet[g])
+                parts.neighbour_faces.push_back({f, g});
+        }
+    }
+}
+
+void list_free_faces(Parts& parts)
+{
+    if (!parts.stack.tapered || !parts.core.empty())
+        return;
+    parts.free = find_free_faces(parts.stack, parts.tets);
+    for (std::uint32_t f = 0; f < parts.free.faces.size(); ++f)
+        parts.triangle_of_face.push_back(parts.free.inner(f) ? parts.tets.prism[parts.free.tet[f]]
+                                                             : f);
+    list_neighbour_faces(parts);
+}
+
 void measure_spacing(Parts& parts)
 {
     parts.spacing.assign(parts.rest.size(), 0.0);
@@ -141,6 +214,8 @@ RestShell::Parts::Parts(ShellStack s, CoreTets c)
         first, incident);
     measure_spacing(*this);
     colour_points(*this);
+    list_neighbours(*this);
+    list_free_faces(*this);
 }
 
 RestShell::RestShell(ShellStack stack, CoreTets core)

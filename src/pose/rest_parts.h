@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "certify/free_faces.h"
 #include "pose/skin_motion.h"
 #include "vdb_shell/pose/pose_shell.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace vdb_shell
 {
+
+/// Of each corner of a tet the others, so that with it as the last the tet is turned as it is.
+inline constexpr std::array<std::array<std::size_t, 3>, 4> kOtherCorners{
+    {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
 
 /// A tet at rest, as its deformation is measured: `gradient[i]` is that of corner i's barycentric
 /// coordinate, so the map's Jacobian is the sum of posed corners times gradients.
@@ -42,6 +48,14 @@ struct RestShell::Parts {
     std::vector<std::uint32_t> point_of_place; ///< by place (shell/shared_points.h); kFree: none
     std::vector<std::uint32_t> first_place;    ///< first_places()
     SkinMotion motion;
+    std::vector<std::array<std::uint32_t, 2>> neighbours; ///< triangles that share an edge
+    /// Of a tapered shell: the triangles that bound what its tets cover, and the triangle of the
+    /// surface that each of them belongs to. None where something fills the shell: then all faces
+    /// but the surface's have two tets.
+    FreeFaces free;
+    std::vector<std::uint32_t> triangle_of_face;
+    /// Pairs of them that share an edge, with nothing but void between them there.
+    std::vector<std::array<std::uint32_t, 2>> neighbour_faces;
 
     explicit Parts(ShellStack s, CoreTets c);
 };

@@ -27,6 +27,7 @@ ordered_json pose_json(const PoseReport& pose)
             {"inverted_by_skin", pose.inverted_by_skin},
             {"lost_pillars", pose.lost_pillars},
             {"lost_demanded", pose.lost_demanded},
+            {"faces_not_apart", pose.faces_not_apart},
             {"skin_crossings", pose.skin_crossings},
             {"excused_triangles", pose.excused_triangles},
             {"distorted", pose.distorted},
@@ -52,8 +53,11 @@ void pose_lines(std::ostringstream& out, const PoseReport& pose)
                  " prisms are let be");
     if (pose.lost_pillars > 0)
         line(out, "",
-             number(double(pose.lost_pillars), 12) + " pillars without a valid place; to " +
-                 number(double(pose.lost_demanded), 12) + " of them the skin leaves no direction");
+             number(double(pose.lost_pillars), 12) + " inner points without a valid place; to " +
+                 number(double(pose.lost_demanded), 12) + " of them the skin leaves none");
+    if (pose.faces_not_apart > 0)
+        line(out, "",
+             number(double(pose.faces_not_apart), 12) + " pairs of inner triangles still touch");
 }
 
 std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)

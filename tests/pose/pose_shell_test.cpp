@@ -112,16 +112,47 @@ TEST(PoseShell, LayersOutwardShellsAndBothSides)
     }
 }
 
-TEST(PoseShell, TaperedShellsKeepTheirSharedPointsAndPositiveTets)
+TEST(PoseShell, TaperedShellsKeepTheirSharedPointsAndAreCertified)
+{
+    const TriangleMesh rod = test::round_rod();
+    for (const CoreSurface core : {CoreSurface::free, CoreSurface::stitched}) {
+        ShellOptions options;
+        options.taper.wanted = true;
+        options.taper.core = core;
+        const RestShell rest(built(rod, options));
+        for (const double angle : {0.3, 0.6, 0.9}) {
+            const PosedShell posed = expect_certified(rest, elbow_of(rod, angle));
+            EXPECT_EQ(posed.report.pose->faces_not_apart, 0U);
+        }
+    }
+}
+
+TEST(PoseShell, PointsOfATaperedShellToWhichTheSkinLeavesNoPlaceAreCounted)
 {
     const TriangleMesh rod = test::round_rod();
     ShellOptions options;
     options.taper.wanted = true;
     const RestShell rest(built(rod, options));
-    const PosedShell posed = build_posed(rest, elbow_of(rod, 0.6), {});
-    EXPECT_EQ(posed.report.signs.inverted.count + posed.report.signs.flat.count, 0U);
-    EXPECT_EQ(posed.tets.tets, rest.tets().tets);
-    EXPECT_TRUE(posed.report.conformity.conforming());
+    // Inside out: no tet on the skin can be positive.
+    const Points skin =
+        test::moved(rod.points, [](const Vec3d& p) { return Vec3d(-p[0], p[1], p[2]); });
+    const PoseReport pose = pose_shell(rest, skin).report;
+    EXPECT_GT(pose.lost_demanded, 0U);
+    EXPECT_LE(pose.lost_demanded, pose.lost_pillars);
+    EXPECT_GT(pose.inverted, 0U);
+}
+
+TEST(PoseShell, ThinLayersFarFromTheOriginSurviveTheirRounding)
+{
+    const TriangleMesh rod = test::translated(test::round_rod(), {3000, 0, 0});
+    ShellOptions options;
+    options.layers.layers = 24;
+    options.layers.grading = 1.3;
+    const RestShell rest(built(rod, options));
+    const Points skin = test::moved(rod.points, [](const Vec3d& p) {
+        return test::elbow(p - Vec3d(3000, 0, 0), 1.0, 1.0) + Vec3d(3000, 0, 0);
+    });
+    EXPECT_EQ(pose_shell(rest, skin).report.inverted, 0U);
 }
 
 TEST(PoseShell, PinsStayPins)

@@ -35,10 +35,15 @@ struct PoseReport {
     std::size_t inverted = 0;         ///< tets that are not positive in the end, exactly
     /// Of them, tets whose corners all lie on the skin: no inner point can mend them.
     std::size_t inverted_by_skin = 0;
-    std::size_t lost_pillars = 0; ///< for which the exact tests left no length; kept as carried
-    /// Of them, those of vertices whose triangles no direction sees (theory, "Pins that geometry
-    /// demands").
+    /// For which the exact tests left no length; kept as carried. In a tapered or filled shell:
+    /// free points of inverted tets.
+    std::size_t lost_pillars = 0;
+    /// Of them, those to which the skin leaves no place: of vertices whose triangles no direction
+    /// sees (theory, "Pins that geometry demands"); in a tapered or filled shell points that can be
+    /// nowhere without inverting one of their tets on the skin.
     std::size_t lost_demanded = 0;
+    /// Of a tapered shell: pairs of triangles that bound its tets and touch, or overlap.
+    std::size_t faces_not_apart = 0;
     std::size_t skin_crossings = 0;    ///< pairs of triangles of the skin that cross or touch
     std::size_t excused_triangles = 0; ///< of whose prisms contacts were not tested because of that
     std::size_t distorted = 0;         ///< positive tets beyond PoseOptions::most_distortion
