@@ -27,9 +27,9 @@ using openvdb::Vec3s;
 using Parts = RestShell::Parts;
 
 /// Rounds of tests at most, and of those that find no fewer failures; sweeps of moves between.
-constexpr int kRounds = 24, kIdleRounds = 8, kSweeps = 8;
+constexpr int kRounds = 32, kIdleRounds = 16, kSweeps = 8;
 /// Weight of what is missing, beside the way to where a point is carried.
-constexpr double kFirstWeight = 64, kWeightGrowth = 2, kMostWeight = 1e5;
+constexpr double kFirstWeight = 8, kWeightGrowth = 2, kMostWeight = 1e5;
 constexpr int kHalvingsOfStep = 8;
 
 bool on_skin(const Parts& parts, std::uint32_t point)
