@@ -28,7 +28,7 @@ using Parts = RestShell::Parts;
 
 /// Of the room that two faces have at rest, what they are to have on each side of the plane; no
 /// more than so much of the spacing; and in roundings, at least.
-constexpr double kShareOfRoom = 0.25, kMostRoom = 0.05, kLeastRoomInRoundings = 4;
+constexpr double kShareOfRoomAtRest = 0.25, kMostRoom = 0.05, kLeastRoomInRoundings = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vec3d unit(Vec3d v)
@@ -135,7 +135,7 @@ Vec3d FacePlanes::turned(const FacePair& pair, const Plane& at_rest) const
 double FacePlanes::share_of(double room, double spacing) const
 {
     return std::max(kLeastRoomInRoundings * rounding_,
-                    std::min(kShareOfRoom * room, kMostRoom * spacing));
+                    std::min(kShareOfRoomAtRest * room, kMostRoom * spacing));
 }
 
 double FacePlanes::room_for(const FacePair& pair, const Plane& at_rest) const

@@ -27,10 +27,10 @@ using openvdb::Vec3s;
 using Parts = RestShell::Parts;
 
 /// Rounds of tests at most, and of those that find no fewer failures; sweeps of moves between.
-constexpr int kRounds = 32, kIdleRounds = 16, kSweeps = 8;
+constexpr int kPartingRounds = 32, kIdleRounds = 16, kPartingSweeps = 8;
 /// Weight of what is missing, beside the way to where a point is carried.
 constexpr double kFirstWeight = 8, kWeightGrowth = 2, kMostWeight = 1e5;
-constexpr int kHalvingsOfStep = 8;
+constexpr int kPartingHalvings = 8;
 
 bool on_skin(const Parts& parts, std::uint32_t point)
 {
@@ -102,7 +102,7 @@ bool better_place(const Parts& parts, const PoseState& state, const FacePlanes& 
         return false;
     step *= energy.room_for(step);
     const double now = energy.at(Vec3d(0.0));
-    for (int halving = 0; halving < kHalvingsOfStep; ++halving, step *= 0.5)
+    for (int halving = 0; halving < kPartingHalvings; ++halving, step *= 0.5)
         if (energy.at(step) < now) {
             to = state.place[point] + step;
             return true;
@@ -146,8 +146,8 @@ void part_faces(const Parts& parts, PoseState& state, const std::vector<Vec3s>& 
     std::vector<Vec3d> best;
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     double weight = kFirstWeight;
-    for (int round = 0, idle = 0; round < kRounds && idle < kIdleRounds; ++round, ++idle) {
-        progress.stop_if_interrupted(100 * round / kRounds);
+    for (int round = 0, idle = 0; round < kPartingRounds && idle < kIdleRounds; ++round, ++idle) {
+        progress.stop_if_interrupted(100 * round / kPartingRounds);
         const std::vector<Vec3s> points = stored_points(parts, state, skin);
         const std::vector<std::uint32_t> inverted = inverted_tets(parts, points);
         const std::vector<FacePair> pairs = faces_not_apart(parts, points, skin, crossings);
@@ -167,7 +167,7 @@ void part_faces(const Parts& parts, PoseState& state, const std::vector<Vec3s>& 
         std::vector<std::uint8_t> awake(parts.rest.size(), 0);
         for (const std::uint32_t p : free_points_of(parts, inverted))
             awake[p] = 1;
-        for (int i = 0; i < kSweeps; ++i) {
+        for (int i = 0; i < kPartingSweeps; ++i) {
             planes.put();
             for (std::uint32_t p = 0; p < awake.size(); ++p)
                 awake[p] |= std::uint8_t(!planes.of(p).empty());

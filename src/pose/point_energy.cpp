@@ -109,12 +109,12 @@ void PointEnergy::add_half_space(const Vec3d& n, double least, double weight)
 
 double PointEnergy::room_for(const Vec3d& step) const
 {
-    constexpr double kShareOfRoom = 0.9;
+    constexpr double kShareOfWay = 0.9;
     double share = 1;
     for (const CornerTet& tet : tets_) {
         const double along = tet.n.dot(step);
         if (tet.determinant > 0 && along < 0)
-            share = std::min(share, -kShareOfRoom * tet.determinant / along);
+            share = std::min(share, -kShareOfWay * tet.determinant / along);
     }
     return share;
 }
