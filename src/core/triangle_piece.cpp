@@ -46,10 +46,10 @@ void add_parts(const TrianglePiece& piece, int halvings, std::vector<FloatBox>& 
 PartBoxes part_boxes(const std::vector<openvdb::Vec3s>& points,
                      const std::vector<openvdb::Vec3I>& triangles)
 {
-    constexpr BoxTree::Marks kNoMarks{BoxTree::kNoMark, BoxTree::kNoMark, BoxTree::kNoMark};
+    constexpr BoxTree::Marks kPlain{BoxTree::kNoMark, BoxTree::kNoMark, BoxTree::kNoMark};
     std::vector<std::vector<FloatBox>> parts(triangles.size());
     for_each_index(triangles.size(), [&](std::size_t t) {
-        add_parts(TrianglePiece(points, triangles[t], std::uint32_t(t), kNoMarks), kMostHalvings,
+        add_parts(TrianglePiece(points, triangles[t], std::uint32_t(t), kPlain), kMostHalvings,
                   parts[t]);
     });
     PartBoxes all;
