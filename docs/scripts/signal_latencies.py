@@ -71,7 +71,8 @@ def send(line, names, out, delay, number):
         process = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=errors)
         time.sleep(delay)
         began, spent = time.monotonic(), processor_seconds(process)
-        process.send_signal(number)
+        # Not by the object, which would wait for a process that has ended.
+        os.kill(process.pid, number)
         # wait4 and not wait: only it tells the resources of this child alone.
         _, ended, usage = os.wait4(process.pid, 0)
         status = process.returncode = os.waitstatus_to_exitcode(ended)
