@@ -156,6 +156,13 @@ void add_rim(Soup& soup, std::uint32_t count)
     }
 }
 
+/// The two ends of the axis, behind the rim.
+void add_ends_of_axis(Soup& soup)
+{
+    soup.points.emplace_back(0.0F, 0.0F, 1.0F);
+    soup.points.emplace_back(0.0F, 0.0F, -1.0F);
+}
+
 std::size_t asked(const Soup& soup)
 {
     std::atomic<std::size_t> count{0};
@@ -168,8 +175,7 @@ Soup two_cones(std::uint32_t half)
 {
     Soup cones;
     add_rim(cones, half);
-    cones.points.emplace_back(0.0F, 0.0F, 1.0F);
-    cones.points.emplace_back(0.0F, 0.0F, -1.0F);
+    add_ends_of_axis(cones);
     for (const std::uint32_t apex : {half, half + 1})
         for (std::uint32_t i = 0; i < half; ++i)
             cones.triangles.emplace_back(i, (i + 1) % half, apex);
@@ -180,8 +186,7 @@ Soup pages_of_an_edge(std::uint32_t count)
 {
     Soup pages;
     add_rim(pages, count);
-    pages.points.emplace_back(0.0F, 0.0F, 1.0F);
-    pages.points.emplace_back(0.0F, 0.0F, -1.0F);
+    add_ends_of_axis(pages);
     for (std::uint32_t i = 0; i < count; ++i)
         pages.triangles.emplace_back(i, count, count + 1);
     return pages;

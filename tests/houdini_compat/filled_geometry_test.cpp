@@ -25,6 +25,7 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 using test::has;
+using test::refusal_of_changed;
 using test::values_of;
 
 ShellFile filled(ShellStack stack)
@@ -202,14 +203,7 @@ TEST(FilledGeometry, CheckProvesTheCoreAnew)
 
 template <typename Change> std::string refusal_of_filled(const Change& change)
 {
-    HoudiniGeometry g = shell_geometry(filled_ball());
-    change(g);
-    try {
-        shell_of_geometry(g, "x.geo");
-    } catch (const ReadError& error) {
-        return error.what();
-    }
-    return "it was read";
+    return refusal_of_changed(filled_ball(), change);
 }
 
 TEST(FilledGeometry, SaysWhatOfTheCoreContradicts)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
+#include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/write/vdb_file.h"
 
@@ -173,6 +175,20 @@ std::vector<T>& values_of(std::vector<houdini::Attribute>& list, const char* nam
 {
     const houdini::Attribute* found = houdini::find(list, name);
     return std::get<std::vector<T>>(list[static_cast<std::size_t>(found - list.data())].values);
+}
+
+/// What reading says of the shell's geometry, as x.geo, after change(geometry).
+template <typename Change>
+std::string refusal_of_changed(const ShellFile& shell, const Change& change)
+{
+    houdini::HoudiniGeometry g = houdini::shell_geometry(shell);
+    change(g);
+    try {
+        houdini::shell_of_geometry(g, "x.geo");
+    } catch (const ReadError& error) {
+        return error.what();
+    }
+    return "it was read";
 }
 
 /// A refusal that names the file and has those words.

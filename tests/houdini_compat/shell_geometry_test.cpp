@@ -2,7 +2,6 @@
 #include "vdb_shell/houdini/shell_geometry.h"
 
 #include "vdb_shell/certify/certificate.h"
-#include "vdb_shell/core/error.h"
 #include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/pipeline.h"
 
@@ -25,6 +24,7 @@ using openvdb::Vec3s;
 using test::expect_round_trips;
 using test::has;
 using test::held;
+using test::refusal_of_changed;
 using test::scaled_shell_file;
 using test::values_of;
 
@@ -166,14 +166,7 @@ TEST(ShellGeometry, DetailHasTheFiguresOfTheReport)
 
 template <typename Change> std::string refusal_after(const Change& change)
 {
-    HoudiniGeometry g = shell_geometry(pinned_shell());
-    change(g);
-    try {
-        shell_of_geometry(g, "x.geo");
-    } catch (const ReadError& error) {
-        return error.what();
-    }
-    return "it was read";
+    return refusal_of_changed(pinned_shell(), change);
 }
 
 TEST(ShellGeometry, SaysWhichCountContradicts)
