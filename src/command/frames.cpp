@@ -122,7 +122,8 @@ private:
     {
         // Left out and noted, as the outputs of the two would be the same files.
         if (!known_.insert(frame).second) {
-            list_.repeated.push_back(frame);
+            if (told_.insert(frame).second)
+                list_.repeated.push_back(frame);
             return;
         }
         if (list_.frames.size() == kMostFrames)
@@ -134,7 +135,7 @@ private:
     const std::string& flag_;
     std::size_t place_ = 0;
     FrameList list_;
-    std::unordered_set<int> known_;
+    std::unordered_set<int> known_, told_;
 };
 
 struct Token {
@@ -231,7 +232,8 @@ std::string frames_text(const std::vector<int>& frames)
     for (std::size_t begin = 0; begin < frames.size();) {
         std::size_t end = begin + 1;
         const int step = end < frames.size() ? frames[end] - frames[begin] : 0;
-        while (end < frames.size() && frames[end] - frames[end - 1] == step)
+        // A frame and itself are no range: "5-5x0" would be refused.
+        while (step != 0 && end < frames.size() && frames[end] - frames[end - 1] == step)
             ++end;
         // Two of them are a range only where they are neighbours: "1-2", but "1,9".
         if (end - begin == 2 && std::abs(step) != 1)

@@ -12,7 +12,7 @@ namespace vdb_shell::command
 
 struct FrameList {
     std::vector<int> frames;   ///< in the order in which they were given, each once
-    std::vector<int> repeated; ///< what was given again, and left out
+    std::vector<int> repeated; ///< what was given again, and left out; each once
 };
 
 /// "1-100", "1-100x2" or "1-100:2" (every second), "10-1", "10-1x-3", "5,8,-3--1". Throws

@@ -43,6 +43,9 @@ TEST(FrameRanges, WhatComesTwiceIsDoneOnceAndKnown)
     const FrameList list = parse_frames("1-3,2,5,3-4");
     EXPECT_EQ(list.frames, (Frames{1, 2, 3, 5, 4}));
     EXPECT_EQ(list.repeated, (Frames{2, 3}));
+    EXPECT_EQ(parse_frames("5,5,5,5").frames, (Frames{5}));
+    EXPECT_EQ(parse_frames("5,5,5,5").repeated, (Frames{5}));
+    EXPECT_EQ(frames_text(parse_frames("1-3,3-1,1-3").repeated), "3-1");
 }
 
 TEST(FrameRanges, AreRefusedWithThePlace)
@@ -87,6 +90,7 @@ TEST(FrameRanges, TextOfFramesIsReadAsTheSameFrames)
         {{9, 6, 3, 0, -3}, "9--3x-3"},
         {{1, 9, 10, 11}, "1,9-11"},
     };
+    EXPECT_EQ(frames_text({5, 5, 5, 6}), "5,5,5-6");
     for (const auto& [frames, text] : cases) {
         EXPECT_EQ(frames_text(frames), text);
         if (!frames.empty()) {
