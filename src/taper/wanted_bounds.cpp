@@ -154,8 +154,10 @@ WantedBound judge_whole(BoundKind kind, double asked, double reached, bool large
     bound.asked = asked;
     bound.reached = reached;
     bound.met = larger ? reached >= asked : reached <= asked;
+    // Of the larger one: of a fill what is missing of the one that was asked for, of tets those
+    // that there should not be of all there are. So it is a share, as that of tets of a poor shape.
     if (!bound.met)
-        bound.shortfall = std::abs(asked - reached) / asked;
+        bound.shortfall = std::abs(asked - reached) / std::max(asked, reached);
     return bound;
 }
 
@@ -209,12 +211,13 @@ bool BoundsReport::met() const
 
 double BoundsReport::shortfall() const
 {
-    double sum = 0;
-    for (const WantedBound& bound : bounds)
-        // Each missed bound counts one beside its shortfall, so that fewer missed ones are better.
-        // A budget of tets can be missed by more than the whole of it.
-        sum += bound.met ? 0 : 1 + bound.shortfall;
-    return sum;
+    double missed = 0, shares = 0;
+    for (const WantedBound& bound : bounds) {
+        missed += bound.met ? 0 : 1;
+        shares += bound.shortfall;
+    }
+    // Shares are 1 at most, so their mean over all bounds is less than one more missed bound.
+    return bounds.empty() ? 0 : missed + shares / double(bounds.size());
 }
 
 BoundsReport judge_bounds(const ShellStack& stack, const TetMesh& tets, const TriangleMesh& surface,

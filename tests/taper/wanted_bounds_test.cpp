@@ -68,6 +68,37 @@ TEST(WantedBounds, AConedBoxHasTheShapesThatItsGeometrySays)
     EXPECT_EQ(bound.first[3].prism, box.tets.prism[3]);
 }
 
+TEST(WantedBounds, FewerMissedBoundsAreBetterAndThenTheSmallerShare)
+{
+    const ShellResult box = build_shell(test::box(Vec3d(-1), Vec3d(1)), tapered_with_samples());
+    WantedBounds wanted;
+    wanted.tets = 4;
+    // Eight of the twelve are too many, where a budget may be missed by many times itself.
+    EXPECT_DOUBLE_EQ(judge(box, wanted).bounds[0].shortfall, 8.0 / 12);
+    wanted.dihedral = 50 * M_PI / 180; // that none of them has
+    const BoundsReport both = judge(box, wanted);
+    wanted.dihedral = 10 * M_PI / 180;
+    const BoundsReport one = judge(box, wanted);
+    EXPECT_EQ(both.bounds[0].shortfall, 1);
+    EXPECT_LT(one.shortfall(), both.shortfall());
+    wanted.tets = 12;
+    EXPECT_EQ(judge(box, wanted).shortfall(), 0);
+
+    // Whatever the shares are.
+    const auto missed = [](const std::vector<double>& shares) {
+        BoundsReport report;
+        for (const double share : shares) {
+            WantedBound bound;
+            bound.met = share == 0;
+            bound.shortfall = share;
+            report.bounds.push_back(bound);
+        }
+        return report.shortfall();
+    };
+    EXPECT_LT(missed({1, 1, 0, 0}), missed({0.01, 0.01, 0.01, 0}));
+    EXPECT_LT(missed({0.2, 0.3, 0, 0}), missed({0, 0, 0.6, 0.1}));
+}
+
 TEST(WantedBounds, TrianglesThatAreTooLongAreNamed)
 {
     const ShellResult rod =

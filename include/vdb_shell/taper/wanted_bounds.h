@@ -58,7 +58,8 @@ struct WantedBound {
     std::size_t short_tets = 0;
     std::array<std::size_t, kShortCauses> causes{}; ///< tets that fall short, by ShortCause
     std::vector<ShortTet> first;                    ///< the first by index
-    /// How much is missing, 0 where it is met: a share of the tets, or of what was asked.
+    /// How much is missing, 0 where it is met and 1 at most: the share of the tets that fall short
+    /// or are too many, or of the fill that was asked for.
     double shortfall = 0;
 };
 
@@ -66,6 +67,8 @@ struct BoundsReport {
     std::vector<WantedBound> bounds;
 
     bool met() const;
+    /// To tell the better of two runs for the same bounds: first the one that misses fewer of them,
+    /// then the one that misses by less, all bounds alike. 0 where all are met.
     double shortfall() const;
 };
 
