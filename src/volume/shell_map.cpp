@@ -220,8 +220,6 @@ ShellPlace ShellMap::place_of(std::uint32_t tet, const Vec4d& weight, const Vec3
     WedgePlace guess = place_of_weights(corner_bits_[tet], weight);
     ShellPlace best = linear_place(tet, weight);
     double best_outside = 1.0;
-    // A curved side is crossed once, or twice near a corner.
-    constexpr int kMostPrisms = 4;
     for (int i = 0; i < kMostPrisms; ++i) {
         const auto prism = std::uint32_t(layer + triangle);
         const std::optional<WedgePlace> found =
@@ -258,6 +256,7 @@ ShellMap::tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) con
             box.expand(Vec3d(corner));
         prism[p] = meets(box);
     });
+    prism = with_prisms_beside(std::move(prism));
     for_each_index(tet.size(), [&](std::size_t t) {
         if (tets_.prism[t] == kCorePrism) {
             openvdb::BBoxd box;
@@ -266,17 +265,25 @@ ShellMap::tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) con
             tet[t] = meets(box);
             return;
         }
-        const std::size_t layer = tets_.prism_layer[t] * triangles_;
-        tet[t] = prism[layer + tets_.prism[t]];
-        for (int i = 0; i < 3; ++i) {
-            const std::uint32_t beside = beyond_[tets_.prism[t]][i];
-            // A place that is looked for from this tet may be found in a prism beside its own
-            // (place_of).
-            if (beside != ShellPlace::kNone && prism[layer + beside])
-                tet[t] = 1;
-        }
+        tet[t] = prism[tets_.prism_layer[t] * triangles_ + tets_.prism[t]];
     });
     return tet;
+}
+
+/// A place that is looked for from a tet is found in its own prism or in one that place_of goes on
+/// to, across a side each time.
+std::vector<std::uint8_t> ShellMap::with_prisms_beside(std::vector<std::uint8_t> prism) const
+{
+    for (int step = 1; step < kMostPrisms; ++step) {
+        const std::vector<std::uint8_t> before = prism;
+        for_each_index(prism.size(), [&](std::size_t p) {
+            const std::size_t triangle = p % triangles_, layer = p - triangle;
+            for (int i = 0; i < 3; ++i)
+                if (const std::uint32_t beside = beyond_[triangle][i]; beside != ShellPlace::kNone)
+                    prism[p] = prism[p] || before[layer + beside];
+        });
+    }
+    return prism;
 }
 
 Vec3d ShellMap::point_of(const ShellPlace& place) const

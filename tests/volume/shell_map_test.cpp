@@ -157,5 +157,61 @@ TEST(ShellMap, TheJacobianIsTheDerivative)
     });
 }
 
+/// A disc of triangles around its middle, whose inner side is turned about the middle's pillar.
+PrismShell turned_disc(std::uint32_t rim, double radians)
+{
+    PrismShell shell;
+    shell.outer = {Vec3s(0, 0, 0)};
+    shell.inner = {Vec3s(0, 0, -1)};
+    for (std::uint32_t i = 0; i < rim; ++i) {
+        const double at = 2 * M_PI * i / rim, turned = at + radians;
+        shell.outer.emplace_back(float(std::cos(at)), float(std::sin(at)), 0.0F);
+        shell.inner.emplace_back(float(std::cos(turned)), float(std::sin(turned)), -1.0F);
+        shell.triangles.emplace_back(0, 1 + i, 1 + (i + 1) % rim);
+    }
+    shell.stop.assign(shell.outer.size(), StopReason{});
+    return shell;
+}
+
+openvdb::BBoxd box_of_prism(const PrismShell& shell, std::uint32_t prism)
+{
+    openvdb::BBoxd box;
+    for (int k = 0; k < 3; ++k) {
+        box.expand(Vec3d(shell.outer[shell.triangles[prism][k]]));
+        box.expand(Vec3d(shell.inner[shell.triangles[prism][k]]));
+    }
+    return box;
+}
+
+TEST(ShellMap, APrismWherePlacesOfATetAreFoundIsOneOfItsOwn)
+{
+    // Sides at the middle are turned by three triangles from top to bottom, so flat tets and curved
+    // prisms do not agree on which of them has a point.
+    constexpr std::uint32_t kRim = 36;
+    const PrismShell disc = turned_disc(kRim, M_PI / 6);
+    const ShellMap map = map_of(stack_of(disc, SplitRule::vertex_index));
+    ASSERT_EQ(map.linear_prisms(), 0U);
+    std::size_t far = 0;
+    const TetMesh& tets = map.tets();
+    for (std::uint32_t t = 0; t < tets.tets.size(); ++t)
+        for (int corner = 0; corner < 4; ++corner) {
+            // Five eighths of one corner, an eighth of each of the others.
+            Vec3d point = 0.5 * Vec3d(tets.points[tets.tets[t][corner]]);
+            for (int k = 0; k < 4; ++k)
+                point += 0.125 * Vec3d(tets.points[tets.tets[t][k]]);
+            const ShellPlace place = map.place_in(t, point);
+            ASSERT_NE(place.prism, ShellPlace::kNone);
+            ASSERT_LT((map.point_of(place) - point).length(), 1e-9);
+            const std::uint32_t apart = (place.prism + kRim - tets.prism[t]) % kRim;
+            far += apart > 1 && apart < kRim - 1;
+            const openvdb::BBoxd box = box_of_prism(disc, place.prism);
+            EXPECT_TRUE(map.tets_that([&](const openvdb::BBoxd& other) {
+                return other.min() == box.min() && other.max() == box.max();
+            })[t])
+                << "tet " << t << ", " << apart << " prisms away";
+        }
+    EXPECT_GT(far, 0U) << "else prisms beside one another are all that was asked for";
+}
+
 } // namespace
 } // namespace vdb_shell

@@ -69,9 +69,9 @@ public:
     /// The same of a point that the tet may or may not hold: not found where it does not.
     ShellPlace find_in(std::uint32_t tet, const openvdb::Vec3d& point) const;
 
-    /// By tet: whether a box around its prism, or around one of the prisms beside it, in which
-    /// places found by place_in(tet) may lie, passes `meets`, which is asked by several threads at
-    /// once. Of a tet of a core its own box.
+    /// By tet: whether a box around one of the prisms that places found by place_in(tet) may lie in
+    /// passes `meets`, which is asked by several threads at once: its own, and those that are not
+    /// more than kMostPrisms - 1 sides away. Of a tet of a core its own box.
     std::vector<std::uint8_t>
     tets_that(const std::function<bool(const openvdb::BBoxd&)>& meets) const;
 
@@ -85,10 +85,15 @@ public:
 private:
     using Corners = std::array<openvdb::Vec3s, 6>; ///< three outer, three inner
 
+    /// In which a place is looked for, one beside the other. A curved side is crossed once, or
+    /// twice near a corner; where a pillar is turned far against narrow triangles, more often.
+    static constexpr int kMostPrisms = 4;
+
     void count_prisms();
     ShellPlace linear_place(std::uint32_t tet, const openvdb::Vec4d& weight) const;
     ShellPlace place_of(std::uint32_t tet, const openvdb::Vec4d& weight,
                         const openvdb::Vec3d& point) const;
+    std::vector<std::uint8_t> with_prisms_beside(std::vector<std::uint8_t> prism) const;
     openvdb::Vec4d tet_weights(std::uint32_t tet, const openvdb::Vec3d& point) const;
 
     TetMesh tets_;
