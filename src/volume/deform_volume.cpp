@@ -166,7 +166,6 @@ GridBasePtr deform_grid(const Grid& source, const ShellMap& rest, const ShellMap
         }
     }
     made->insertMeta(source);
-    made->setTransform(source.transform().copy());
     figures.active_after = made->activeVoxelCount();
     return made;
 }

@@ -326,9 +326,7 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
         if (level_set && made->activeVoxelCount() > 0)
             make_distances_of_signed(*made, kHalfWidth);
     }
-    const openvdb::math::Transform::Ptr transform = made->transformPtr();
     made->insertMeta(texture);
-    made->setTransform(transform);
     figures.active = made->activeVoxelCount();
     return made;
 }

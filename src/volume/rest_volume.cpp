@@ -22,7 +22,7 @@ using openvdb::Vec3f;
 
 openvdb::Vec3SGrid::Ptr vector_volume(const TetMesh& posed,
                                       const std::vector<openvdb::Vec3s>& vectors, double voxel_size,
-                                      const StageProgress& progress)
+                                      const char* what, const StageProgress& progress)
 {
     assert(vectors.size() == posed.points.size());
     // One number after the other, by the same code that writes depths: so the active voxels of the
@@ -34,7 +34,7 @@ openvdb::Vec3SGrid::Ptr vector_volume(const TetMesh& posed,
         value.reserve(vectors.size());
         for (const openvdb::Vec3s& p : vectors)
             value.push_back(p[static_cast<int>(axis)]);
-        part[axis] = tet_values_grid(posed, value, voxel_size, progress);
+        part[axis] = tet_values_grid(posed, value, voxel_size, what, progress);
         part[axis]->tree().getNodes(leaves[axis]);
     }
     auto grid = openvdb::Vec3SGrid::create();
@@ -58,7 +58,7 @@ GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>&
                         double voxel_size, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "Shell rest");
-    const auto grid = vector_volume(posed, rest, voxel_size, progress);
+    const auto grid = vector_volume(posed, rest, voxel_size, "rest volume", progress);
     grid->setName("rest");
     return grid;
 }
@@ -67,7 +67,7 @@ GridBasePtr velocity_volume(const TetMesh& posed, const std::vector<openvdb::Vec
                             double voxel_size, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "Shell velocity");
-    const auto grid = vector_volume(posed, velocity, voxel_size, progress);
+    const auto grid = vector_volume(posed, velocity, voxel_size, "velocity volume", progress);
     grid->setName("v");
     grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
     return grid;

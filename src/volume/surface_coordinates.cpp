@@ -19,6 +19,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
+#include <unordered_set>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -84,13 +87,15 @@ public:
         for (std::size_t k = 0; k < 3; ++k)
             least[k] = squared(begin, corner[k]);
         std::vector<std::uint32_t> found{begin};
+        // A large triangle may lie over thousands of the chart's.
+        std::unordered_set<std::uint32_t> known{begin};
         // Breadth first, across edges without a seam only. `found` grows while it is gone through,
         // and ends where no neighbour is within reach.
         for (std::size_t n = 0; n < found.size(); ++n)
             for (int side = 0; side < 3; ++side) {
                 const std::uint32_t next = across(found[n], side);
-                if (next == kNone || squared(next, middle) > reach * reach ||
-                    std::find(found.begin(), found.end(), next) != found.end())
+                if (next == kNone || !known.insert(next).second ||
+                    squared(next, middle) > reach * reach)
                     continue;
                 found.push_back(next);
                 for (std::size_t k = 0; k < 3; ++k)

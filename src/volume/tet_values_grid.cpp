@@ -11,9 +11,10 @@ namespace vdb_shell
 {
 
 openvdb::FloatGrid::Ptr tet_values_grid(const TetMesh& tets, const std::vector<double>& value,
-                                        double voxel_size, const StageProgress& progress)
+                                        double voxel_size, const char* what,
+                                        const StageProgress& progress)
 {
-    const TetColumns columns = tet_columns(tets, value, voxel_size, "depth grid");
+    const TetColumns columns = tet_columns(tets, value, voxel_size, what);
     auto grid = openvdb::FloatGrid::create(0.0f);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
     fill_columns(

@@ -35,7 +35,7 @@ openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
     depth.reserve(tets.layer.size());
     for (const std::uint8_t layer : tets.layer)
         depth.push_back(layer / layers);
-    auto grid = tet_values_grid(tets, depth, voxel_size, progress);
+    auto grid = tet_values_grid(tets, depth, voxel_size, "depth grid", progress);
     grid->setName("depth");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     return grid;

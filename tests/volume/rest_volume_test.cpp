@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace vdb_shell
@@ -41,6 +42,21 @@ TEST(RestVolume, AtRestEveryVoxelIsWhereItIs)
     EXPECT_GT(grid->activeVoxelCount(), 10000U);
     for (auto voxel = grid->cbeginValueOn(); voxel; ++voxel)
         ASSERT_LT((Vec3d(*voxel) - grid->indexToWorld(voxel.getCoord())).length(), 1e-6);
+}
+
+TEST(RestVolume, ARefusalSaysWhichVolumeItIsOf)
+{
+    const TetMesh tets = tets_of(test::icosphere(1.0, 1));
+    const auto message = [&](const auto& volume) -> std::string {
+        try {
+            volume(tets, tets.points, 0.0, nullptr);
+        } catch (const InvalidOption& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(message(rest_volume).rfind("rest volume: voxel size", 0), 0U);
+    EXPECT_EQ(message(velocity_volume).rfind("velocity volume: voxel size", 0), 0U);
 }
 
 TEST(RestVolume, AMovedShellTellsWhereItWas)
