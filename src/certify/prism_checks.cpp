@@ -10,11 +10,11 @@
 #include "certify/prism_checks.h"
 
 #include "certify/certificate_findings.h"
+#include "core/disjoint_sets.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 
 #include <array>
-#include <numeric>
 
 namespace vdb_shell
 {
@@ -157,13 +157,8 @@ void check_vertices(const PrismShell& shell, const std::vector<EdgeUse>& uses,
     // Corners of triangles are united across common edges; two classes at one vertex are two fans.
     // At an edge of more than two triangles all of them are united, so that such an edge is
     // reported as an open edge and not as a split vertex besides. Time is nearly linear.
-    std::vector<std::uint32_t> parent(3 * shell.triangles.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    auto root_of = [&](std::uint32_t i) {
-        while (parent[i] != i)
-            i = parent[i] = parent[parent[i]];
-        return i;
-    };
+    const std::size_t corners = 3 * shell.triangles.size();
+    DisjointSets sets(corners);
     auto corner_at = [](const EdgeUse& use, bool larger) {
         const bool second = larger == use.forward;
         return 3 * use.triangle + (use.side + (second ? 1U : 0U)) % 3;
@@ -172,14 +167,14 @@ void check_vertices(const PrismShell& shell, const std::vector<EdgeUse>& uses,
         if (uses[i].edge != uses[i - 1].edge)
             continue;
         for (const bool larger : {false, true})
-            parent[root_of(corner_at(uses[i], larger))] = root_of(corner_at(uses[i - 1], larger));
+            sets.join(corner_at(uses[i], larger), corner_at(uses[i - 1], larger));
     }
     constexpr std::uint32_t kNone = ~0U;
     std::vector<std::uint32_t> fan(shell.outer.size(), kNone);
     std::vector<char> split(shell.outer.size());
-    for (std::uint32_t corner = 0; corner < parent.size(); ++corner) {
+    for (std::uint32_t corner = 0; corner < corners; ++corner) {
         const std::uint32_t v = shell.triangles[corner / 3][int(corner % 3)];
-        const std::uint32_t root = root_of(corner);
+        const std::uint32_t root = sets.root_of(corner);
         if (fan[v] == kNone)
             fan[v] = root;
         split[v] = split[v] || fan[v] != root;

@@ -9,6 +9,7 @@
 
 #include "vdb_shell/inspect/inspect_mesh.h"
 
+#include "core/disjoint_sets.h"
 #include "core/stage_progress.h"
 #include "inspect/marks.h"
 #include "mesh/boundary_loops.h"
@@ -17,7 +18,6 @@
 #include "vdb_shell/options/option.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace vdb_shell
 {
@@ -65,9 +65,9 @@ std::vector<BoundaryLoop> measure_loops(const TriangleMesh& mesh,
     return loops;
 }
 
-/// The flipped triangles as patches, by union of those that share an edge. The smaller root always
-/// stays, so the root of a patch is its first triangle, and as flipped triangles ascend it comes
-/// before all others of its patch in the last loop.
+/// The flipped triangles as patches, by union of those that share an edge. The root of a patch is
+/// its first triangle, and as flipped triangles ascend it comes before all others of its patch in
+/// the last loop.
 std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t triangle_count)
 {
     std::vector<char> flipped(triangle_count);
@@ -77,23 +77,14 @@ std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t trian
     for (const EdgeUse& use : marks.uses)
         if (flipped[use.triangle])
             between.push_back(use);
-    std::vector<std::uint32_t> parent(triangle_count);
-    std::iota(parent.begin(), parent.end(), 0U);
-    auto root_of = [&](std::uint32_t t) {
-        while (parent[t] != t)
-            t = parent[t] = parent[parent[t]];
-        return t;
-    };
-    for (std::size_t i = 1; i < between.size(); ++i) {
-        if (between[i].edge != between[i - 1].edge)
-            continue;
-        const std::uint32_t a = root_of(between[i].triangle), b = root_of(between[i - 1].triangle);
-        parent[std::max(a, b)] = std::min(a, b);
-    }
+    DisjointSets sets(triangle_count);
+    for (std::size_t i = 1; i < between.size(); ++i)
+        if (between[i].edge == between[i - 1].edge)
+            sets.join(between[i].triangle, between[i - 1].triangle);
     std::vector<FlippedPatch> patches;
     std::vector<std::uint32_t> patch_of(triangle_count);
     for (const std::uint32_t t : marks.flipped) {
-        const std::uint32_t root = root_of(t);
+        const std::uint32_t root = sets.root_of(t);
         if (root == t) {
             patch_of[t] = static_cast<std::uint32_t>(patches.size());
             patches.push_back({t, 0});

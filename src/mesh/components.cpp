@@ -12,13 +12,13 @@
 #include "mesh/components.h"
 
 #include "core/box_pairs.h"
+#include "core/disjoint_sets.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/triangle_piece.h"
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace vdb_shell
 {
@@ -26,15 +26,6 @@ namespace
 {
 
 using Indices = std::vector<std::uint32_t>;
-
-/// The root of a set of triangles (union-find). Paths are halved on the way, so that later searches
-/// are short.
-std::uint32_t root_of(Indices& parent, std::uint32_t i)
-{
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
 
 /// The triangles of each component, ascending.
 std::vector<Indices> triangles_by_component(const Indices& component_of)
@@ -293,22 +284,20 @@ private:
 
 Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::size_t triangle_count)
 {
-    Indices parent(triangle_count);
-    std::iota(parent.begin(), parent.end(), 0U);
+    DisjointSets sets(triangle_count);
     for (std::size_t i = 1; i < sorted_uses.size(); ++i) {
         // Uses of one edge stand together, so joining each with the one before it joins all of
         // them.
         const auto& edge = sorted_uses[i].edge;
         if (edge != sorted_uses[i - 1].edge || edge[0] == edge[1])
             continue;
-        const std::uint32_t a = root_of(parent, sorted_uses[i - 1].triangle);
-        const std::uint32_t b = root_of(parent, sorted_uses[i].triangle);
-        parent[std::max(a, b)] = std::min(a, b); // so a root is its component's first triangle
+        sets.join(sorted_uses[i - 1].triangle, sorted_uses[i].triangle);
     }
     Indices component(triangle_count);
     std::uint32_t count = 0;
     for (std::uint32_t t = 0; t < triangle_count; ++t) {
-        const std::uint32_t root = root_of(parent, t);
+        // A root is its component's first triangle.
+        const std::uint32_t root = sets.root_of(t);
         component[t] = root == t ? count++ : component[root];
     }
     return component;

@@ -11,6 +11,7 @@
 #include "mesh/surface_defects.h"
 
 #include "core/bucket_sort.h"
+#include "core/disjoint_sets.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/triangle_pairs.h"
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
 #include <utility>
 
 namespace vdb_shell
@@ -73,13 +73,7 @@ bool forms_one_fan(const TriangleMesh& mesh, const VertexTriangles::Range& aroun
         ++edges;
     }
     std::sort(ends.begin(), ends.end());
-    std::vector<std::uint32_t> parent(edges);
-    std::iota(parent.begin(), parent.end(), 0U);
-    auto root_of = [&](std::uint32_t i) {
-        while (parent[i] != i)
-            i = parent[i] = parent[parent[i]];
-        return i;
-    };
+    DisjointSets sets(edges);
     std::uint32_t pieces = edges;
     for (std::size_t i = 1; i < ends.size(); ++i) {
         if (ends[i].first != ends[i - 1].first)
@@ -88,9 +82,7 @@ bool forms_one_fan(const TriangleMesh& mesh, const VertexTriangles::Range& aroun
         // edges at most. If there is no such point, one connected piece is a path or a ring.
         if (i > 1 && ends[i].first == ends[i - 2].first)
             return false;
-        const std::uint32_t a = root_of(ends[i - 1].second), b = root_of(ends[i].second);
-        pieces -= a != b;
-        parent[a] = b;
+        pieces -= sets.join(ends[i - 1].second, ends[i].second);
     }
     return pieces <= 1;
 }

@@ -10,6 +10,7 @@
 
 #include "repair/hole_walk.h"
 
+#include "core/disjoint_sets.h"
 #include "core/unit_vector.h"
 #include "mesh/orientation.h"
 #include "mesh/topology.h"
@@ -118,19 +119,8 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
     const auto point_of = [&](std::uint32_t corner) {
         return mesh.triangles[corner / 3][int(corner % 3)];
     };
-    // Union of disjoint sets. The smaller root always stays, so the root of a fan is its first
-    // corner, and fans are numbered by that below whatever the order of the unions.
-    std::vector<std::uint32_t> parent(corners);
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root_of = [&](std::uint32_t c) {
-        while (parent[c] != c)
-            c = parent[c] = parent[parent[c]];
-        return c;
-    };
-    const auto join = [&](std::uint32_t a, std::uint32_t b) {
-        a = root_of(a), b = root_of(b);
-        parent[std::max(a, b)] = std::min(a, b);
-    };
+    // The root of a fan is its first corner, and fans are numbered by that below.
+    DisjointSets sets(corners);
     for (std::uint32_t side = 0; side < corners; ++side) {
         const std::uint32_t other = partner[side];
         if (other == kUnpaired || other < side)
@@ -138,17 +128,17 @@ Fans find_fans(const TriangleMesh& mesh, const std::vector<std::uint32_t>& partn
         // In a consistent orientation the partner runs the other way, and its first corner is at
         // this side's second point. In a one-sided piece it may run the same way.
         const bool opposite = point_of(side) == point_of(next_corner(other));
-        join(side, opposite ? next_corner(other) : other);
-        join(next_corner(side), opposite ? other : next_corner(other));
+        sets.join(side, opposite ? next_corner(other) : other);
+        sets.join(next_corner(side), opposite ? other : next_corner(other));
     }
     Fans fans{std::vector<std::uint32_t>(corners), {}, {}};
     for (std::uint32_t c = 0; c < corners; ++c) {
-        if (root_of(c) == c) {
+        if (sets.root_of(c) == c) {
             fans.of_corner[c] = static_cast<std::uint32_t>(fans.point.size());
             fans.point.push_back(point_of(c));
             fans.open.push_back(0);
         }
-        fans.of_corner[c] = fans.of_corner[root_of(c)];
+        fans.of_corner[c] = fans.of_corner[sets.root_of(c)];
     }
     for (std::uint32_t side = 0; side < corners; ++side)
         if (partner[side] == kUnpaired)

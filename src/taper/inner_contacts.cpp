@@ -7,13 +7,13 @@
 
 #include "taper/inner_contacts.h"
 
+#include "core/disjoint_sets.h"
 #include "growth/grow_state.h"
 #include "growth/predicates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace vdb_shell::taper
@@ -260,30 +260,21 @@ private:
 template <class Visit>
 bool any_fan(const std::vector<Swept>& swept, const std::array<int, 2>& moving, const Visit& visit)
 {
-    const std::size_t count = swept.size();
-    std::vector<std::size_t> parent(count);
-    std::iota(parent.begin(), parent.end(), std::size_t(0));
-    const auto root_of = [&](std::size_t i) {
-        while (parent[i] != i)
-            i = parent[i] = parent[parent[i]];
-        return i;
-    };
-    std::vector<std::pair<int, std::size_t>> uses;
-    for (std::size_t i = 0; i < count; ++i)
+    const auto count = std::uint32_t(swept.size());
+    DisjointSets fans(count);
+    std::vector<std::pair<int, std::uint32_t>> uses;
+    for (std::uint32_t i = 0; i < count; ++i)
         for (const int n : swept[i].nodes)
             if (n != moving[0] && n != moving[1])
                 uses.emplace_back(n, i);
     std::sort(uses.begin(), uses.end());
     for (std::size_t i = 1; i < uses.size(); ++i)
-        if (uses[i].first == uses[i - 1].first) {
-            // The smaller index becomes the root, so that fans come in the order of their first
-            // tets.
-            const std::size_t a = root_of(uses[i].second), b = root_of(uses[i - 1].second);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    std::vector<std::pair<std::size_t, std::size_t>> order;
-    for (std::size_t i = 0; i < count; ++i)
-        order.emplace_back(root_of(i), i);
+        if (uses[i].first == uses[i - 1].first)
+            fans.join(uses[i].second, uses[i - 1].second);
+    // A root is its fan's first tet, so fans come in the order of those.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
+    for (std::uint32_t i = 0; i < count; ++i)
+        order.emplace_back(fans.root_of(i), i);
     std::sort(order.begin(), order.end());
     std::vector<Swept> sorted;
     sorted.reserve(count);
