@@ -7,6 +7,8 @@
 
 #include "io/ply_values.h"
 
+#include "core/byte_order.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -202,14 +204,6 @@ private:
     PlyHeader header_;
     bool has_format_ = false;
 };
-
-bool little_endian_machine()
-{
-    const std::uint16_t one = 1;
-    unsigned char first = 0;
-    std::memcpy(&first, &one, 1);
-    return first == 1;
-}
 
 /// A double holds every value of every type of the format exactly.
 template <typename Number> double number_at(const std::array<char, 8>& bytes)

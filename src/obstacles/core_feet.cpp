@@ -93,15 +93,6 @@ CoreOf core_of(const std::vector<CoreMesh>& cores, std::size_t triangle)
     return found;
 }
 
-/// Of the whole pillar, along its layers.
-double length_of(const ShellStack& stack, std::size_t vertex)
-{
-    double sum = 0;
-    for (const PrismShell& layer : stack.layers)
-        sum += layer.length(vertex);
-    return sum;
-}
-
 } // namespace
 
 std::vector<CoreFoot> find_core_feet(const ShellStack& stack, const Cores& cores,
@@ -120,7 +111,8 @@ std::vector<CoreFoot> find_core_feet(const ShellStack& stack, const Cores& cores
         // that one counts, while the foot is on the core itself.
         const double left =
             options.distance > 0 ? on_kept_out.nearest(Vec3d(end)).distance : nearest.distance;
-        if (left > options.reach * length_of(stack, v) || sight.blocked(end, Vec3s(nearest.point)))
+        if (left > options.reach * pillar_length(stack, v) ||
+            sight.blocked(end, Vec3s(nearest.point)))
             return;
         const CoreOf core = core_of(cores.given, nearest.triangle);
         feet[v].core = std::int32_t(core.core);

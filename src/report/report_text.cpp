@@ -8,6 +8,7 @@
 
 #include "vdb_shell/report/report.h"
 
+#include "core/degrees.h"
 #include "report/cores_report.h"
 #include "report/pose_report.h"
 #include "report/resample_report.h"
@@ -243,9 +244,16 @@ void stage_lines(std::ostringstream& out, const ShellReport& report)
     layer_lines(out, report);
 }
 
+void tets_line(std::ostringstream& out, const ShellReport& report)
+{
+    line(out, "tets",
+         number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
+             " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
+             (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+}
+
 void tet_lines(std::ostringstream& out, const ShellReport& report)
 {
-    constexpr double kDegrees = 57.29577951308232;
     line(out, "prisms",
          number(report.prisms, 12) + ", " + number(report.pinned_vertices, 12) +
              " pinned vertices, " + number(report.demanded_pins.count, 12) +
@@ -255,17 +263,14 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
              number(report.triangles_without_tet.count, 12) + " triangles have no tet, " +
                  number(report.without_tet_demanded, 12) +
                  " of them at three demanded pins: " + first_of(report.triangles_without_tet));
-    line(out, "tets",
-         number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
-             " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
-             (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+    tets_line(out, report);
     // The lower end is told twice: by the very worst tet, and by the lowest hundredth, which a
     // single tet hardly moves.
     line(out, "mean ratio",
          spread(report.quality.mean_ratio) + "; 1 % under " + number(report.quality.mean_ratio.p1));
     line(out, "dihedral",
-         "smallest " + number(kDegrees * report.quality.min_dihedral_radians.min) +
-             " degrees, largest " + number(kDegrees * report.quality.max_dihedral_radians.max));
+         "smallest " + number(degrees(report.quality.min_dihedral_radians.min)) +
+             " degrees, largest " + number(degrees(report.quality.max_dihedral_radians.max)));
     shape_lines(out, report);
     line(out, "volume",
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
@@ -279,14 +284,13 @@ void core_line(std::ostringstream& out, const ShellReport& report)
     if (!report.core_fill)
         return;
     const CoreFillReport& fill = *report.core_fill;
-    constexpr double kDegrees = 57.29577951308232;
     const std::string& program = name_in_table(fill.program);
     line(out, "core",
          fill.void_triangles == 0
              ? "nothing was left for " + program + " to fill"
              : number(fill.tets, 12) + " tets by " + program + ", " + number(fill.points, 12) +
                    " points, volume " + number(fill.volume, 6) + ", smallest dihedral " +
-                   number(kDegrees * fill.min_dihedral_radians) +
+                   number(degrees(fill.min_dihedral_radians)) +
                    " degrees; with the shell one solid, proven");
 }
 
@@ -326,10 +330,7 @@ std::string posed_report_text(const ShellReport& report)
     out.imbue(std::locale::classic());
     if (report.pose)
         pose_lines(out, *report.pose);
-    line(out, "tets",
-         number(report.signs.tets, 12) + ": " + number(report.signs.inverted.count, 12) +
-             " inverted, " + number(report.signs.flat.count, 12) + " flat, " +
-             (report.conformity.conforming() ? "conforming" : "NOT CONFORMING"));
+    tets_line(out, report);
     line(out, "volume",
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6));
     if (report.certificate)

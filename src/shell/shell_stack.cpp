@@ -30,4 +30,12 @@ PrismShell hull_of(const ShellStack& stack)
     return {stack.layers.front().outer, stack.layers.back().inner, stack.triangles(), end.stop};
 }
 
+double pillar_length(const ShellStack& stack, std::size_t vertex)
+{
+    double sum = 0;
+    for (const PrismShell& layer : stack.layers)
+        sum += layer.length(vertex);
+    return sum;
+}
+
 } // namespace vdb_shell

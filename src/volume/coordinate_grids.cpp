@@ -95,12 +95,8 @@ public:
         // it.
         if (nearest)
             nearest_.emplace(skin_);
-        for (std::size_t v = 0; v < skin_.points.size(); ++v) {
-            double sum = 0;
-            for (const PrismShell& layer : in_.stack->layers)
-                sum += layer.length(v);
-            thickness_.push_back(sum);
-        }
+        for (std::size_t v = 0; v < skin_.points.size(); ++v)
+            thickness_.push_back(pillar_length(*in_.stack, v));
     }
 
     void fill(std::size_t i, const TetIndexLeaf& leaf, const openvdb::math::Transform& transform,

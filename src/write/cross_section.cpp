@@ -13,12 +13,10 @@
 
 #include "vdb_shell/core/atomic_file.h"
 #include "write/cut_picture.h"
+#include "write/image.h"
 #include "write/picture_frame.h"
 #include "write/plane_cut.h"
 #include "write/section_image.h"
-
-#include <ostream>
-#include <string>
 
 namespace vdb_shell
 {
@@ -106,9 +104,7 @@ void write_cross_section(const std::filesystem::path& path, const PrismShell& sh
         throw InvalidOption("cross-section: a section is across x, y or z");
     const SectionFrame frame = section_frame(shell);
     require_writable(path);
-    const std::string png = encode_png(draw_cross_section(shell, tets, options, frame));
-    write_stream_atomically(
-        path, [&](std::ostream& out) { out.write(png.data(), std::streamsize(png.size())); }, with);
+    write_png(path, draw_cross_section(shell, tets, options, frame), with);
 }
 
 } // namespace vdb_shell

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <filesystem>
 #include <vector>
 
 namespace vdb_shell
 {
+class OutputSet;
 
 /// Eight bits each of red, green and blue, rows from the top.
 struct Image {
@@ -17,7 +18,7 @@ struct Image {
 /// The two side by side, the lower one centred, white beside it.
 Image beside(const Image& left, const Image& right);
 
-/// As the bytes of a PNG file. Throws WriteError.
-std::string encode_png(const Image& image);
+/// A PNG file, whole or not at all: encoded before the file is opened. Throws WriteError.
+void write_png(const std::filesystem::path& path, const Image& image, OutputSet* with = nullptr);
 
 } // namespace vdb_shell

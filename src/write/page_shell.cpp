@@ -7,6 +7,7 @@
 
 #include "write/page_shell.h"
 
+#include "core/degrees.h"
 #include "core/parallel.h"
 #include "vdb_shell/resample/coarsen.h"
 #include "vdb_shell/shell/quality.h"
@@ -24,7 +25,6 @@ using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
-constexpr double kDegrees = 180 / M_PI;
 constexpr double kRegularDegrees = 70.528779365509308;
 
 /// The pillars of some vertices, as a stack over other triangles of them.
@@ -91,11 +91,11 @@ std::uint16_t share(double value, double low, double high)
 
 std::vector<double> least_degrees(const TetMesh& tets)
 {
-    std::vector<double> degrees(tets.tets.size());
-    for_each_index(degrees.size(), [&](std::size_t t) {
-        degrees[t] = shape_of(tets, t).min_dihedral_radians * kDegrees;
+    std::vector<double> least(tets.tets.size());
+    for_each_index(least.size(), [&](std::size_t t) {
+        least[t] = degrees(shape_of(tets, t).min_dihedral_radians);
     });
-    return degrees;
+    return least;
 }
 
 /// Per vertex of the surface, over all tets with a corner on its pillar.

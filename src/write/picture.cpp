@@ -17,8 +17,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <ostream>
-#include <string>
 #include <utility>
 
 namespace vdb_shell
@@ -90,13 +88,6 @@ Image draw(const ShellFile& file, const PictureOptions& options, const SectionFr
         return draw_cross_section(hull_of(file.stack), tets, options.section, section);
     return draw_shaded(picture_scene({file.stack, tets}, options, section.surface),
                        {window.low, window.high, options.section.width_pixels});
-}
-
-void write_png(const fs::path& path, const Image& image, OutputSet* with)
-{
-    const std::string png = encode_png(image);
-    write_stream_atomically(
-        path, [&](std::ostream& out) { out.write(png.data(), std::streamsize(png.size())); }, with);
 }
 
 } // namespace

@@ -169,14 +169,9 @@ const Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size
     return stack.surface(last ? surface - 1 : surface + 1)[vertex];
 }
 
-/// The sum over the layers and not the distance of the two ends: on both sides of the skin the
-/// pillar may have a bend.
 float thickness_of(const ShellStack& stack, std::size_t vertex)
 {
-    double sum = 0.0;
-    for (const PrismShell& layer : stack.layers)
-        sum += layer.length(vertex);
-    return float(sum);
+    return float(pillar_length(stack, vertex));
 }
 
 bool pinned_throughout(const ShellStack& stack, std::size_t vertex)

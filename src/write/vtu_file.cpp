@@ -6,13 +6,13 @@
 // placement moves them; else they are Float64, since the sum with the origin need not fit a float.
 // What the arrays hold is in docs/file_format.md.
 
+#include "core/byte_order.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "vdb_shell/write/text_out.h"
 #include "write/base64.h"
 #include "write/tet_formats.h"
 
 #include <cstdint>
-#include <cstring>
 #include <string>
 
 namespace vdb_shell
@@ -26,10 +26,7 @@ constexpr std::uint8_t kVtkTetra = 10;
 /// machine.
 const char* byte_order()
 {
-    const std::uint16_t one = 1;
-    unsigned char first = 0;
-    std::memcpy(&first, &one, 1);
-    return first == 1 ? "LittleEndian" : "BigEndian";
+    return little_endian_machine() ? "LittleEndian" : "BigEndian";
 }
 
 template <typename T>

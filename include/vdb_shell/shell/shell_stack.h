@@ -46,6 +46,10 @@ ShellStack one_layer(PrismShell shell, PrismSplit split);
 /// outermost where all layers lie above the skin.
 PrismShell hull_of(const ShellStack& stack);
 
+/// Of the whole pillar, along its layers: the sum over them and not the distance of the two ends,
+/// for on both sides of the skin the pillar may have a bend.
+double pillar_length(const ShellStack& stack, std::size_t vertex);
+
 /// As make_tets of one shell, layer after layer. A point for each surface and vertex, in that
 /// order; where a pillar is pinned in a layer, its point is that of the surface above
 /// (TetMesh::layer is the first of the surfaces that share it). Tets of neighbouring layers meet
