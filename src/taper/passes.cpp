@@ -45,6 +45,38 @@ void add_pair(const TaperState& s, int p, int q, std::vector<Pair>& pairs)
         pairs.push_back({distance(s, p, q), std::min(p, q), std::max(p, q)});
 }
 
+/// What a node has become part of in a pass of merges. Pairs keep the names of before it.
+class NamesInPass
+{
+public:
+    explicit NamesInPass(const TaperState& s) : s_(s), now_(s.point.size())
+    {
+        std::iota(now_.begin(), now_.end(), 0);
+    }
+    void join(int from, int to) { now_[std::size_t(from)] = to; }
+    /// The nodes that the pair is now: the one that changes its name, and the one that keeps it. Of
+    /// two that can move the one with fewer places changes it.
+    std::array<int, 2> ends_of(const Pair& pair) const
+    {
+        const int from = name_of(pair.high), to = name_of(pair.low);
+        if (s_.fixed(from) || (!s_.fixed(to) && places_of(from) > places_of(to)))
+            return {to, from};
+        return {from, to};
+    }
+
+private:
+    int name_of(int n) const
+    {
+        while (now_[std::size_t(n)] != n)
+            n = now_[std::size_t(n)];
+        return n;
+    }
+    std::size_t places_of(int n) const { return s_.places[std::size_t(n)].size(); }
+
+    const TaperState& s_;
+    std::vector<int> now_;
+};
+
 /// To the nearest neighbour on the innermost surface.
 double nearest_neighbour(const TaperState& s, int n)
 {
@@ -156,46 +188,31 @@ std::size_t Passes::merge(int percent)
 {
     TaperState& s = changes_.state();
     const std::uint32_t last = std::exchange(last_.merge, changes_.now());
-    // What a node has become part of in this pass. Pairs keep the names of before it.
-    std::vector<int> now(s.point.size());
-    std::iota(now.begin(), now.end(), 0);
-    const auto find = [&](int n) {
-        while (now[std::size_t(n)] != n)
-            n = now[std::size_t(n)];
-        return n;
-    };
-    // Of two that can move the one with fewer places changes its name.
-    const auto ends_of = [&](const Pair& pair) {
-        int from = find(pair.high), to = find(pair.low);
-        if (s.fixed(from) ||
-            (!s.fixed(to) && s.places[std::size_t(from)].size() > s.places[std::size_t(to)].size()))
-            std::swap(from, to);
-        return std::array{from, to};
-    };
+    NamesInPass names(s);
     std::vector<Pair> pairs = pairs_to_merge(s, options_);
     pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                                [&](const Pair& p) { return !changed_since(p.low, p.high, last); }),
                 pairs.end());
     const auto joined = [&](int from, int to, bool made) {
         if (made)
-            now[std::size_t(from)] = to;
+            names.join(from, to);
         return made;
     };
     const std::size_t made = in_blocks(
         pairs, percent,
         [&](Trials& trials, const Pair& pair) {
-            const auto [from, to] = ends_of(pair);
+            const auto [from, to] = names.ends_of(pair);
             return from != to && !s.fixed(from) && trials.merge(from, to);
         },
         [&](const Pair& pair, std::uint32_t then) {
-            const auto [from, to] = ends_of(pair);
+            const auto [from, to] = names.ends_of(pair);
             return changed_since(from, to, then);
         },
         [&](const Pair&, Trial& trial) {
             return joined(trial.change.from, trial.change.to, changes_.make_merge(trial));
         },
         [&](const Pair& pair) {
-            const auto [from, to] = ends_of(pair);
+            const auto [from, to] = names.ends_of(pair);
             return from != to && !s.fixed(from) && joined(from, to, changes_.merge(from, to));
         });
     return renewed_after(made);

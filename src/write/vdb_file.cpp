@@ -282,23 +282,21 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
         [&] { metadata = shell_metadata(path, file, options.points); },
         [&] { made = make_point_grids(file.stack, file.tets, file.core_feet, file.rest); });
     openvdb::GridPtrVec volumes = volumes_of(file, options.half);
-    openvdb::GridPtrVec points{std::move(made.points), std::move(made.prisms),
-                               std::move(made.tets)};
+    openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
     if (!file.core.empty()) {
         const CoreGrids core =
             make_core_grids(number_points(file.stack, file.tets), file.tets, file.core, file.rest);
-        points.push_back(core.points);
-        points.push_back(core.tets);
+        points.insert(points.end(), {core.points, core.tets});
     }
     if (!file.input.empty())
         points.push_back(make_input_points_grid(file.input));
     for (const GridBase::Ptr& grid : volumes)
         add_volume_metadata(*grid, metadata);
     // The grids of points were made for this call, so they may be changed in place.
-    for (const GridBase::Ptr& grid : points)
+    for (const GridBase::Ptr& grid : points) {
         put_in_place(*grid, file.placement.shift());
-    for (const GridBase::Ptr& grid : points)
         add_points_metadata(*grid, metadata);
+    }
 
     write_together(with, [&](OutputSet& set) {
         if (!beside)

@@ -215,23 +215,19 @@ fs::path points_file_of(const fs::path& path)
     return path.parent_path() / (path.stem().string() + ".points.vdb");
 }
 
-openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, PointPlacement points)
+namespace
 {
-    openvdb::MetaMap map;
-    ShellCounts counts = counts_of(file.stack, file.tets, file.core);
-    counts.posed = file.rest.posed();
-    map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
-    map.insertMeta(kSchemaKey, Int32Metadata(schema_for(counts)));
-    // The casts are safe: require_consistent has bounded these counts by int32, and it runs before
-    // this.
+
+/// How many there are of everything. The casts are safe: require_consistent has bounded these
+/// counts by int32, and it runs before this.
+void insert_counts(openvdb::MetaMap& map, const ShellCounts& counts)
+{
     map.insertMeta(kVerticesKey, Int32Metadata(std::int32_t(counts.vertices)));
     map.insertMeta(kPointsKey, Int32Metadata(std::int32_t(counts.points)));
     map.insertMeta(kTetPointsKey, Int32Metadata(std::int32_t(counts.tet_points)));
     map.insertMeta(kPrismsKey, Int32Metadata(std::int32_t(counts.prisms)));
     map.insertMeta(kTetsKey, Int32Metadata(std::int32_t(counts.tets)));
-    map.insertMeta(kRipplesKey, Int32Metadata(as_int32(ripples_of(file.stack))));
-    const bool layered = schema_for(counts) >= kLayeredSchema;
-    if (layered) {
+    if (schema_for(counts) >= kLayeredSchema) {
         map.insertMeta(kLayersKey, Int32Metadata(std::int32_t(counts.layers)));
         map.insertMeta(kSkinKey, Int32Metadata(std::int32_t(counts.skin)));
     }
@@ -244,19 +240,36 @@ openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, Poi
     }
     if (counts.posed)
         map.insertMeta(kPosedKey, Int32Metadata(1));
+}
+
+std::string grid_names(const ShellFile& file)
+{
+    return std::string(kGridNames) + (file.core.tets.empty() ? "" : kCoreGridNames) +
+           (file.input.empty() ? "" : " input_points") + (file.rest_volume ? " rest" : "") +
+           (file.velocity_volume ? " v" : "");
+}
+
+} // namespace
+
+openvdb::MetaMap shell_metadata(const fs::path& path, const ShellFile& file, PointPlacement points)
+{
+    openvdb::MetaMap map;
+    ShellCounts counts = counts_of(file.stack, file.tets, file.core);
+    counts.posed = file.rest.posed();
+    map.insertMeta(kCreatorKey, StringMetadata(creator_name()));
+    map.insertMeta(kSchemaKey, Int32Metadata(schema_for(counts)));
+    insert_counts(map, counts);
+    map.insertMeta(kRipplesKey, Int32Metadata(as_int32(ripples_of(file.stack))));
     if (!file.input.empty())
         map.insertMeta(kInputPointsKey, Int32Metadata(std::int32_t(file.input.points.size())));
     if (file.placement.moves()) {
         map.insertMeta(kOriginKey, openvdb::Vec3DMetadata(file.placement.origin));
         map.insertMeta(kUnitKey, openvdb::DoubleMetadata(file.placement.unit));
     }
+    const bool layered = schema_for(counts) >= kLayeredSchema;
     map.insertMeta(kOrientationKey, StringMetadata(layered ? kOrientationOfLayers : kOrientation));
     map.insertMeta(kChecksumKey, StringMetadata(checksum_of(file.stack, file.tets, file.core)));
-    map.insertMeta(
-        kGridsKey,
-        StringMetadata(std::string(kGridNames) + (counts.core_tets > 0 ? kCoreGridNames : "") +
-                       (file.input.empty() ? "" : " input_points") +
-                       (file.rest_volume ? " rest" : "") + (file.velocity_volume ? " v" : "")));
+    map.insertMeta(kGridsKey, StringMetadata(grid_names(file)));
     map.insertMeta(kPointsFileKey, StringMetadata(points == PointPlacement::beside
                                                       ? points_file_of(path).filename().string()
                                                       : std::string()));
