@@ -6,6 +6,7 @@
 #include "command/doctor_command.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/io/vdb_header.h"
 
@@ -13,6 +14,7 @@
 #include "command/help.h"
 #include "core/parallel.h"
 #include "fill/outside_program.h"
+#include "io/mesh_formats.h"
 
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
@@ -114,10 +116,7 @@ int print_file(std::ostream& out, const fs::path& path)
     const std::uintmax_t bytes = fs::file_size(path, none);
     if (none)
         throw ReadError(path.string() + ": " + none.message());
-    // The formats go by extensions in any case of letters.
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_case_extension(path);
     print_row(out, "file", path.string() + ", " + std::to_string(bytes) + " bytes");
     if (extension == ".vdb") {
         print_vdb(out, path);
@@ -129,12 +128,10 @@ int print_file(std::ostream& out, const fs::path& path)
                   "convert and check");
         return success;
     }
-    for (const char* known : {".obj", ".ply", ".off", ".stl"})
-        if (extension == known) {
-            print_row(out, "use",
-                      "inspect says what a shell of it needs; repair and build read it");
-            return success;
-        }
+    if (mesh_format_of(path)) {
+        print_row(out, "use", "inspect says what a shell of it needs; repair and build read it");
+        return success;
+    }
     print_row(out, "use", "no command reads the extension \"" + extension + "\"");
     // The status says what a command would say of the file.
     return read_error;

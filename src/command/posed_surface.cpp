@@ -29,12 +29,7 @@ ReadResult read_placed(const std::filesystem::path& path, InputFormat format,
     // Where the shell keeps digits of its own, so must the pose.
     options.recentre = placement.moves();
     ReadResult read = read_surface(path, options, format);
-    const Placement& own = read.report.placement;
-    // Through the file's coordinates in doubles: the digits that the two frames keep are not lost
-    // in between.
-    if (own.moves() || placement.moves())
-        for (Vec3s& p : read.mesh.points)
-            p = Vec3s((own.in_file(p) - placement.origin) / placement.unit);
+    bring_into(placement, read.report.placement, read.mesh.points);
     return read;
 }
 

@@ -3,16 +3,16 @@
 // Reads a mesh file: chooses the scan by the extension, reads the bytes, and hands the scan to the
 // last steps of all formats. With an origin or a unit to be chosen the bytes are scanned twice,
 // since the choice needs all coordinates before one of them is rounded; the first time every test
-// is made too, but for the limit on size. The extension decides, and not the first bytes, because
-// OBJ has no mark to be known by.
+// is made too, but for the limit on size.
 
 #include "vdb_shell/io/read_mesh.h"
 
 #include "io/coordinates.h"
 #include "io/file_scan.h"
-#include "vdb_shell/core/words.h"
+#include "io/mesh_formats.h"
 #include "vdb_shell/io/read_file.h"
 
+#include <optional>
 #include <utility>
 
 namespace vdb_shell
@@ -24,17 +24,20 @@ namespace fs = std::filesystem;
 
 Scan scan_for(const fs::path& path)
 {
-    const std::string extension = lower_case_extension(path);
-    if (extension == ".obj")
+    const std::optional<MeshFormat> format = mesh_format_of(path);
+    if (!format)
+        refuse(path.string(), no_mesh_format(path));
+    switch (*format) {
+    case MeshFormat::obj:
         return scan_obj;
-    if (extension == ".ply")
+    case MeshFormat::ply:
         return scan_ply;
-    if (extension == ".off")
+    case MeshFormat::off:
         return scan_off;
-    if (extension == ".stl")
-        return scan_stl;
-    refuse(path.string(), "the extension \"" + extension +
-                              "\" is none of the mesh formats .obj, .ply, .off, .stl");
+    case MeshFormat::stl:
+        break;
+    }
+    return scan_stl;
 }
 
 } // namespace

@@ -6,14 +6,15 @@
 // std::to_chars and std::to_string, since streams may put separators into large integers, and bits
 // are written byte by byte. The file appears whole or not at all (core/atomic_file.cpp).
 
+#include "io/mesh_formats.h"
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/core/words.h"
 #include "vdb_shell/io/read_mesh.h"
 
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <optional>
 #include <ostream>
 
 namespace vdb_shell
@@ -137,17 +138,15 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                 const Placement& placement, OutputSet* with)
 {
-    const std::string extension = lower_case_extension(path);
-    const auto write = extension == ".obj"   ? write_obj
-                       : extension == ".off" ? write_off
-                       : extension == ".ply" ? write_ply
-                       : extension == ".stl" ? write_stl
-                                             : nullptr;
-    if (!write)
-        throw InvalidOption(path.string() + ": the extension \"" + extension +
-                            "\" is none of the mesh formats .obj, .ply, .off, .stl");
+    const std::optional<MeshFormat> format = mesh_format_of(path);
+    if (!format)
+        throw InvalidOption(path.string() + ": " + no_mesh_format(path));
+    const auto write = *format == MeshFormat::obj   ? write_obj
+                       : *format == MeshFormat::off ? write_off
+                       : *format == MeshFormat::ply ? write_ply
+                                                    : write_stl;
     // Before the file is opened, so that what stands there stays.
-    if (extension == ".stl" && placement.moves())
+    if (*format == MeshFormat::stl && placement.moves())
         throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
                                             "object stands; write .obj, .off or .ply");
     write_stream_atomically(

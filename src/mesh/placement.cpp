@@ -36,4 +36,13 @@ Placement placement_for(const Bounds& box, bool recentre, bool rescale)
     return placement;
 }
 
+void bring_into(const Placement& placement, const Placement& own,
+                std::vector<openvdb::Vec3s>& points)
+{
+    if (!placement.moves() && !own.moves())
+        return;
+    for (openvdb::Vec3s& p : points)
+        p = openvdb::Vec3s((own.in_file(p) - placement.origin) / placement.unit);
+}
+
 } // namespace vdb_shell

@@ -3,6 +3,8 @@
 
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include <vector>
+
 namespace vdb_shell
 {
 
@@ -30,5 +32,11 @@ struct Placement {
 /// `rescale`: the unit is the largest power of two that is not over the longest side. A box without
 /// extent keeps unit and origin.
 Placement placement_for(const Bounds& box, bool recentre, bool rescale);
+
+/// Points of a mesh that stands as `own` says become those of one that stands as `placement` says.
+/// Through the file's coordinates in doubles: digits that the two frames keep are not lost in
+/// between. Where neither moves the points keep their bits.
+void bring_into(const Placement& placement, const Placement& own,
+                std::vector<openvdb::Vec3s>& points);
 
 } // namespace vdb_shell
