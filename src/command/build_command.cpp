@@ -9,6 +9,7 @@
 #include "command/build_command.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/options/section.h"
 
 #include "command/core_input.h"
@@ -52,7 +53,7 @@ void keep_voxel_size(ShellOptions& options, const Context& context)
 bool is_level_set(const BuildArguments& arguments)
 {
     const GridName source = split_grid_name(arguments.mesh.string());
-    return std::filesystem::path(source.file).extension() == ".vdb";
+    return lower_case_extension(source.file) == ".vdb";
 }
 
 /// Reads the triangles or the level set, and builds. `options` are left in the unit in which the
@@ -129,15 +130,6 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
         file.depth = shell_depth_grid(file.tets, result.report.field.voxel_size, interrupter);
     }
     return file;
-}
-
-/// Overlaps are looked for only where the certificate fails. Where there are none in the report,
-/// the whole shell is certified, and so is each tet.
-std::vector<std::uint8_t> certified_flags(const ShellResult& result)
-{
-    const std::optional<Overlaps>& overlaps = result.report.overlaps;
-    return overlaps ? overlaps->certified
-                    : std::vector<std::uint8_t>(result.tets.tets.size(), std::uint8_t(1));
 }
 
 /// Every file of the call, whichever option names it.
@@ -291,7 +283,8 @@ int run_build(const BuildArguments& arguments, Context& context)
         if (!arguments.remesh_map.empty())
             write_remesh_map(arguments.remesh_map, *result.remesh_map, &files);
         // Before to_file, which takes the tets out of the result.
-        const std::vector<std::uint8_t> certified = certified_flags(result);
+        const std::vector<std::uint8_t> certified =
+            certified_flags(result.report.overlaps, result.tets.tets.size());
         write_outputs(arguments.outputs, to_file(result, options, arguments.outputs, &interrupter),
                       certified, files);
     });

@@ -7,6 +7,7 @@
 #include "command/core_input.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/field/contour.h"
 #include "vdb_shell/field/given_level_set.h"
 
@@ -18,23 +19,6 @@
 
 namespace vdb_shell::command
 {
-namespace
-{
-
-using openvdb::Vec3d;
-using openvdb::Vec3s;
-
-/// A core is read in a frame of its own and brought into that of the surface by doubles, so that
-/// the digits of its file count as they do for the surface.
-void bring_into(const Placement& placement, const Placement& own, std::vector<Vec3s>& points)
-{
-    if (!placement.moves() && !own.moves())
-        return;
-    for (Vec3s& p : points)
-        p = Vec3s((own.in_file(p) - placement.origin) / placement.unit);
-}
-
-} // namespace
 
 void take_core_files(Option& option, std::vector<std::string>& files)
 {
@@ -71,7 +55,7 @@ std::vector<CoreMesh> read_cores(const std::vector<std::string>& files, const Re
                             ": there is no such file; --core takes free, stitched or a file");
         CoreMesh core{path.filename().string(), {}};
         Placement own;
-        if (path.extension() == ".vdb") {
+        if (lower_case_extension(path) == ".vdb") {
             // A level set has a transform of its own, in world space; so its placement is the one
             // that moves nothing.
             core.mesh = contour(*read_level_set(parts.file, parts.grid));
@@ -80,6 +64,8 @@ std::vector<CoreMesh> read_cores(const std::vector<std::string>& files, const Re
             own = read.report.placement;
             core.mesh = std::move(read.mesh);
         }
+        // A core is read in a frame of its own, so that the digits of its file count as they do for
+        // the surface.
         bring_into(placement, own, core.mesh.points);
         cores.push_back(std::move(core));
     }

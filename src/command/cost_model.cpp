@@ -8,6 +8,7 @@
 #include "command/cost_model.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/io/volume_file.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
@@ -98,9 +99,9 @@ double disk_of(const Outputs& outputs, const Size& size, const CostNumbers& vdb)
     const double tets = 3 * size.triangles * (1 + size.more_layers);
     double bytes = 0;
     for (const std::filesystem::path& path : outputs.paths)
-        bytes += path.extension() == ".vdb"
+        bytes += lower_case_extension(path) == ".vdb"
                      ? sum_of(vdb, size)
-                     : other_file(path.extension().string(), size.triangles, tets);
+                     : other_file(lower_case_extension(path), size.triangles, tets);
     return bytes;
 }
 
@@ -165,7 +166,7 @@ double CallCost::seconds(int threads) const
 CallCost estimate_build(const BuildArguments& arguments)
 {
     const std::filesystem::path file = split_grid_name(arguments.mesh.string()).file;
-    if (file.extension() == ".vdb")
+    if (lower_case_extension(file) == ".vdb")
         throw InvalidOption(arguments.mesh.string() +
                             ": is a level set; the model knows builds of triangles only");
     const ReadResult read = read_surface(arguments.mesh, arguments.read, arguments.format);

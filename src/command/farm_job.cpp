@@ -8,6 +8,7 @@
 #include "command/farm_job.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 
 #include "command/call.h"
 #include "command/frames.h"
@@ -28,8 +29,8 @@ namespace
 namespace fs = std::filesystem;
 
 /// Commands that make or test files, which is what farms are for.
-constexpr std::array<const char*, 6> kCommands{"build",   "pose",  "convert",
-                                               "inspect", "check", "repair"};
+constexpr std::array<const char*, 9> kCommands{"build",   "pose",    "volumes", "deform", "map",
+                                               "convert", "inspect", "check",   "repair"};
 
 bool is_flag(const std::string& word, const std::string& flag)
 {
@@ -58,9 +59,12 @@ std::vector<std::string> shared_words(const std::vector<std::string>& words)
 void require_for_farm(const Call& call, const std::vector<std::string>& words)
 {
     const std::string name = call.name();
-    if (std::find(kCommands.begin(), kCommands.end(), name) == kCommands.end())
-        throw InvalidOption("`" + name + "` is not for a farm; those are build, pose, convert, " +
-                            "inspect, check, repair");
+    if (std::find(kCommands.begin(), kCommands.end(), name) == kCommands.end()) {
+        std::string known;
+        for (const char* command : kCommands)
+            known += std::string(known.empty() ? "" : ", ") + command;
+        throw InvalidOption("`" + name + "` is not for a farm; those are " + known);
+    }
     const GlobalArguments& global = call.global();
     if (global.dry_run)
         throw InvalidOption("--dry-run stands before --, beside farm");
@@ -77,7 +81,7 @@ void require_for_farm(const Call& call, const std::vector<std::string>& words)
 bool takes_voxels_of_first(const Call& call, const FilePlan& plan)
 {
     const bool level_set =
-        !plan.inputs().empty() && plan.inputs().front().path.extension() == ".vdb";
+        !plan.inputs().empty() && lower_case_extension(plan.inputs().front().path) == ".vdb";
     return call.name() == "build" && !level_set && call.value_of("--voxel-size").empty();
 }
 

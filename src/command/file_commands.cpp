@@ -127,6 +127,13 @@ int run_info(const FileArguments& arguments, Context& context)
     return success;
 }
 
+void add_points_file(FilePlan& plan, const std::filesystem::path& shell)
+{
+    // Houdini geometry has all of the shell in itself.
+    if (!houdini::has_geometry_extension(shell))
+        plan.add_input(read_shell_info(shell).points_at);
+}
+
 FilePlan plan_convert(const FileArguments& arguments)
 {
     FilePlan plan(existing_files(arguments.outputs.no_clobber));
@@ -139,9 +146,7 @@ int run_convert(const FileArguments& arguments)
 {
     // Made anew, for the points may stand in a file that is not known before this one is opened.
     FilePlan plan = plan_convert(arguments);
-    // The file says itself where its points are, if they are not in it.
-    if (!houdini::has_geometry_extension(arguments.file))
-        plan.add_input(read_shell_info(arguments.file).points_at);
+    add_points_file(plan, arguments.file);
     const ShellFile file = read_shell(arguments.file);
     // The flags of certified tets are not taken from the file's report: they are what the tets
     // themselves show, by the exact test of overlaps.

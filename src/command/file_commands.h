@@ -30,6 +30,10 @@ BoundOptions add_check_command(CLI::App& app, FileArguments& arguments);
 /// A .vdb or Houdini geometry; the grids are null when the file has none.
 ShellFile read_shell(const std::filesystem::path& path);
 
+/// Adds the file of the shell's points where they are not in its own, which only that one says.
+/// Throws what opening it throws.
+void add_points_file(FilePlan& plan, const std::filesystem::path& shell);
+
 FilePlan plan_convert(const FileArguments& arguments);
 
 int run_info(const FileArguments& arguments, Context& context);

@@ -5,7 +5,6 @@
 #include "command/frame_files.h"
 
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/houdini/geometry_file.h"
 
 #include "command/file_commands.h"
 #include "command/signals.h"
@@ -51,10 +50,8 @@ void for_each_frame(const FrameFiles& arguments, FilePlan plan, Context& context
         if (caught_signal())
             throw Cancelled();
         const std::filesystem::path& file = arguments.files[i];
-        // The file says itself where its points are, if they are not in it.
-        if (!houdini::has_geometry_extension(file))
-            // Throws where the output would replace it.
-            plan.add_input(read_shell_info(file).points_at);
+        // Throws where the output would replace it.
+        add_points_file(plan, file);
         use(i, read_shell(file));
     }
 }

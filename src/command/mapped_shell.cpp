@@ -22,9 +22,7 @@ namespace vdb_shell::command
 
 MappedShell map_shell(const std::filesystem::path& path, FilePlan& plan)
 {
-    // The file says itself where its points are, if they are not in it.
-    if (!houdini::has_geometry_extension(path))
-        plan.add_input(read_shell_info(path).points_at);
+    add_points_file(plan, path);
     MappedShell shell{path, read_shell(path), {}};
     // With the tets of a filled core, for a volume may lie there as well.
     shell.map =

@@ -8,6 +8,7 @@
 
 #include "command/outputs.h"
 
+#include "io/mesh_formats.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/words.h"
 #include "vdb_shell/houdini/geometry_file.h"
@@ -46,10 +47,7 @@ Kind kind_of(const fs::path& path)
     const std::vector<std::string>& tets = tet_file_extensions();
     if (std::find(tets.begin(), tets.end(), extension) != tets.end())
         return Kind::tets;
-    for (const char* surface : {".obj", ".ply", ".off", ".stl"})
-        if (extension == surface)
-            return Kind::surface;
-    return Kind::unknown;
+    return mesh_format_of(path) ? Kind::surface : Kind::unknown;
 }
 
 /// The .vdb to which a USD stage refers. The first one is taken, since all of them hold the same
@@ -66,18 +64,19 @@ fs::path first_vdb(const Outputs& outputs)
 /// together give them once.
 std::vector<fs::path> files_of(const fs::path& path, const Outputs& outputs)
 {
-    fs::path other = path;
     if (kind_of(path) == Kind::vdb && outputs.vdb.points == PointPlacement::beside)
         return {path, points_file_of(path)};
-    if (path.extension() == ".ele") {
-        other.replace_extension(".node");
-        // Then the other name writes the two, and this one nothing.
-        const bool both = std::count(outputs.paths.begin(), outputs.paths.end(), other) > 0;
-        return both ? std::vector<fs::path>{} : std::vector<fs::path>{path, other};
-    }
-    if (path.extension() == ".node")
-        return {path, other.replace_extension(".ele")};
-    return {path};
+    const std::string extension = lower_case_extension(path);
+    if (extension != ".ele" && extension != ".node")
+        return {path};
+    // In small letters, as write_tets has them: a plan that has "A.ELE" would not see "A.ele".
+    const fs::path ele = fs::path(path).replace_extension(".ele"),
+                   node = fs::path(path).replace_extension(".node");
+    if (extension == ".node")
+        return {node, ele};
+    // Where both are named, the other name writes the two, and this one nothing.
+    const bool both = std::count(outputs.paths.begin(), outputs.paths.end(), node) > 0;
+    return both ? std::vector<fs::path>{} : std::vector<fs::path>{ele, node};
 }
 
 /// The shell and what fills it, as one mesh of tets; flags of the core's are all set, as a core is
@@ -152,6 +151,11 @@ bool wants_flags(const Outputs& outputs)
 {
     return std::any_of(outputs.paths.begin(), outputs.paths.end(),
                        [](const fs::path& path) { return kind_of(path) == Kind::tets; });
+}
+
+std::vector<std::uint8_t> certified_flags(const std::optional<Overlaps>& overlaps, std::size_t tets)
+{
+    return overlaps ? overlaps->certified : std::vector<std::uint8_t>(tets, 1);
 }
 
 void write_outputs(const Outputs& outputs, const ShellFile& file,

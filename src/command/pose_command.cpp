@@ -8,7 +8,6 @@
 #include "command/pose_command.h"
 
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/pipeline.h"
 
 #include "command/exit_code.h"
@@ -145,12 +144,6 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
     return posed;
 }
 
-std::vector<std::uint8_t> certified_flags(const PosedShell& posed)
-{
-    return posed.report.overlaps ? posed.report.overlaps->certified
-                                 : std::vector<std::uint8_t>(posed.tets.tets.size(), 1);
-}
-
 /// Where the skin crosses itself parts of the shell have to overlap: no fault of the shell's, if
 /// every tet is positive.
 int status_of_pose(const ShellReport& report, const Context& context)
@@ -205,9 +198,7 @@ FilePlan plan_pose(const PoseArguments& arguments)
 int run_pose(const PoseArguments& arguments, Context& context)
 {
     FilePlan plan = plan_pose(arguments);
-    // The file says itself where its points are, if they are not in it.
-    if (!houdini::has_geometry_extension(arguments.shell))
-        plan.add_input(read_shell_info(arguments.shell).points_at);
+    add_points_file(plan, arguments.shell);
     SignalInterrupter interrupter(context);
     const std::shared_ptr<const PreparedShell> prepared = prepare(arguments.shell, context);
     const ShellFile& rest = prepared->file;
@@ -217,7 +208,8 @@ int run_pose(const PoseArguments& arguments, Context& context)
         throw InvalidOption(arguments.shell.string() +
                             ": it has no level set, whose voxels a .vdb would have; pose the .vdb");
     PosedShell posed = posed_shell(arguments, *prepared, context, &interrupter);
-    const std::vector<std::uint8_t> certified = certified_flags(posed);
+    const std::vector<std::uint8_t> certified =
+        certified_flags(posed.report.overlaps, posed.tets.tets.size());
     // A copy, for the shell is moved into its file below, and the report outlives it.
     ShellReport report = posed.report;
     OutputSet files(existing_files(arguments.outputs.no_clobber));

@@ -9,6 +9,7 @@
 #include "core/temporary_file.h"
 #include "field/map_values.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 #include "vdb_shell/houdini/polygon_mesh.h"
 
 #include "command/file_plan.h"
@@ -62,7 +63,7 @@ GridName split_grid_name(const std::string& name)
 {
     // The last one counts, as a folder may have such a name too. A colon alone would not do: names
     // of files may contain it.
-    const std::size_t colon = name.rfind(".vdb:");
+    const std::size_t colon = lower_case(name).rfind(".vdb:");
     if (colon == std::string::npos)
         return {name, ""};
     constexpr std::size_t kExtension = 4; // ".vdb"

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 
@@ -71,6 +73,14 @@ TEST_F(Estimate, MoreWorkCostsMore)
                   .get<double>(),
               plain);
     EXPECT_EQ(base.at("disk_bytes"), 0) << "nothing would be written";
+    for (const char* extension : {".vdb", ".vtu", ".obj"}) {
+        std::string capitals = extension;
+        std::transform(capitals.begin(), capitals.end(), capitals.begin(),
+                       [](unsigned char c) { return char(std::toupper(c)); });
+        const json bytes = of(sphere + " -o " + file("t") + extension).at("disk_bytes");
+        EXPECT_GT(bytes, 0);
+        EXPECT_EQ(of(sphere + " -o " + file("T") + capitals).at("disk_bytes"), bytes);
+    }
     EXPECT_EQ(of(sphere + " --subdivide 2").at("triangles"), 20 * 64 * 16);
     // Lengths of a surface in a unit of its own are in that of its file.
     const std::string small = mesh_file("small.obj", icosphere(1e-3, 3));

@@ -57,6 +57,28 @@ protected:
     }
 
     bool there(const std::string& name) { return fs::exists(folder / name); }
+
+    /// The tasks of a call with frames 1 to 3 leave the files that the call leaves: OUTPUT1.vdb ...
+    void expect_same_by_tasks(const std::string& call, const std::string& output)
+    {
+        const auto of_frame = [&](int frame) {
+            return folder / (output + std::to_string(frame) + ".vdb");
+        };
+        ASSERT_EQ(run(call).status, ExitCode::success) << call;
+        std::vector<std::string> bytes;
+        for (int frame = 1; frame <= 3; ++frame) {
+            bytes.push_back(read_bytes(of_frame(frame)));
+            fs::remove(of_frame(frame));
+        }
+        const Outcome written = run(farm() + call);
+        ASSERT_EQ(written.status, ExitCode::success) << written.err;
+        for (const char* task : {"task 0", "task 1"})
+            EXPECT_EQ(job(task).status, ExitCode::success) << task;
+        EXPECT_EQ(job("join").status, ExitCode::success);
+        for (int frame = 1; frame <= 3; ++frame)
+            EXPECT_EQ(read_bytes(of_frame(frame)), bytes[std::size_t(frame - 1)]) << call;
+        fs::remove_all(folder / "j.tasks");
+    }
 };
 
 TEST_F(Farm, TasksDoWhatOneCallDoes)
@@ -87,6 +109,32 @@ TEST_F(Farm, TasksDoWhatOneCallDoes)
                   bytes[std::size_t(frame - 1)]);
     const Outcome again = run(build("1-5", "--resume --manifest " + file("whole.json")));
     EXPECT_NE(again.err.find("left out: 5"), std::string::npos) << again.err;
+}
+
+TEST_F(Farm, VolumesGoThroughPosesThere)
+{
+    TriangleMesh mesh = icosphere(1.0, 2);
+    ASSERT_EQ(
+        run("build " + mesh_file("s.obj", mesh) + kCoarse + "-q -o " + file("rest.vdb")).status,
+        ExitCode::success);
+    for (int frame = 1; frame <= 3; ++frame) {
+        const std::string number = std::to_string(frame);
+        for (openvdb::Vec3s& p : mesh.points)
+            p[0] *= 1.1F;
+        ASSERT_EQ(run("pose " + file("rest.vdb") + " " + mesh_file("s" + number + ".obj", mesh) +
+                      " -q -o " + file("p." + number + ".vdb"))
+                      .status,
+                  ExitCode::success);
+    }
+    const std::string deform = "deform " + file("rest.vdb") + " --grid depth --posed " +
+                               file("p.#.vdb") + " -q --frames 1-3 -o " + file("d.#.vdb");
+    const std::string volumes =
+        "volumes " + file("p.#.vdb") + " --volumes depth,rest --frames 1-3 -o " + file("v.#.vdb");
+    expect_same_by_tasks(deform, "d.");
+    expect_same_by_tasks(volumes, "v.");
+    // The model knows deform, so the job has its limits.
+    ASSERT_EQ(run(farm() + deform).status, ExitCode::success);
+    EXPECT_NE(read_bytes(folder / "j.sbatch").find("#SBATCH --mem="), std::string::npos);
 }
 
 TEST_F(Farm, AJoinTellsWhatFailedAndWhatIsGone)

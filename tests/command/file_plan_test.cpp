@@ -95,6 +95,21 @@ TEST_F(FilePlans, BothFilesOfTetGenAreWrittenOnce)
     EXPECT_TRUE(fs::exists(folder / "t.node") && fs::exists(folder / "t.ele"));
 }
 
+TEST_F(FilePlans, ExtensionsAreTheSameInCapitals)
+{
+    EXPECT_EQ(run(build + out("S.VDB") + out("t.ELE")).status, ExitCode::success);
+    EXPECT_TRUE(fs::exists(folder / "t.node") && fs::exists(folder / "t.ele"));
+    // The files that are written are those that were planned.
+    expect_refusal(build + "--no-clobber" + out("t.ELE"), ExitCode::write_error,
+                   {"t.ele", "exists"});
+    const std::string level_set = "build " + file("S.VDB") + kCoarse + "-q ";
+    EXPECT_EQ(run(level_set + out("u.vtu")).status, ExitCode::success);
+    EXPECT_EQ(run("build " + file("S.VDB") + ":surface" + kCoarse + "-q " + out("v.vtu")).status,
+              ExitCode::success);
+    EXPECT_EQ(read_bytes(folder / "u.vtu"), read_bytes(folder / "v.vtu"));
+    expect_refusal("estimate " + file("S.VDB"), ExitCode::usage_error, {"level set"});
+}
+
 TEST_F(FilePlans, AnOutputThatCannotBeWrittenLeavesTheOthersAsTheyWere)
 {
     write_bytes(folder / "a.vtu", "old");
