@@ -23,20 +23,29 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Poses were tuned with the first half; the others were only measured.
 TUNING = ["creature", "artist/rocker-arm", "paper/knot"]
 JUDGING = ["paper/teapot", "paper/jack", "paper/dragon_small_resolution", "paper/bunny_low_resolution", "artist/fandisk",
-           "artist/cheburashka"]
+           "artist/cheburashka", "scans/human_neutral"]
+# What `repair` is told where a surface cannot have a shell as it is: this one is open and crosses itself.
+REPAIRED = {"scans/human_neutral": ["--cut-crossings"]}
 
 SHELLS = {"untapered": [], "tapered": ["--taper"], "for simulation": ["--for", "simulation"]}
 
 
-def mesh_of(name, meshes):
-    return ROOT / "samples/meshes/creature.obj" if name == "creature" else meshes / f"{name}.obj"
+def mesh_of(name, options):
+    """The surface, repaired into the folder if it has to be."""
+    mesh = ROOT / "samples/meshes/creature.obj" if name == "creature" else options.meshes / f"{name}.obj"
+    if name not in REPAIRED:
+        return mesh
+    repaired = options.folder / mesh.name
+    subprocess.run([options.build / "src/vdb_shell", "repair", mesh, *REPAIRED[name], "-o", repaired], check=True,
+                   stdout=subprocess.DEVNULL)
+    return repaired
 
 
 def sequence(options, name, motion, frames, kind):
     """The frames' figures, and the seconds of the build."""
     stem = name.split("/")[-1]
     folder = options.folder / f"{stem}-{motion}"
-    mesh, shell, report = mesh_of(name, options.meshes), options.folder / f"{stem}.vdb", options.folder / f"{stem}.json"
+    mesh, shell, report = mesh_of(name, options), options.folder / f"{stem}.vdb", options.folder / f"{stem}.json"
     child = subprocess.Popen([options.build / "src/vdb_shell", "build", "-q", mesh, "-o", shell, "--report", report, *SHELLS[kind]])
     # wait4 and not wait: only it tells the resources of this child alone.
     _, status, usage = os.wait4(child.pid, 0)

@@ -138,6 +138,68 @@ void bring_back_together(GrowState& s, const std::vector<int>& away, const std::
     }
 }
 
+/// What all rounds share.
+struct Improving {
+    const Parts& parts;
+    const SkinSide& side;
+    double most_distortion;
+};
+
+/// By vertex, whether it stays: pinned, or near where it was carried to with nothing but sound tets
+/// around it.
+std::vector<std::uint8_t> at_rest(const Improving& job, const GrowState& s, const PoseState& state)
+{
+    const Parts& parts = job.parts;
+    std::vector<std::uint8_t> sound(parts.all.size());
+    for_each_index(sound.size(), [&](std::size_t t) {
+        sound[t] = distortion(parts, state, t) <= job.most_distortion;
+    });
+    const auto all_sound = [&](std::uint32_t point) {
+        return std::all_of(parts.incident.begin() + parts.first[point],
+                           parts.incident.begin() + parts.first[point + 1],
+                           [&](std::uint32_t t) { return sound[t] != 0; });
+    };
+    std::vector<std::uint8_t> stays(s.pinned.size());
+    for_each_index(stays.size(), [&](std::size_t v) {
+        const std::uint32_t point = point_at(parts, job.side.end, v);
+        stays[v] = s.pinned[v] || (near_carried(parts, state, point) && all_sound(point));
+    });
+    return stays;
+}
+
+/// The same of a vertex alone, by the energy of its point.
+bool rests(const Improving& job, const PoseState& state, std::size_t v)
+{
+    const std::uint32_t point = point_at(job.parts, job.side.end, v);
+    return near_carried(job.parts, state, point) &&
+           PointEnergy(job.parts, state, point, job.most_distortion).sound();
+}
+
+/// Sweeps of steps between the planes; gives back which vertices have moved.
+std::vector<std::uint8_t> move_between(const growth::SeparatingPlanes& planes, const Improving& job,
+                                       const std::vector<std::uint8_t>& inactive, GrowState& s,
+                                       PoseState& state)
+{
+    std::vector<std::uint8_t> moved(inactive.size(), 0), asleep = inactive;
+    for (int i = 0; i < kSweepsOfPass; ++i) {
+        std::vector<std::uint8_t> now(inactive.size(), 0);
+        growth::sweep(s, planes, asleep, [&](int v, Vec3d& x) {
+            const std::uint32_t point = point_at(job.parts, job.side.end, std::size_t(v));
+            const PointEnergy energy(job.parts, state, point, job.most_distortion);
+            if ((energy.sound() && near_carried(job.parts, state, point)) ||
+                !propose(s, planes, v, energy, x))
+                return false;
+            state.place[point] = x;
+            now[v] = moved[v] = 1;
+            return true;
+        });
+        // The others would be refused again.
+        for_each_index(asleep.size(),
+                       [&](std::size_t v) { asleep[v] = inactive[v] || !beside(s, now, int(v)); });
+    }
+    return moved;
+}
+
 } // namespace
 
 void bring_back(const Parts& parts, const SkinSide& side, const std::vector<std::uint8_t>& failed,
@@ -183,55 +245,21 @@ void bring_back(const Parts& parts, const SkinSide& side, const std::vector<std:
 void improve_pose(const Parts& parts, const SkinSide& side, const PoseOptions& options,
                   GrowState& s, PoseState& state, PoseReport& report, const StageProgress& progress)
 {
+    const Improving job{parts, side, options.most_distortion};
     growth::SeparatingPlanes planes;
-    std::vector<std::uint8_t> sound(parts.all.size());
-    for_each_index(sound.size(), [&](std::size_t t) {
-        sound[t] = distortion(parts, state, t) <= options.most_distortion;
-    });
-    const auto all_sound = [&](std::uint32_t point) {
-        return std::all_of(parts.incident.begin() + parts.first[point],
-                           parts.incident.begin() + parts.first[point + 1],
-                           [&](std::uint32_t t) { return sound[t] != 0; });
-    };
-    const auto content = [&](std::size_t v) {
-        const std::uint32_t point = point_at(parts, side.end, v);
-        return near_carried(parts, state, point) &&
-               PointEnergy(parts, state, point, options.most_distortion).sound();
-    };
-    std::vector<std::uint8_t> inactive(s.pinned.size());
-    for_each_index(inactive.size(), [&](std::size_t v) {
-        const std::uint32_t point = point_at(parts, side.end, v);
-        inactive[v] = s.pinned[v] || (near_carried(parts, state, point) && all_sound(point));
-    });
+    std::vector<std::uint8_t> inactive = at_rest(job, s, state);
     for (int round = 0; round < options.rounds; ++round) {
         progress.stop_if_interrupted(100 * round / options.rounds);
         // What does not move needs no room.
         for (int v = 0; v < s.mesh->vertices; ++v)
             s.trust_radius[v] = inactive[v] ? 0 : kRadius * growth::mean_edge(*s.mesh, s.b, v);
         growth::separate_triangles(s, inactive, planes, growth::TreeUpdate::refit);
-        std::vector<std::uint8_t> moved(inactive.size(), 0), asleep = inactive;
-        for (int i = 0; i < kSweepsOfPass; ++i) {
-            std::vector<std::uint8_t> now(inactive.size(), 0);
-            growth::sweep(s, planes, asleep, [&](int v, Vec3d& x) {
-                const std::uint32_t point = point_at(parts, side.end, std::size_t(v));
-                const PointEnergy energy(parts, state, point, options.most_distortion);
-                if ((energy.sound() && near_carried(parts, state, point)) ||
-                    !propose(s, planes, v, energy, x))
-                    return false;
-                state.place[point] = x;
-                now[v] = moved[v] = 1;
-                return true;
-            });
-            // The others would be refused again.
-            for_each_index(asleep.size(), [&](std::size_t v) {
-                asleep[v] = inactive[v] || !beside(s, now, int(v));
-            });
-        }
+        const std::vector<std::uint8_t> moved = move_between(planes, job, inactive, s, state);
         ++report.rounds;
         if (std::find(moved.begin(), moved.end(), 1) == moved.end())
             break;
         for_each_index(inactive.size(), [&](std::size_t v) {
-            inactive[v] = s.pinned[v] || !beside(s, moved, int(v)) || content(v);
+            inactive[v] = s.pinned[v] || !beside(s, moved, int(v)) || rests(job, state, v);
         });
     }
 }

@@ -16,6 +16,7 @@
 #include "mesh/boundary_loops.h"
 #include "repair/fill_patch.h"
 #include "repair/hole_walk.h"
+#include "repair/surroundings.h"
 #include "repair/working_surface.h"
 
 #include <algorithm>
@@ -30,91 +31,6 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3I;
-
-BoxTree tree_over(std::vector<FloatBox> boxes)
-{
-    BoxTree tree;
-    tree.build(std::move(boxes));
-    return tree;
-}
-
-/// The surface with the fills made so far: trees over its triangles, and the triangles at each
-/// point of a rim. A fill is a tree of its own until there are as many triangles in the trees
-/// behind; they are made one then. So each triangle is put into a tree a logarithm of times, and
-/// there are no more trees than that, however many holes there are.
-class Surroundings
-{
-public:
-    Surroundings(const TriangleMesh& mesh, const std::vector<Hole>& holes)
-        : mesh_(mesh), on_rim_(mesh.points.size()), around_(mesh.points.size())
-    {
-        for (const Hole& hole : holes)
-            for (const std::uint32_t point : hole.points)
-                on_rim_[point] = 1;
-        add_from(0);
-    }
-
-    /// Takes note of the triangles that were appended since.
-    void update()
-    {
-        const std::size_t known = parts_.empty() ? 0 : parts_.back().end;
-        if (known < mesh_.triangles.size())
-            add_from(known);
-    }
-
-    const std::vector<std::uint32_t>& around(std::uint32_t point) const { return around_[point]; }
-
-    /// Each triangle that has a part near one of these boxes, once, until visit(t) returns false.
-    template <typename Visit>
-    void for_each_near(const std::vector<FloatBox>& boxes, const Visit& visit)
-    {
-        ++search_;
-        seen_.resize(mesh_.triangles.size(), 0);
-        bool on = true;
-        for (const FloatBox& box : boxes)
-            for (auto part = parts_.begin(); on && part != parts_.end(); ++part)
-                part->tree.for_each_overlap_while(box, [&](int i) {
-                    const std::size_t t = part->begin + part->triangle[std::size_t(i)];
-                    if (std::exchange(seen_[t], search_) != search_)
-                        on = visit(t);
-                    return on;
-                });
-    }
-
-private:
-    struct Part {
-        std::size_t begin, end;
-        BoxTree tree; ///< of parts of triangles: needles lie in each other's boxes
-        std::vector<std::uint32_t> triangle; ///< of each, from begin
-    };
-
-    void add_from(std::size_t begin)
-    {
-        const std::size_t end = mesh_.triangles.size();
-        for (std::size_t t = begin; t < end; ++t)
-            for (int k = 0; k < 3; ++k) {
-                const std::uint32_t point = mesh_.triangles[t][k];
-                // Points of fills are on no rim.
-                if (point < on_rim_.size() && on_rim_[point])
-                    around_[point].push_back(static_cast<std::uint32_t>(t));
-            }
-        while (!parts_.empty() && parts_.back().end - parts_.back().begin <= end - begin) {
-            begin = parts_.back().begin;
-            parts_.pop_back();
-        }
-        PartBoxes boxes = part_boxes(
-            mesh_.points, {mesh_.triangles.begin() + std::ptrdiff_t(begin), mesh_.triangles.end()});
-        parts_.push_back(
-            {begin, end, tree_over(std::move(boxes.boxes)), std::move(boxes.triangle)});
-    }
-
-    const TriangleMesh& mesh_;
-    std::vector<char> on_rim_;
-    std::vector<std::vector<std::uint32_t>> around_; ///< by point, those of rims only
-    std::vector<Part> parts_;
-    std::vector<std::uint32_t> seen_; ///< by triangle: the last search that came to it
-    std::uint32_t search_ = 0;
-};
 
 /// What the fill of a hole has to know of the surface around it. The surface has the earlier fills
 /// in it, so an edge that one of them runs between two points of this rim counts as taken.
@@ -188,7 +104,8 @@ public:
         const std::vector<FloatBox> boxes =
             triangle_boxes(mesh.points, {mesh.triangles.begin() + std::ptrdiff_t(triangles_),
                                          mesh.triangles.end()});
-        const BoxTree fresh = tree_over(boxes);
+        BoxTree fresh;
+        fresh.build(boxes);
         std::size_t crossings = 0;
         for (std::size_t t = triangles_; t < mesh.triangles.size() && crossings < enough; ++t) {
             const Vec3I& mine = mesh.triangles[t];
