@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace vdb_shell
@@ -89,16 +90,46 @@ void tell_tets(const Parts& parts, const PoseState& state, const std::vector<Vec
         report.moved_points += Vec3s(state.place[p]) != Vec3s(state.carried[p]);
 }
 
+/// Where a place without a tet goes: on the skin if it is there at rest, for it is pinned; else as
+/// the skin carries it, as where a layer is nothing but a point under a small component. So it
+/// stays apart from what it is apart from at rest, and no tet comes or goes by it.
+class PlacesWithoutTets
+{
+public:
+    PlacesWithoutTets(const Parts& parts, const std::vector<Vec3s>& skin)
+        : parts_(parts), skin_(skin)
+    {
+    }
+
+    Vec3s at(std::size_t place)
+    {
+        const std::size_t v = place % skin_.size(), surface = place / skin_.size();
+        const Vec3s& rest = parts_.stack.surface(surface)[v];
+        if (rest == parts_.stack.surface(parts_.stack.skin)[v])
+            return skin_[v];
+        if (!frame_)
+            frame_ = parts_.motion.frame(skin_);
+        return Vec3s(parts_.motion.carry(*frame_, Vec3d(rest),
+                                         surface < parts_.stack.skin ? SkinMotion::Side::outside
+                                                                     : SkinMotion::Side::inside));
+    }
+
+private:
+    const Parts& parts_;
+    const std::vector<Vec3s>& skin_;
+    std::optional<SkinMotion::Frame> frame_; ///< most shells have no such place
+};
+
 /// The rest shell with other points. Places that share a point get the same.
 void put_points(const Parts& parts, const std::vector<Vec3s>& points,
                 const std::vector<Vec3s>& skin, PoseResult& result)
 {
     result.stack = parts.stack;
     const std::size_t vertices = skin.size();
+    PlacesWithoutTets others(parts, skin);
     const auto at = [&](std::size_t place) {
         const std::uint32_t point = parts.point_of_place[parts.first_place[place]];
-        // A vertex without a tet is pinned, so it is where the skin is.
-        return point == Parts::kFree ? skin[place % vertices] : points[point];
+        return point == Parts::kFree ? others.at(place) : points[point];
     };
     for (std::size_t k = 0; k < result.stack.layers.size(); ++k) {
         PrismShell& layer = result.stack.layers[k];

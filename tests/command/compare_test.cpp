@@ -37,8 +37,8 @@ TEST_F(Compare, SaysWhatDiffersAndDrawsBoth)
     EXPECT_NE(text.out.find("outer points in the same places"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find("thickness: null, 0.25"), std::string::npos) << text.out;
     EXPECT_EQ(read_bytes(file("ab.png")).substr(1, 3), "PNG");
-    const Outcome json = run("compare --json " + a + " " + a);
-    EXPECT_EQ(nlohmann::json::parse(json.out)["same_bits"], true);
+    const Outcome same = run("compare --json " + a + " " + a);
+    EXPECT_EQ(nlohmann::json::parse(same.out)["same_bits"], true);
 }
 
 TEST_F(Compare, RefusesWhatItCannotReadOrDraw)

@@ -142,6 +142,38 @@ TEST(PoseShell, PointsOfATaperedShellToWhichTheSkinLeavesNoPlaceAreCounted)
     EXPECT_GT(pose.inverted, 0U);
 }
 
+/// A box of which each triangle has one tet, with a second layer that is a point elsewhere and has
+/// none.
+ShellStack with_a_layer_of_one_point(const TriangleMesh& box)
+{
+    ShellOptions options;
+    options.taper.wanted = true;
+    options.taper.core = CoreSurface::stitched;
+    options.taper.tet_cost = 32;
+    options.taper.void_cost = 80;
+    ShellStack stack = built(box, options);
+    const Points& centre = stack.layers.front().inner;
+    EXPECT_EQ(std::count(centre.begin(), centre.end(), centre.front()),
+              std::ptrdiff_t(centre.size()));
+    PrismShell below = stack.layers.front();
+    below.outer = centre;
+    below.inner.assign(centre.size(), centre.front() + Vec3s(0.1f, 0.2f, 0.05f));
+    stack.layers.push_back(below);
+    stack.splits.push_back(stack.splits.front());
+    return stack;
+}
+
+TEST(PoseShell, ALayerOfOnePointHasNoTetInAnyPose)
+{
+    const TriangleMesh box = test::box(Vec3d(0), Vec3d(1, 2, 3));
+    const ShellStack stack = with_a_layer_of_one_point(box);
+    const RestShell rest(stack);
+    EXPECT_EQ(rest.tets().tets.size(), box.triangles.size());
+    const PosedShell still = expect_certified(rest, box.points);
+    EXPECT_EQ(still.stack.surface(2), stack.surface(2));
+    expect_certified(rest, elbow_of(box, 0.3));
+}
+
 TEST(PoseShell, ThinLayersFarFromTheOriginSurviveTheirRounding)
 {
     const TriangleMesh rod = test::translated(test::round_rod(), {3000, 0, 0});

@@ -254,15 +254,15 @@ TEST(MapVolume, ALevelSetIsOneAgainWithItsSurfaceWhereTheTilesSurfaceIsMappedTo)
     const openvdb::CoordBBox tile = sphere->evalActiveVoxelBoundingBox();
     ASSERT_EQ(tile.dim()[0], tile.dim()[2]);
     const double side = tile.dim()[0];
-    constexpr double kVoxel = 0.0125;
+    constexpr double kVoxelOfTile = 0.0125;
     // Tiles are 0.5 high and as long, then twice as long: spheres, and ellipsoids.
     for (const double repeat : {4.0, 2.0}) {
-        MapOptions options = voxels_of(kVoxel);
+        MapOptions options = voxels_of(kVoxelOfTile);
         options.repeat_u = options.repeat_v = repeat;
         MapFigures figures;
         const GridBasePtr made = map_volume(*sphere, slab.map(), slab.texture, options, figures);
         ASSERT_EQ(made->getGridClass(), openvdb::GRID_LEVEL_SET);
-        EXPECT_NEAR(floats(made).background(), 3 * kVoxel, 1e-6);
+        EXPECT_NEAR(floats(made).background(), 3 * kVoxelOfTile, 1e-6);
         expect_unit_gradients(floats(made));
         const Vec3d semi_axes = 20 / side * Vec3d(2 / repeat, 2 / repeat, 0.5);
         std::vector<Vec3s> points;
@@ -278,7 +278,7 @@ TEST(MapVolume, ALevelSetIsOneAgainWithItsSurfaceWhereTheTilesSurfaceIsMappedTo)
             const Vec3d scaled = p / semi_axes;
             const double off =
                 (scaled.length() - 1) * scaled.length() / (scaled / semi_axes).length();
-            ASSERT_LT(std::abs(off), 0.5 * kVoxel) << point;
+            ASSERT_LT(std::abs(off), 0.5 * kVoxelOfTile) << point;
         }
         for (const openvdb::Vec4I& quad : quads)
             area += 0.5 * double((points[quad[2]] - points[quad[0]])
@@ -299,9 +299,9 @@ TEST(MapVolume, ALevelSetThatReachesTheEndOfTheShellIsClosedThere)
     // The lower halves of four spheres, with their middles in the plane on which the slab ends.
     const Slab slab;
     const FloatGrid::Ptr sphere = sphere_texture();
-    constexpr double kVoxel = 0.0125;
+    constexpr double kVoxelOfTile = 0.0125;
     const double radius = 20.0 / sphere->evalActiveVoxelBoundingBox().dim()[0];
-    MapOptions options = voxels_of(kVoxel);
+    MapOptions options = voxels_of(kVoxelOfTile);
     options.repeat_u = options.repeat_v = 2;
     options.repeat_depth = 0.5;
     MapFigures figures;
@@ -311,7 +311,7 @@ TEST(MapVolume, ALevelSetThatReachesTheEndOfTheShellIsClosedThere)
     openvdb::tools::volumeToMesh(floats(made), points, quads);
     ASSERT_GT(points.size(), 1000U);
     for (const Vec3s& point : points)
-        ASSERT_LT(point[2], 1 + kVoxel);
+        ASSERT_LT(point[2], 1 + kVoxelOfTile);
     double volume = 0;
     for (const openvdb::Vec4I& quad : quads)
         for (const int k : {1, 2})
@@ -321,7 +321,7 @@ TEST(MapVolume, ALevelSetThatReachesTheEndOfTheShellIsClosedThere)
                       6;
     // The end is met to a voxel.
     EXPECT_NEAR(std::abs(volume), 4 * 2 * M_PI / 3 * std::pow(radius, 3),
-                4 * M_PI * radius * radius * kVoxel);
+                4 * M_PI * radius * radius * kVoxelOfTile);
 }
 
 /// One prism of three positive tets whose map turns back between its ends: the inner triangle is
