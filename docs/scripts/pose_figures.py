@@ -11,13 +11,12 @@ frame those of pose_shell. Beside the page stands the same as JSON. With --only 
 """
 import argparse
 import json
-import os
 import pathlib
 import statistics
 import subprocess
 import tempfile
 
-from runs import replace_tables, table
+from runs import replace_tables, table, usage_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Poses were tuned with the first half; the others were only measured.
@@ -46,12 +45,9 @@ def sequence(options, name, motion, frames, kind):
     stem = name.split("/")[-1]
     folder = options.folder / f"{stem}-{motion}"
     mesh, shell, report = mesh_of(name, options), options.folder / f"{stem}.vdb", options.folder / f"{stem}.json"
-    child = subprocess.Popen([options.build / "src/vdb_shell", "build", "-q", mesh, "-o", shell, "--report", report, *SHELLS[kind]])
-    # wait4 and not wait: only it tells the resources of this child alone.
-    _, status, usage = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode != 0:
-        raise SystemExit(f"{name}: build ended with {child.returncode}")
+    status, usage = usage_of([options.build / "src/vdb_shell", "build", "-q", mesh, "-o", shell, "--report", report, *SHELLS[kind]])
+    if status != 0:
+        raise SystemExit(f"{name}: build ended with {status}")
     stages = json.loads(report.read_text())["stages"]
     files = sum(stage["seconds"] for stage in stages if stage["stage"] in ("read", "write"))
     built = (usage.ru_utime + usage.ru_stime) * (1 - files / sum(stage["seconds"] for stage in stages))

@@ -10,14 +10,12 @@ means by half.
 """
 import argparse
 import json
-import os
 import pathlib
 import statistics
-import subprocess
 import tempfile
 
 from halves import HALVES, read_halves
-from runs import replace_tables, table
+from runs import replace_tables, table, usage_of
 
 AIMS = {"fewest-tets": 2, "simulation": 4}
 LIST = pathlib.Path(__file__).parent.parent / "measurements/shape_meshes.txt"
@@ -25,12 +23,9 @@ LIST = pathlib.Path(__file__).parent.parent / "measurements/shape_meshes.txt"
 
 def seconds(command, mesh, purpose, report):
     words = [command, "build", mesh, "-q", "--report", report, *([] if purpose == "default" else ["--for", purpose])]
-    process = subprocess.Popen([str(word) for word in words])
-    # wait4, since only it tells the time of this child alone.
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise SystemExit(f"{mesh}: {purpose}: exit status {process.returncode}")
+    status, usage = usage_of(words)
+    if status != 0:
+        raise SystemExit(f"{mesh}: {purpose}: exit status {status}")
     return usage.ru_utime + usage.ru_stime
 
 

@@ -31,16 +31,22 @@ def arguments(description, tables=None, options=()):
     return parser.parse_args()
 
 
+def usage_of(words, **more):
+    """Exit status and resources (user and system time among them) of one program; `more` goes to Popen."""
+    child = subprocess.Popen([str(word) for word in words], **more)
+    # wait4 and not wait: only it tells the resources of this child alone.
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode, usage
+
+
 def run(command, flags, output, hidden):
     """One run on one thread: exit status, message (without the path `hidden`) and CPU seconds of the child.
     What it prints goes to the file `output`."""
     with tempfile.TemporaryFile("w+") as errors, open(output, "w") as printed:
-        child = subprocess.Popen([command, "--threads", "1", *flags], stdout=printed, stderr=errors)
-        # wait4 and not wait: only it tells the resources of this child alone.
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)
+        status, usage = usage_of([command, "--threads", "1", *flags], stdout=printed, stderr=errors)
         errors.seek(0)
-        return {"exit": child.returncode, "message": errors.read().strip().replace(str(hidden), "MESH"),
+        return {"exit": status, "message": errors.read().strip().replace(str(hidden), "MESH"),
                 "seconds": usage.ru_utime + usage.ru_stime}
 
 

@@ -11,7 +11,6 @@ ended. --keep: a folder for the surfaces, which are made only where they are not
 import argparse
 import json
 import math
-import os
 import pathlib
 import resource
 import statistics
@@ -20,7 +19,7 @@ import sys
 import tempfile
 import time
 
-from runs import replace_tables, table
+from runs import replace_tables, table, usage_of
 
 MOST_BYTES = 16 << 30
 LEAST_SECONDS = 0.05
@@ -49,15 +48,12 @@ def build(command, mesh, threads):
     with tempfile.TemporaryDirectory() as folder:
         report, shell = pathlib.Path(folder) / "report.json", pathlib.Path(folder) / "shell.vdb"
         begin = time.monotonic()
-        child = subprocess.Popen(
+        status, usage = usage_of(
             [command, "--threads", threads, "build", "-q", "-o", shell, "--report", report, mesh],
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_DATA, (MOST_BYTES, MOST_BYTES)))
-        # wait4 and not wait: only it tells the resources of this child alone.
-        _, status, usage = os.wait4(child.pid, 0)
         wall = time.monotonic() - begin
-        child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode != 0:
-            raise SystemExit(f"{mesh}: exit {child.returncode}")
+        if status != 0:
+            raise SystemExit(f"{mesh}: exit {status}")
         read = json.loads(report.read_text())
         return {"name": mesh.stem, "faces": read["mesh"]["triangles"], "fill": read["volume"]["fill"],
                 "certified": read["certificate"]["certified"], "pins": read["prisms"]["pinned_vertices"],

@@ -11,7 +11,7 @@
 
 #include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
-#include "core/classes.h"
+#include "core/disjoint_sets.h"
 
 #include <algorithm>
 #include <array>
@@ -95,7 +95,7 @@ FreeFaces find_free_faces(const ShellStack& stack, const TetMesh& tets)
     free.points = tets.points;
     append_outer(stack, tets, free);
     const std::vector<Side> sides = sorted_sides(free, tets);
-    Classes pieces(tets.tets.size());
+    DisjointSets pieces(tets.tets.size());
     std::vector<std::array<std::uint32_t, 2>> alone; // tet, corner opposite
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
@@ -106,7 +106,7 @@ FreeFaces find_free_faces(const ShellStack& stack, const TetMesh& tets)
                            sides.begin();
         const std::size_t owners = std::size_t(outer) - first;
         for (std::size_t i = first + 1; i < first + owners; ++i)
-            pieces.unite(sides[first].owner, sides[i].owner);
+            pieces.join(sides[first].owner, sides[i].owner);
         if (owners != 1)
             continue;
         if (std::size_t(outer) < last)
@@ -120,7 +120,7 @@ FreeFaces find_free_faces(const ShellStack& stack, const TetMesh& tets)
         free.tet.push_back(tet);
     }
     for (std::uint32_t i = 0; i < tets.tets.size(); ++i)
-        free.piece.push_back(pieces.first(i));
+        free.piece.push_back(pieces.root_of(i));
     return free;
 }
 
@@ -142,16 +142,16 @@ std::vector<std::uint32_t> first_faces_of_pieces(const FreeFaces& free)
         [](const Use& x, const Use& y) {
             return std::tie(x.edge[1], x.face) < std::tie(y.edge[1], y.face);
         });
-    Classes pieces(free.faces.size());
+    DisjointSets pieces(free.faces.size());
     for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
         while (last < uses.size() && uses[last].edge == uses[first].edge)
             ++last;
         if (last - first == 2)
-            pieces.unite(uses[first].face, uses[first + 1].face);
+            pieces.join(uses[first].face, uses[first + 1].face);
     }
     std::vector<std::uint32_t> firsts;
     for (std::uint32_t f = 0; f < free.faces.size(); ++f)
-        if (free.tet[f] != FreeFaces::kNoTet && pieces.first(f) == f)
+        if (free.tet[f] != FreeFaces::kNoTet && pieces.root_of(f) == f)
             firsts.push_back(f);
     return firsts;
 }

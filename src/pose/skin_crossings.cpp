@@ -9,7 +9,7 @@
 #include "pose/skin_crossings.h"
 
 #include "core/box_tree.h"
-#include "core/classes.h"
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 #include "field/winding_number.h"
 #include "mesh/surface_defects.h"
@@ -86,15 +86,15 @@ private:
         std::vector<std::uint8_t> crossing(count, 0);
         for (const TrianglePair& pair : pairs_)
             crossing[pair[0]] = crossing[pair[1]] = 1;
-        Classes pieces(count);
+        DisjointSets pieces(count);
         for (const auto& [t, u] : parts_.neighbours)
             if (!crossing[t] && !crossing[u])
-                pieces.unite(t, u);
+                pieces.join(t, u);
         // Each piece is asked behind its largest triangle, where the error is least.
         std::vector<std::uint32_t> piece(count), largest(count);
         std::vector<double> area(count, -1.0);
         for (std::uint32_t t = 0; t < count; ++t) {
-            piece[t] = pieces.first(t);
+            piece[t] = pieces.root_of(t);
             const double own = normal_of(t).lengthSqr();
             if (own > area[piece[t]])
                 area[piece[t]] = own, largest[piece[t]] = t;
@@ -129,19 +129,19 @@ private:
     /// What is covered twice is bounded by marked triangles that hang together.
     std::vector<FloatBox> boxes_of_classes(const std::vector<std::uint8_t>& marked) const
     {
-        Classes classes(marked.size());
+        DisjointSets classes(marked.size());
         for (const auto& [t, u] : parts_.neighbours)
             if (marked[t] && marked[u])
-                classes.unite(t, u);
+                classes.join(t, u);
         for (const TrianglePair& pair : pairs_)
-            classes.unite(pair[0], pair[1]);
+            classes.join(pair[0], pair[1]);
         constexpr std::uint32_t kNone = ~std::uint32_t(0);
         std::vector<std::uint32_t> index(marked.size(), kNone);
         std::vector<FloatBox> boxes;
         for (std::uint32_t t = 0; t < marked.size(); ++t) {
             if (!marked[t])
                 continue;
-            std::uint32_t& at = index[classes.first(t)];
+            std::uint32_t& at = index[classes.root_of(t)];
             if (at == kNone) {
                 at = static_cast<std::uint32_t>(boxes.size());
                 boxes.push_back(box_of(t));

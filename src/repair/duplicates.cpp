@@ -13,7 +13,7 @@
 
 #include "core/box_pairs.h"
 #include "core/box_tree.h"
-#include "core/classes.h"
+#include "core/disjoint_sets.h"
 #include "core/exact.h"
 #include "mesh/surface_defects.h"
 #include "mesh/triangle_area.h"
@@ -98,14 +98,14 @@ public:
     Regions(const TriangleMesh& mesh, const std::vector<Group>& groups)
         : mesh_(mesh), groups_(groups), edges_(edges_of(groups)), region_(groups.size())
     {
-        Classes classes(groups.size());
+        DisjointSets classes(groups.size());
         for_each_edge(edges_, [&](std::size_t begin, std::size_t end) {
             if (end - begin == 2 && repeated(edges_[begin].group) &&
                 repeated(edges_[begin + 1].group))
-                classes.unite(edges_[begin].group, edges_[begin + 1].group);
+                classes.join(edges_[begin].group, edges_[begin + 1].group);
         });
         for (std::uint32_t g = 0; g < groups_.size(); ++g)
-            region_[g] = classes.first(g);
+            region_[g] = classes.root_of(g);
     }
 
     /// By region whether one of each triangle stays.
