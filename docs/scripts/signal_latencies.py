@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Sends SIGINT, SIGTERM and SIGHUP at random moments to every command while it works on a large mesh, and writes the table of
-docs/reliability.md: how long the command takes to end, worst of many.
+"""Sends SIGINT, SIGTERM, SIGHUP, SIGPIPE and SIGXCPU at random moments to every command while it works on a large mesh, and
+writes the table of docs/reliability.md: how long the command takes to end, worst of many.
 
     signal_latencies.py COMMAND MESH docs/reliability.md [--signals N] [--results FILE] [--commands NAME ...] [--stages]
                          [--section NAME]
@@ -24,7 +24,7 @@ import time
 
 from runs import Results, replace_tables, table
 
-SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE, signal.SIGXCPU
 WANTED_SECONDS = .5
 
 
@@ -37,10 +37,14 @@ def lines(command, mesh, shell, out):
         return writing([command, "build", mesh, "-q", "--progress", *more], "s.vdb", "s.vtu", "s.bgeo")
 
     return {"build": build(), "build --repair": build("--repair"), "build --thickest --layers 3": build("--thickest", "--layers", "3"),
-            "build --taper": build("--taper"), "build --side both": build("--side", "both"),
+            "build --taper": build("--taper"), "build --for simulation": build("--for", "simulation"), "build --side both": build("--side", "both"),
             "build --wrap": build("--wrap"), "build --remesh-to 50000": build("--remesh-to", "50000"),
             "inspect": writing([command, "inspect", mesh], "i.ply"), "repair": writing([command, "repair", mesh], "r.ply"),
             "info": ([command, "info", shell], ()), "check": ([command, "check", shell], ()),
+            "compare": writing([command, "compare", shell, shell], "c.png"),
+            "pose": writing([command, "pose", shell, mesh], "p.vdb", "p.vtu"),
+            "volumes": writing([command, "volumes", shell, "--volumes", "depth,rest,layer"], "v.vdb"),
+            "page": writing([command, "page", shell], "p.html"),
             "convert": writing([command, "convert", shell], "c.vdb", "c.vtu", "c.usda", "c.geo")}
 
 
@@ -98,7 +102,7 @@ def series(line, names, out, count, seed):
     began = time.monotonic()
     subprocess.run(line, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
     whole = time.monotonic() - began
-    runs = [send(line, names, out, generator.uniform(0, 1.02 * whole), SIGNALS[k % 3]) for k in range(count)]
+    runs = [send(line, names, out, generator.uniform(0, 1.02 * whole), SIGNALS[k % len(SIGNALS)]) for k in range(count)]
     return {"whole": whole, "runs": runs}
 
 
@@ -143,8 +147,11 @@ def main():
                     stages[run["stage"]].append(run["seconds"])
         for stage, seconds in stages.items():
             print(f"{stage}: {len(seconds)} signals, worst {1000 * max(seconds):.0f} ms")
+    rows = [row(name, found) for name, found in results.runs.items()]
+    rows.append(["all", "", *(str(sum(int(each[k]) for each in rows)) for k in (2, 3)), "",
+                 *(str(max(int(each[k] or 0) for each in rows)) for k in (5, 6)), str(sum(int(each[7]) for each in rows))])
     head = ["command", "seconds of a run", "signals", "answered", "median ms", "worst ms", "worst ms of the processor", "violations"]
-    replace_tables(options.page, table(head, [row(name, found) for name, found in results.runs.items()]), options.section)
+    replace_tables(options.page, table(head, rows), options.section)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@
 
 #include "command/file_commands.h"
 
-#include "vdb_shell/certify/overlaps.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
@@ -149,10 +148,10 @@ int run_convert(const FileArguments& arguments)
     add_points_file(plan, arguments.file);
     const ShellFile file = read_shell(arguments.file);
     // The flags of certified tets are not taken from the file's report: they are what the tets
-    // themselves show, by the exact test of overlaps.
+    // themselves show, by exact tests.
     std::vector<std::uint8_t> certified;
     if (wants_flags(arguments.outputs))
-        certified = find_overlaps(file.tets).certified;
+        certified = certified_tets(file);
     OutputSet files(existing_files(arguments.outputs.no_clobber));
     write_outputs(arguments.outputs, file, certified, files);
     files.commit();

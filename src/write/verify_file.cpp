@@ -305,4 +305,14 @@ std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* inter
     return found;
 }
 
+std::vector<std::uint8_t> certified_tets(const ShellFile& file, Interrupter* interrupter)
+{
+    // The certificate proves that there are no overlaps in far less time than they are searched in
+    // (convert of skull.obj's shell to .vtu, 100,002 triangles: 1 s and 42 s).
+    const bool proven = file.core.empty() && verify_tets(file).holds &&
+                        certify_stack(file.stack, PrismTest::chosen_tets, interrupter).certified();
+    return proven ? std::vector<std::uint8_t>(file.tets.tets.size(), 1)
+                  : find_overlaps(file.tets, interrupter).certified;
+}
+
 } // namespace vdb_shell

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace vdb_shell
@@ -119,6 +120,31 @@ TEST(VerifyFile, OverlapsAreFoundAgainAndAFalseCountFails)
         file.report_json = claims.dump(2);
         EXPECT_FALSE(verdict(file, what).holds) << lie;
     }
+}
+
+TEST(VerifyFile, TheTetsThatAreCertifiedAreThoseThatOverlapNone)
+{
+    const SplitShell shells[] = {test::scaled_shell(test::icosphere(1, 2), 0.5f),
+                                 test::twisted_shell(1.2), test::folded_shell(),
+                                 test::plate_shell(1.25f, 0.25f)};
+    std::vector<std::size_t> uncertified;
+    for (const SplitShell& made : shells) {
+        const ShellFile file = file_of(made);
+        const std::vector<std::uint8_t> found = certified_tets(file);
+        EXPECT_EQ(found, find_overlaps(file.tets).certified);
+        uncertified.push_back(
+            static_cast<std::size_t>(std::count(found.begin(), found.end(), std::uint8_t(0))));
+    }
+    EXPECT_EQ(uncertified[0], 0U);
+    EXPECT_GT(uncertified[3], 0U);
+}
+
+TEST(VerifyFile, TetsThatAreNotThoseOfThePrismsAreLookedAtOneByOne)
+{
+    ShellFile file = file_of(test::scaled_shell(test::icosphere(1, 1), 0.5f));
+    // The prisms are as sound as before.
+    std::swap(file.tets.tets[0][0], file.tets.tets[0][1]);
+    EXPECT_EQ(certified_tets(file)[0], 0);
 }
 
 TEST(VerifyFile, TheTestIsTheOneThatTheFileNames)

@@ -4,6 +4,7 @@
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,9 @@ struct Verification {
 /// certificate, volume and fill that the report states, the level set and the depth grid (where the
 /// file has them) belong to this surface. Everything is computed afresh from the stored floats.
 std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* interrupter = nullptr);
+
+/// 1 for each tet that is positive and overlaps no other, by exact tests of the stored floats; the
+/// file's report is not asked.
+std::vector<std::uint8_t> certified_tets(const ShellFile& file, Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell
