@@ -10,6 +10,7 @@
 #include "core/box_tree.h"
 
 #include "core/parallel.h"
+#include "core/stage_stop.h"
 
 #include <cassert>
 #include <limits>
@@ -96,6 +97,8 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
 {
     if (end - begin <= kLeaf)
         return;
+    if (end - begin >= kParallel)
+        stop_if_stage_wants();
     const auto first = items.begin() + begin, last = items.begin() + end;
     std::array<float, 3> low = first->twice_middle, high = low;
     std::for_each(first, last, [&](const Item& item) {

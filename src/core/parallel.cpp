@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: what is to be done, as a pointer and a function that knows its type. Leaves it done, on
-// TBB's threads, which are those of OpenVDB too. An exception ends the rest and is thrown on.
+// TBB's threads, which are those of OpenVDB too. An exception ends the rest and is thrown on. So
+// does the interrupter of the stage (core/stage_stop.h), which is asked between parts of a range:
+// TBB makes few ranges, and one of a million indices may take seconds.
 
 #include "core/parallel.h"
+
+#include "core/stage_stop.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+
+#include <algorithm>
 
 #if defined(VDB_SHELL_TELL_THREAD_SANITIZER)
 #include <sanitizer/tsan_interface.h>
@@ -27,6 +33,11 @@ namespace parallel
 
 namespace
 {
+
+// Grains that are worked off before the interrupter is asked again. With the usual 64 that is a
+// thousand indices, which take a tenth of a second in the dearest loops (moves of a vertex, 0.1
+// ms).
+constexpr std::size_t kGrainsBetweenAsking = 16;
 
 /// What is written before passed() can be read after awaited(). TBB sees to that; this tells the
 /// thread sanitizer, which does not see into a TBB that was not compiled with it.
@@ -56,15 +67,23 @@ private:
 void for_ranges(std::size_t count, std::size_t grain, const void* body,
                 void (*call)(const void* body, std::size_t begin, std::size_t end))
 {
+    LatchedInterrupter* const stop = stage_stop();
+    const auto call_in_parts = [=](std::size_t first, std::size_t last) {
+        const StageStopScope scope(stop);
+        const std::size_t part = stop ? kGrainsBetweenAsking * grain : last - first;
+        for (std::size_t i = first; i < last && !(stop && stop->wasInterrupted()); i += part)
+            call(body, i, std::min(last, i + part));
+    };
     Milestone begin, end;
     begin.passed();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-                      [=, &begin, &end](const tbb::blocked_range<std::size_t>& range) {
+                      [&](const tbb::blocked_range<std::size_t>& range) {
                           begin.awaited();
-                          call(body, range.begin(), range.end());
+                          call_in_parts(range.begin(), range.end());
                           end.passed();
                       });
     end.awaited();
+    stop_if_stage_wants();
 }
 
 void run(const Job* jobs, std::size_t count)
@@ -73,8 +92,10 @@ void run(const Job* jobs, std::size_t count)
         jobs[0].call(jobs[0].body);
     if (count <= 1)
         return;
+    LatchedInterrupter* const stop = stage_stop();
     Milestone begin, end;
     const auto marked = [&](const auto& job) {
+        const StageStopScope scope(stop);
         begin.awaited();
         job();
         end.passed();

@@ -39,11 +39,16 @@ struct Started {
     std::vector<double> predicted_gain; ///< RelaxOptions::predicted_gain
 };
 
+bool begins_on_levels(const GrowStart& start)
+{
+    return start.from == GrowFrom::levels && !start.levels.empty();
+}
+
 Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& directions,
                      const LineLengths& stepped, const GrowStart& start, const GrowOptions& options,
                      const StageProgress& progress, GrowReport& report)
 {
-    const bool on_levels = start.from == GrowFrom::levels && !start.levels.empty();
+    const bool on_levels = begins_on_levels(start);
     // Smoothing pays where the start is along the lines, not where they are only fallen back on.
     Started started{
         StartedFrom::lines, prepare_directions(mesh, directions, options, !on_levels), {}};
@@ -119,7 +124,10 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     GrowState s = make_state(connectivity, mesh.points, cap, options.schedule);
     GrowResult result;
     GrowReport& report = result.report;
-    Started started = start_growth(s, mesh, directions, stepped, start, options, progress, report);
+    // Percent. From levels on it is mostly the start that takes time, else the rounds.
+    const double started_at = begins_on_levels(start) ? 60 : 20, relaxed_at = 90;
+    Started started = start_growth(s, mesh, directions, stepped, start, options,
+                                   progress.part(0, started_at), report);
     report.released += static_cast<std::size_t>(
         release_pins(s, started.lines.visibility, PillarsBesidePin::shortened));
     // A prolonged shell has left the lines.
@@ -128,8 +136,8 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     report.fill_after_lines = fill_of(s);
     if (options.free_moves)
         relax_fully(s, started.from, std::move(started.predicted_gain), started.lines.visibility,
-                    options, progress, report);
-    Improved improved = improve(s, mesh, options, split, progress, report);
+                    options, progress.part(started_at, relaxed_at), report);
+    Improved improved = improve(s, mesh, options, split, progress.part(relaxed_at, 100), report);
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
@@ -147,8 +155,8 @@ GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const GrowOptions& options, const SplitOptions& split,
                       Interrupter* interrupter)
 {
-    return grow_shell_from({GrowFrom::levels, {}, coarse_levels(mesh, options)}, mesh, directions,
-                           stepped, cap, options, split, interrupter);
+    return grow_shell_from({GrowFrom::levels, {}, coarse_levels(mesh, options, interrupter)}, mesh,
+                           directions, stepped, cap, options, split, interrupter);
 }
 
 } // namespace vdb_shell

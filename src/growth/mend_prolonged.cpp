@@ -14,6 +14,7 @@
 #include "growth/violations.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace vdb_shell::growth
@@ -90,7 +91,8 @@ std::vector<std::uint8_t> mend_placed(GrowState& s, const StageProgress& progres
     std::vector<std::uint8_t> begun = look;
     std::vector<double> cut(s.b.size(), schedule.first_cut);
     for (int round = 0;; ++round) {
-        progress.stop_if_interrupted(0);
+        // Each round has about half as much left to do as the one before.
+        progress.stop_if_interrupted(100 - std::ldexp(100, -round));
         const bool first = round == 0;
         const bool moving = round < schedule.moving_rounds;
         if (moving)

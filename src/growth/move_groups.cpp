@@ -101,20 +101,23 @@ public:
             is_witness_[w] = s_.mesh->components > 1;
     }
 
-    void sweep()
+    void sweep(const StageProgress& progress)
     {
         std::vector<Box> boxes(groups_.size());
         for_each_index(boxes.size(), [&](std::size_t i) { boxes[i] = box_to_move_in(groups_[i]); });
         last_.clear();
-        for (const GroupTurn& turn : turns_of_groups(boxes))
-            take(turn);
+        const std::vector<GroupTurn> turns = turns_of_groups(boxes);
+        for (std::size_t i = 0; i < turns.size(); ++i) {
+            progress.stop_if_interrupted(100 * double(i) / double(turns.size()));
+            take(turns[i]);
+        }
         std::sort(last_.begin(), last_.end());
         Box all;
         all.lo = Vec3d(-std::numeric_limits<double>::infinity());
         all.hi = Vec3d(std::numeric_limits<double>::infinity());
         CellMoves moves(field_, all);
         for (const std::size_t i : last_) {
-            progress_.stop_if_interrupted(0);
+            progress.stop_if_interrupted(100);
             ++now_;
             moves.move(groups_[i], tried_[i], now_);
             tried_[i] = now_ - 1;
@@ -226,7 +229,7 @@ std::size_t move_groups(GrowState& s, const std::vector<GroupShare>& shares,
     for (int i = 0; i < schedule.sweeps; ++i) {
         if (i > 0)
             rebuild_tree(s);
-        sweeps.sweep();
+        sweeps.sweep(progress.part(100.0 * i / schedule.sweeps, 100.0 * (i + 1) / schedule.sweeps));
     }
     return sweeps.made();
 }

@@ -89,12 +89,31 @@ void lift_pins(GrowState& s)
     }
 }
 
-/// What stays the same over all levels.
+// Percent of a level's time at which mending ends, and with it the groups: of a scan's 1,120,000
+// triangles, for progress that moves evenly.
+constexpr double kMendedAt = 40, kGroupsAt = 60;
+
+/// What stays the same over all levels, and how far the one at hand is.
 struct LevelJob {
     std::size_t triangles; ///< of the whole surface
     const GrowOptions& options;
-    const StageProgress& progress;
+    const StageProgress progress; ///< of the level
 };
+
+/// By level, how much of all work is done with it, in percent, if work goes by triangles. After the
+/// last in the list, which comes first, is what has been done before it: nothing.
+std::vector<double> ends_of_levels(const std::vector<Coarsened>& levels, std::size_t triangles)
+{
+    double all = double(triangles), done = 0;
+    for (const Coarsened& level : levels)
+        all += double(level.mesh.triangles.size());
+    std::vector<double> ends(levels.size() + 1, 0.0);
+    for (std::size_t i = levels.size(); i-- > 0;) {
+        done += double(levels[i].mesh.triangles.size());
+        ends[i] = 100 * done / all;
+    }
+    return ends;
+}
 
 /// Prolongs the shell of a coarser surface onto the state of a finer one, mends it, and fills the
 /// voids that mending has left by moves of as many vertices as the coarser surface has one for.
@@ -107,11 +126,12 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
     const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarser, schedule);
     const Pillars pillars = prolonged_pillars(coarser, coarser_inner, mesh, nearest, lines,
                                               bends_towards(job.triangles, s.schedule), schedule);
-    std::vector<double> lost = mend_prolonged(s, pillars.lines, pillars.length, job.progress);
+    std::vector<double> lost =
+        mend_prolonged(s, pillars.lines, pillars.length, job.progress.part(0, kMendedAt));
     // Before the groups, which win back what shorter pillars beside a pin cost.
     report.released +=
         static_cast<std::size_t>(release_pins(s, lines.visibility, PillarsBesidePin::shortened));
-    move_groups(s, group_shares(coarser, nearest), job.progress);
+    move_groups(s, group_shares(coarser, nearest), job.progress.part(kMendedAt, kGroupsAt));
     return lost;
 }
 
@@ -127,8 +147,8 @@ std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<dou
     // A level's shell is valid by itself, but nothing reads it except the next prolongation.
     GrowReport ignored;
     start(s, lines, ignored);
-    relax(s, lines.visibility, job.options, relax_coarse(s, from, job.triangles), job.progress,
-          ignored);
+    relax(s, lines.visibility, job.options, relax_coarse(s, from, job.triangles),
+          job.progress.part(kGroupsAt, 100), ignored);
     lift_pins(s);
     return std::move(s.b);
 }
@@ -148,27 +168,35 @@ std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
                                       GrowReport& report)
 {
     // From the coarsest surface to the mesh: each takes over what the one before has won.
-    const LevelJob job{mesh.triangles.size(), options, progress};
+    const std::vector<double> ends = ends_of_levels(levels, mesh.triangles.size());
+    const auto job_of = [&](double begin, double end) {
+        return LevelJob{mesh.triangles.size(), options, progress.part(begin, end)};
+    };
     const auto from = vertices_of(levels);
+    const LevelJob coarsest = job_of(0, ends[levels.size() - 1]);
     std::vector<Vec3d> inner =
-        grow_on_level(levels.back().mesh, at_vertices(s.cap, from.back()), StartedFrom::lines, job,
-                      [&](GrowState& level, const Directions& own_lines, GrowReport&) {
+        grow_on_level(levels.back().mesh, at_vertices(s.cap, from.back()), StartedFrom::lines,
+                      coarsest, [&](GrowState& level, const Directions& own_lines, GrowReport&) {
                           start_from_lines(level, own_lines, at_vertices(stepped, from.back()),
-                                           options, progress);
+                                           options, coarsest.progress);
                       });
-    for (std::size_t i = levels.size() - 1; i-- > 0;)
+    for (std::size_t i = levels.size() - 1; i-- > 0;) {
+        const LevelJob job = job_of(ends[i + 1], ends[i]);
         inner =
             grow_on_level(levels[i].mesh, at_vertices(s.cap, from[i]), StartedFrom::prolonged, job,
                           [&](GrowState& level, const Directions& own_lines, GrowReport& of_level) {
                               start_from_coarser(level, levels[i].mesh, own_lines,
                                                  levels[i + 1].mesh, inner, job, of_level);
                           });
-    return start_from_coarser(s, mesh, lines, levels.front().mesh, inner, job, report);
+    }
+    return start_from_coarser(s, mesh, lines, levels.front().mesh, inner, job_of(ends[0], 100),
+                              report);
 }
 
 } // namespace growth
 
-std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options)
+std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options,
+                                     Interrupter* interrupter)
 {
     std::vector<Coarsened> levels;
     if (!growth::wants_levels(mesh, options))
@@ -185,7 +213,8 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
     const double ratio = std::pow(times, 1 / steps);
     for (int step = 0; step < steps; ++step) {
         const std::size_t count = finest().triangles.size();
-        Coarsened coarse = coarsen(finest(), static_cast<std::size_t>(double(count) / ratio));
+        Coarsened coarse =
+            coarsen(finest(), static_cast<std::size_t>(double(count) / ratio), interrupter);
         // A surface that cannot be coarsened by half would cost about as much as the finer one.
         if (coarse.mesh.triangles.size() > count / 2)
             break;

@@ -212,7 +212,7 @@ void relax(GrowState& s, const std::vector<double>& visibility, const GrowOption
     Relaxation relaxation(s, options, relax_options);
     const double first_fill = relaxation.fill();
     for (int round = 0; round < relax_options.most_rounds && !relaxation.full(); ++round) {
-        progress.stop_if_interrupted(100 * round / relax_options.most_rounds);
+        progress.stop_if_interrupted(100.0 * round / relax_options.most_rounds);
         // Ever more seldom: a pin that cannot go now will hardly be able to in the next round.
         if (is_power_of_two_or_zero(round))
             report.released +=
@@ -231,14 +231,15 @@ void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_g
                  const std::vector<double>& visibility, const GrowOptions& options,
                  const StageProgress& progress, GrowReport& report)
 {
+    const bool once_more = options.method == Method::thickest;
     relax(s, visibility, options, relax_whole(s, from, options, std::move(predicted_gain)),
-          progress, report);
-    if (options.method != Method::thickest)
+          progress.part(0, once_more ? 50 : 100), report);
+    if (!once_more)
         return;
     // What the twelve-tet test allowed the three-tet test allows too, under any order.
     s.twelve = false;
     order_by_length(s);
-    relax(s, visibility, options, relax_thickest(s, from, options), progress, report);
+    relax(s, visibility, options, relax_thickest(s, from, options), progress.part(50, 100), report);
 }
 
 } // namespace vdb_shell::growth

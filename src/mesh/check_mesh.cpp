@@ -9,6 +9,7 @@
 
 #include "vdb_shell/mesh/check_mesh.h"
 
+#include "core/stage_progress.h"
 #include "mesh/components.h"
 #include "mesh/surface_defects.h"
 #include "mesh/topology.h"
@@ -97,6 +98,7 @@ MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
 
 MeshCheck check_mesh(const TriangleMesh& mesh, Interrupter* interrupter)
 {
+    const StageProgress progress(interrupter, "check");
     require_well_formed(mesh, "check_mesh");
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
     return summarise(mesh, uses, find_defects(mesh, uses, interrupter));

@@ -14,6 +14,7 @@
 #include "core/disjoint_sets.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/stage_stop.h"
 #include "core/triangle_pairs.h"
 #include "mesh/triangle_contacts.h"
 
@@ -162,7 +163,9 @@ SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>
 {
     SurfaceDefects defects;
     look_at_edges(sorted_uses, defects);
+    stop_if_stage_wants();
     defects.non_manifold_vertices = find_non_manifold_vertices(mesh);
+    stop_if_stage_wants();
     defects.degenerate_triangles = raised(find_degenerate(mesh));
     defects.duplicate_triangles = find_duplicates(mesh);
     defects.self_intersections = find_self_intersections(

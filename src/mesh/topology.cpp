@@ -10,6 +10,7 @@
 
 #include "core/bucket_sort.h"
 #include "core/parallel.h"
+#include "core/stage_stop.h"
 
 #include <algorithm>
 #include <array>
@@ -134,6 +135,7 @@ std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangl
                 {{std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(t), side, a < b});
         }
     }
+    stop_if_stage_wants();
     std::uint32_t vertices = 0;
     for (const EdgeUse& use : uses)
         vertices = std::max(vertices, use.edge[1] + 1);

@@ -10,6 +10,7 @@
 
 #include "core/grid_instances.h"
 #include "core/parallel.h"
+#include "core/stage_progress.h"
 #include "field/value_range.h"
 #include "mesh/most_visible.h"
 #include "mesh/surface_defects.h"
@@ -151,8 +152,9 @@ double volume_outside(const ShellStack& stack, const TetMesh& tets, double all)
 
 } // namespace
 
-void measure_result(ShellResult& result)
+void measure_result(ShellResult& result, Interrupter* interrupter)
 {
+    const StageProgress progress(interrupter, "figures");
     ShellReport& report = result.report;
     measure_field(report.field, *result.level_set);
     const ShellStack& stack = result.stack;

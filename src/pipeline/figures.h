@@ -7,7 +7,7 @@ namespace vdb_shell
 {
 
 /// Fills in the report's figures of field, lines, prisms and tets (not coverage) from the rest of
-/// the result.
-void measure_result(ShellResult& result);
+/// the result. Throws Cancelled.
+void measure_result(ShellResult& result, Interrupter* interrupter);
 
 } // namespace vdb_shell

@@ -181,7 +181,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     prepare_surface(r, mesh, options, clock, interrupter);
     join_with_cores(r, cores, options, clock, interrupter);
     GrowStart start;
-    clock.run("coarsen", [&] { start = start_of_growth(options, r.surface); });
+    clock.run("coarsen", [&] { start = start_of_growth(options, r.surface, interrupter); });
     clock.run("level set",
               [&] { make_field(r, options, start, given, thickness_grid, interrupter); });
     clock.run("smooth", [&] {
@@ -198,7 +198,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     if (!r.report.certificate->certified())
         clock.run("overlaps", [&] { r.report.overlaps = find_overlaps(r.tets, interrupter); });
     clock.run("figures", [&] {
-        measure_result(r);
+        measure_result(r, interrupter);
         judge_result(r, options, largest_lengths(r.surface, options.line_step, thickness_grid));
     });
     clock.run("coverage", [&] {

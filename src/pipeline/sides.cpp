@@ -178,11 +178,12 @@ SideResult build_outside(const ShellResult& result, ShellOptions options,
 
 } // namespace
 
-GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surface)
+GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surface,
+                          Interrupter* interrupter)
 {
     if (options.grow.method == Method::raw || options.side == Side::outward)
         return {};
-    return {GrowFrom::levels, {}, coarse_levels(surface, options.grow)};
+    return {GrowFrom::levels, {}, coarse_levels(surface, options.grow, interrupter)};
 }
 
 std::string why_not_sparse(const ShellOptions& options, const ShellResult& result,

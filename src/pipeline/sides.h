@@ -10,7 +10,8 @@ namespace vdb_shell
 
 /// What growth inward begins with: coarser surfaces where the surface has triangles enough
 /// (GrowOptions::coarse_from). Only their lines are stepped then.
-GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surface);
+GrowStart start_of_growth(const ShellOptions& options, const TriangleMesh& surface,
+                          Interrupter* interrupter);
 
 /// Why the lines need a dense field, or an empty string when a narrow band will do. Reads the
 /// result's surface and what the check found.

@@ -27,16 +27,17 @@ constexpr double kMostOverWanted = 2;
 
 } // namespace
 
-Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles)
+Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles, Interrupter* interrupter)
 {
     CollapseLimits limits;
     limits.fewest_triangles = triangles;
-    const StageProgress none(nullptr, "coarsen");
-    EmbeddedCollapse sound = collapse_embedded(mesh, limits, kMostRepeats, Blind::avoided, none);
+    const StageProgress progress(interrupter, "coarsen");
+    EmbeddedCollapse sound =
+        collapse_embedded(mesh, limits, kMostRepeats, Blind::avoided, progress);
     // Two walls that are close together all over would stay as fine as they are.
     if (sound.repeats > 0 &&
         double(sound.result.mesh.triangles.size()) > kMostOverWanted * double(triangles))
-        sound = collapse_embedded(mesh, limits, 0, Blind::allowed, none);
+        sound = collapse_embedded(mesh, limits, 0, Blind::allowed, progress);
     sound.result.embedded = sound.embedded;
     return std::move(sound.result);
 }

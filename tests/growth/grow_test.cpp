@@ -336,7 +336,9 @@ private:
 TEST(Grow, StopsWhenAskedAtAnyPoint)
 {
     const Case c = case_of(bumpy_sphere());
-    constexpr int kMany = 100000;
+    // How often it is asked depends on how many threads share the loops.
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    constexpr int kMany = 1000000;
     StopAfter never(kMany);
     grown(c, {}, &never);
     const int polls = kMany - never.left();
@@ -345,6 +347,43 @@ TEST(Grow, StopsWhenAskedAtAnyPoint)
         StopAfter interrupter(after);
         EXPECT_THROW(grown(c, {}, &interrupter), Cancelled) << after;
     }
+}
+
+/// What share of growth it was told is done.
+struct NotesPercents : Interrupter {
+    bool wasInterrupted(int percent) override
+    {
+        if (percent >= 0)
+            percents.push_back(percent);
+        return false;
+    }
+    std::vector<int> percents;
+};
+
+TEST(Grow, ProgressGoesForwardInSmallStepsFromLevelToLevel)
+{
+    const Case c = case_of(bumpy_sphere(5));
+    GrowOptions options;
+    options.coarse_from = 1000;
+    const std::vector<Coarsened> levels = coarse_levels(c.mesh, options);
+    ASSERT_GE(levels.size(), 2U);
+    NotesPercents notes;
+    grow_shell_from({GrowFrom::levels, {}, levels}, c.mesh, c.directions, c.start, c.cap, options,
+                    {}, &notes);
+    ASSERT_FALSE(notes.percents.empty());
+    EXPECT_TRUE(std::is_sorted(notes.percents.begin(), notes.percents.end()));
+    EXPECT_GE(notes.percents.back(), 60);
+    int step = 0;
+    for (std::size_t i = 1; i < notes.percents.size(); ++i)
+        step = std::max(step, notes.percents[i] - notes.percents[i - 1]);
+    EXPECT_LE(step, 25);
+}
+
+TEST(Grow, CoarseningStopsWhenAsked)
+{
+    const TriangleMesh mesh = bumpy_sphere(5);
+    StopAfter soon(5);
+    EXPECT_THROW(coarse_levels(mesh, GrowOptions{}, &soon), Cancelled);
 }
 
 TEST(Grow, RefusesNegativeRounds)

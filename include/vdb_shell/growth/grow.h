@@ -71,8 +71,9 @@ struct GrowReport {
 
 /// Surfaces for growth to begin on, each of fewer triangles than the one before, as
 /// GrowOptions::coarse_from asks. None for a side without bound, for a surface of few triangles or
-/// one that cannot be coarsened. Same result for any number of threads.
-std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options);
+/// one that cannot be coarsened. Same result for any number of threads. Throws Cancelled.
+std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options,
+                                     Interrupter* interrupter = nullptr);
 
 /// The vertices of the mesh from whose lines growth on such levels begins, ascending: those of the
 /// last, or all.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <cstddef>
@@ -25,7 +26,8 @@ struct Coarsened {
 /// all is done anew, three times at most. If more than twice as many triangles as wanted are left
 /// then, as of a thin wall, the first result is given back as it is. `embedded` says what became of
 /// it. For those who only want a hint, soon. Same result for any number of threads. Precondition:
-/// closed, manifold.
-Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles);
+/// closed, manifold. Throws Cancelled.
+Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles,
+                  Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell
