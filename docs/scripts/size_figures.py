@@ -3,10 +3,12 @@
 """What a surface of a million triangles and of ten million costs, for docs/measurements/size.md.
 
     size_figures.py COMMAND docs/measurements/size.md SOURCE.obj:PARTS ... [--threads 2] [--keep FOLDER]
+                    [--results FILE]
 
 rough_surface.py makes each surface; the default job builds its shell, writes a .vdb and certifies it. Processor and wall
 time are those of the whole command, memory the most that it had at a time. A command that takes more than 16 GiB is
 ended. --keep: a folder for the surfaces, which are made only where they are not there yet.
+--results keeps what was measured and measures only what is not in it: ten million triangles take most of an hour.
 """
 import argparse
 import json
@@ -19,7 +21,7 @@ import sys
 import tempfile
 import time
 
-from runs import replace_tables, table, usage_of
+from runs import Results, replace_tables, table, usage_of
 
 MOST_BYTES = 16 << 30
 LEAST_SECONDS = 0.05
@@ -32,6 +34,7 @@ def arguments():
     parser.add_argument("surfaces", nargs="+", help="SOURCE.obj:PARTS")
     parser.add_argument("--threads", default="2")
     parser.add_argument("--keep", type=pathlib.Path)
+    parser.add_argument("--results")
     return parser.parse_args()
 
 
@@ -96,10 +99,12 @@ def main():
     options = arguments()
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or pathlib.Path(scratch)
-        runs = []
+        results = Results(options.results)
         for word in options.surfaces:
-            runs.append(build(options.command, surface(word, folder), options.threads))
-            print(runs[-1], flush=True)
+            if word not in results.runs:
+                results.keep(word, build(options.command, surface(word, folder), options.threads))
+            print(results.runs[word], flush=True)
+        runs = [results.runs[word] for word in options.surfaces]
     replace_tables(options.page, ["", *summary(runs), "", "Wall seconds by stage:", "", *stages(runs), ""])
 
 

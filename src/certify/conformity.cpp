@@ -6,7 +6,8 @@
 // it is a second way to what the certificate finds at edges (docs/theory.md, "Splits"), by the tets
 // that are written and not by the orders that they were made from. All sides of all faces are
 // sorted, by buckets of their smallest corner: nearly linear time. The comparison tells all
-// different sides apart, so the order does not depend on how threads sorted the buckets.
+// different sides apart, so the order does not depend on how threads sorted the buckets. They are
+// gone through in parts, by that corner: all at once they would take more memory than the shell.
 
 #include "vdb_shell/certify/conformity.h"
 
@@ -14,6 +15,7 @@
 
 #include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
+#include "core/stage_stop.h"
 
 #include <algorithm>
 #include <array>
@@ -126,12 +128,24 @@ struct Findings {
     Offenders crowded, misoriented, stray, missing;
 };
 
+/// Sides whose smallest corner is one of some points; `last` is the one after them.
+struct SidesFrom {
+    std::uint32_t first, last;
+    std::vector<FaceSide> sides;
+
+    void add(const Vec3I& face, std::uint32_t owner, bool of_surface)
+    {
+        const std::uint32_t smallest = std::min({face[0], face[1], face[2]});
+        if (first <= smallest && smallest < last)
+            sides.push_back(side_of(face, owner, of_surface));
+    }
+};
+
 /// The sides that the surfaces should find a tet at. A triangle with three pinned corners has no
 /// prism: its outer and inner triangle are one, and no tet is expected there.
-void append_surface_sides(const FreeSurfaces& free, const TetMesh& mesh,
-                          std::vector<FaceSide>& sides)
+void add_surface_sides(const FreeSurfaces& free, const std::vector<std::uint32_t>& index,
+                       SidesFrom& part)
 {
-    const std::vector<std::uint32_t> index = index_points(free, mesh);
     const auto outer = [&](std::uint32_t v) { return index[free.outer(v)]; };
     const auto inner = [&](std::uint32_t v) { return index[free.inner(v)]; };
     for (std::uint32_t t = 0; t < free.triangles->size(); ++t) {
@@ -140,11 +154,11 @@ void append_surface_sides(const FreeSurfaces& free, const TetMesh& mesh,
             continue;
         // Each side is given as seen from outside of what owns it. The surfaces own what is not
         // shell, so the outer triangle is turned round and the inner one is not.
-        sides.push_back(side_of({outer(v[0]), outer(v[2]), outer(v[1])}, t, true));
+        part.add({outer(v[0]), outer(v[2]), outer(v[1])}, t, true);
         const Vec3I below(inner(v[0]), inner(v[1]), inner(v[2]));
         // Where vertices share their inner point, there is no inner triangle.
         if (below[0] != below[1] && below[1] != below[2] && below[2] != below[0])
-            sides.push_back(side_of(below, t, true));
+            part.add(below, t, true);
     }
 }
 
@@ -180,23 +194,42 @@ void judge_face(FaceSide* first, FaceSide* last, bool tapered, Findings& finding
         findings.missing.add(side->owner);
 }
 
-Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
+void judge_part(const FreeSurfaces& free, const std::vector<std::uint32_t>& index,
+                const TetMesh& mesh, SidesFrom part, Findings& findings)
 {
-    Findings findings;
-    std::vector<FaceSide> sides;
-    sides.reserve(4 * mesh.tets.size() + 2 * free.triangles->size());
     for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
         for (std::size_t corner = 0; corner < 4; ++corner)
-            sides.push_back(side_of(tet_face(mesh.tets[i], corner), i, false));
-    append_surface_sides(free, mesh, sides);
-    const auto smallest_corner = [](const FaceSide& side) { return side.corners[0]; };
-    sides =
-        bucket_sort<FaceSide>(std::array{std::move(sides)}, mesh.points.size() + free.first.size(),
-                              smallest_corner, std::less<>());
+            part.add(tet_face(mesh.tets[i], corner), i, false);
+    add_surface_sides(free, index, part);
+    stop_if_stage_wants();
+    const auto smallest_corner = [&](const FaceSide& side) { return side.corners[0] - part.first; };
+    std::vector<FaceSide> sides = bucket_sort<FaceSide>(
+        std::array{std::move(part.sides)}, part.last - part.first, smallest_corner, std::less<>());
     for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
         while (last < sides.size() && sides[last].corners == sides[first].corners)
             ++last;
         judge_face(sides.data() + first, sides.data() + last, free.tapered, findings);
+    }
+}
+
+Conformity judge(const FreeSurfaces& free, const TetMesh& mesh, std::size_t most_sides)
+{
+    Findings findings;
+    const std::vector<std::uint32_t> index = index_points(free, mesh);
+    const std::size_t sides = 4 * mesh.tets.size() + 2 * free.triangles->size(),
+                      parts = 1 + sides / most_sides,
+                      // Places without a point have numbers beyond all points.
+        points = mesh.points.size() + free.first.size(),
+                      points_of_part = 1 + mesh.points.size() / parts;
+    for (std::size_t first = 0; first < points; first += points_of_part) {
+        // The last part has all numbers beyond the points too, of which hardly any are used.
+        const std::size_t last =
+            first + points_of_part >= mesh.points.size() ? points : first + points_of_part;
+        judge_part(free, index, mesh,
+                   {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last), {}},
+                   findings);
+        if (last == points)
+            break;
     }
     return {findings.crowded.listed(), findings.misoriented.listed(), findings.stray.listed(),
             findings.missing.listed()};
@@ -204,14 +237,15 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh)
 
 } // namespace
 
-Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh)
+Conformity check_conformity(const PrismShell& shell, const TetMesh& mesh, std::size_t most_sides)
 {
-    return judge(free_surfaces(&shell, 1, false), mesh);
+    return judge(free_surfaces(&shell, 1, false), mesh, most_sides);
 }
 
-Conformity check_conformity(const ShellStack& stack, const TetMesh& mesh)
+Conformity check_conformity(const ShellStack& stack, const TetMesh& mesh, std::size_t most_sides)
 {
-    return judge(free_surfaces(stack.layers.data(), stack.layers.size(), stack.tapered), mesh);
+    return judge(free_surfaces(stack.layers.data(), stack.layers.size(), stack.tapered), mesh,
+                 most_sides);
 }
 
 } // namespace vdb_shell

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
 
 namespace
 {
@@ -76,6 +79,34 @@ TEST(Conformity, SeesADuplicateTet)
     const Conformity found = check_conformity(shell, tets);
     EXPECT_EQ(found.crowded_faces.count, 3U);
     EXPECT_EQ(found.missing_triangles.count, 1U); // its outer triangle is no free face any more
+}
+
+/// All that one run has found, to compare.
+std::array<std::vector<std::uint32_t>, 4> all_first(const Conformity& found)
+{
+    return {found.crowded_faces.first, found.misoriented_faces.first, found.stray_faces.first,
+            found.missing_triangles.first};
+}
+
+TEST(Conformity, FindsTheSameInPartsOfAnySize)
+{
+    const PrismShell shell = sphere_shell();
+    TetMesh tets = tets_of(shell);
+    tets.tets.erase(tets.tets.begin());
+    tets.prism.erase(tets.prism.begin());
+    tets.tets.push_back(tets.tets[20]);
+    tets.prism.push_back(tets.prism[20]);
+    std::swap(tets.tets[70][0], tets.tets[70][1]);
+    const Conformity at_once = check_conformity(shell, tets);
+    EXPECT_FALSE(at_once.conforming());
+    for (const std::size_t sides : {1U, 7U, 100U, 1000U}) {
+        const Conformity in_parts = check_conformity(shell, tets, sides);
+        EXPECT_EQ(all_first(in_parts), all_first(at_once)) << sides;
+        EXPECT_EQ(in_parts.crowded_faces.count, at_once.crowded_faces.count) << sides;
+        EXPECT_EQ(in_parts.misoriented_faces.count, at_once.misoriented_faces.count) << sides;
+        EXPECT_EQ(in_parts.stray_faces.count, at_once.stray_faces.count) << sides;
+        EXPECT_EQ(in_parts.missing_triangles.count, at_once.missing_triangles.count) << sides;
+    }
 }
 
 TEST(Conformity, SeesTheSidesOfAnOpenSurface)
