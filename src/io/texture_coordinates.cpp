@@ -72,11 +72,15 @@ TextureCoordinates texture_of_scan(const std::string& name, FileScan scan,
     std::size_t first = 0;
     Polygon polygon;
     for (const std::uint32_t size : texture.face_sizes) {
-        polygon.clear();
-        for (std::size_t k = first; k < first + size; ++k)
-            // Welded as mesh_of_scan welds, so that the polygon is tidied to the same corners.
-            polygon.push_back(first_equal[texture.vertices[k]]);
-        const std::size_t triangles = tidy_polygon(polygon) ? polygon.size() - 2 : 0;
+        // Tidied, welded and tidied again, as the scan and mesh_of_scan do: welded before, some
+        // polygon would have a triangle that the mesh has not.
+        polygon.assign(texture.vertices.begin() + std::ptrdiff_t(first),
+                       texture.vertices.begin() + std::ptrdiff_t(first + size));
+        bool kept = tidy_polygon(polygon);
+        for (std::uint32_t& corner : polygon)
+            corner = first_equal[corner];
+        kept = kept && tidy_polygon(polygon);
+        const std::size_t triangles = kept ? polygon.size() - 2 : 0;
         for (std::size_t n = 0; n < triangles; ++n) {
             const openvdb::Vec3I& t = made.mesh.triangles[made.corner.size()];
             std::array<Vec2d, 3>& corner = made.corner.emplace_back();

@@ -24,8 +24,13 @@ from runs import replace_tables, table  # noqa: E402
 # Bytes of an input at most: the smaller, the faster; a .vdb of one voxel has some thousand.
 LONGEST = {"tiny_meshes": 160, "vdb": 30000, "houdini": 4000}
 
-# To count how rare each of thousands of features is takes two fifths of the time of a whole build.
-MORE = {"tiny_meshes": ["-entropic=0"]}
+# To count how rare each of thousands of features is takes two fifths of the time of a whole build, and to look for what other
+# processes have found an eighth of that of a reader.
+ALWAYS = ["-entropic=0", "-reload=0"]
+
+# Freed memory that is kept back stays in the processor's cache, and no block remembers where it was asked for: a fifth of the time
+# of a file of options. One input run by itself tells that all the same.
+SANITIZER = "quarantine_size_mb=16:malloc_context_size=0"
 
 INTERRUPTED = 72 # libFuzzer's status when somebody ended it
 
@@ -36,9 +41,10 @@ def run(build, name, seconds, work):
     dictionary = HERE / "dictionaries" / f"{name}.dict"
     line = [build / "tests" / f"fuzz_{name}", corpus, HERE / "inputs" / name, f"-max_total_time={seconds}",
             f"-max_len={LONGEST.get(name, 2000)}", "-timeout=30", "-rss_limit_mb=3000", "-print_final_stats=1",
-            "-verbosity=1", f"-artifact_prefix={work / name}-", *([f"-dict={dictionary}"] if dictionary.exists() else []), *MORE.get(name, [])]
+            "-verbosity=1", f"-artifact_prefix={work / name}-", *([f"-dict={dictionary}"] if dictionary.exists() else []), *ALWAYS]
     before = os.times()
-    done = subprocess.run([str(word) for word in line], capture_output=True, text=True, errors="replace")
+    done = subprocess.run([str(word) for word in line], capture_output=True, text=True, errors="replace",
+                          env={"ASAN_OPTIONS": SANITIZER, **os.environ})
     after = os.times()
     # Of the processor: runs of hours share the machine with other work.
     spent = after.children_user + after.children_system - before.children_user - before.children_system

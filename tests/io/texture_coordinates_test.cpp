@@ -235,5 +235,21 @@ TEST(TextureCoordinates, OfASoupAreCountedByCorner)
     EXPECT_THROW(texture_of_polygons(soup, {{0, 0}}, "soup"), InvalidOption);
 }
 
+TEST(TextureCoordinates, FacesThatTheMeshLeavesOutHaveNone)
+{
+    // Pairs of points in one place. The first face repeats all of its corners, so the mesh has no
+    // triangle of it, though merged first it would have one. Found by the fuzzer.
+    const TextureCoordinates texture = read("pairs.obj", "v 0 0 0\nv 0 0 0\nv 1 0 0\nv 1 0 0\n"
+                                                         "v 0 1 0\nv 0 1 0\nv 0 0 1\n"
+                                                         "vt 0 0\nvt 1 0\nvt 0 1\n"
+                                                         "f 1/1 2/1 1/1 2/1 3/1 4/1 3/1 4/1 5/1 "
+                                                         "6/1 5/1 6/1\nf 1/1 3/2 7/3\n");
+    ASSERT_EQ(texture.mesh.triangles.size(), 1U);
+    ASSERT_EQ(texture.corner.size(), 1U);
+    EXPECT_EQ(texture.corner[0][0], Vec2d(0, 0));
+    EXPECT_EQ(texture.corner[0][1], Vec2d(1, 0));
+    EXPECT_EQ(texture.corner[0][2], Vec2d(0, 1));
+}
+
 } // namespace
 } // namespace vdb_shell
