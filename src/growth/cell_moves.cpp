@@ -78,9 +78,14 @@ void CellMoves::update_tree()
 void CellMoves::list_faces(const Group& group)
 {
     faces_.clear();
-    for (const GroupShare& share : group)
+    // A witness that moves with the group is not where the tree has it.
+    search_ = WitnessSearch::trees;
+    for (const GroupShare& share : group) {
+        if (is_witness(s_, share.vertex))
+            search_ = WitnessSearch::one_by_one;
         for (const FaceCorner& at : star(*s_.mesh, share.vertex))
             faces_.push_back(at.face);
+    }
     std::sort(faces_.begin(), faces_.end());
     faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
 }
@@ -189,7 +194,7 @@ bool CellMoves::allowed(const Box& reached)
 {
     hits_.clear();
     for (const int f : faces_)
-        if (!prism_valid(s_, f) || holds_component(s_, f))
+        if (!prism_valid(s_, f) || holds_component(s_, f, search_))
             return false;
     for (const int f : faces_)
         field_.marked[f] = 1;

@@ -6,6 +6,7 @@
 #include "growth/barrier.h"
 #include "growth/group_shares.h"
 #include "growth/grow_state.h"
+#include "growth/other_components.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -79,7 +80,8 @@ private:
     GrowState& s_;
     Box domain_;
     std::vector<int> faces_; ///< those whose prisms change
-    Vec3d gradient_{0.0};    ///< of the inner surface's volume6
+    WitnessSearch search_ = WitnessSearch::trees;
+    Vec3d gradient_{0.0}; ///< of the inner surface's volume6
     Ball ball_{Vec3d(0.0), 0.0};
     LinearBounds bounds_;
     Vec3d step_{0.0};

@@ -47,7 +47,8 @@ struct GrowState {
     /// Empty: none is; else components may be anywhere.
     std::vector<std::uint8_t> excused;
 
-    /// One vertex per component, to see a move that would enclose a whole other component.
+    /// One vertex per component, ascending, to see a move that would enclose a whole other
+    /// component.
     std::vector<int> witness;
 };
 

@@ -37,16 +37,6 @@ bool positive(const GrowState& s, int f, const OrientedTet& tet)
                   corner_of(s, f, tet.corner[2]), corner_of(s, f, tet.corner[3])) > 0;
 }
 
-/// Whether p lies in the closed tet, of either orientation: what a move sweeps over may have
-/// either. A point on its surface counts as inside, so a doubt makes a move fail, never pass.
-bool in_tet(const Corners& base, const Vec3d& apex, const Vec3d& p)
-{
-    const auto& [a, b, c] = base;
-    const int s0 = orient(a, b, c, p), s1 = orient(a, c, apex, p), s2 = orient(a, apex, b, p),
-              s3 = orient(b, apex, c, p);
-    return (s0 >= 0 && s1 >= 0 && s2 >= 0 && s3 >= 0) || (s0 <= 0 && s1 <= 0 && s2 <= 0 && s3 <= 0);
-}
-
 /// Inner triangle `moved` against those around its corner u that hold neither v nor `done`, whose
 /// triangles have been tested already; where u is pinned also against the outer ones: there both
 /// surfaces have the corner u, and pairs with a common corner have no separating plane.
@@ -211,54 +201,6 @@ Vec3d capped(const GrowState& s, int v, const Vec3d& x)
     // Along the radius: that is the nearest point of the ball around the outer point.
     const Vec3d arm = x - s.a[v];
     return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
-}
-
-bool swallows_component(const GrowState& s, int v, const Vec3d& x)
-{
-    const Connectivity& m = *s.mesh;
-    if (m.components < 2 || !s.excused.empty())
-        return false;
-    for (const FaceCorner& at : star(m, v)) {
-        const Vec3d& p = s.b[m.corner(at.face, (at.local + 1) % 3)];
-        const Vec3d& q = s.b[m.corner(at.face, (at.local + 2) % 3)];
-        // A triangle of the star sweeps over the tet of its two resting corners and both places of
-        // v. A component within it that touches no surface would come to lie in this one's shell,
-        // and one of its points tells; the box is there to spare most of the exact tests.
-        Box swept = box_of({s.b[v], p, q});
-        swept.add(x);
-        for (const int w : s.witness) {
-            if (m.component[w] == m.component[v])
-                continue;
-            for (const Vec3d* e : {&s.a[w], &s.b[w]})
-                if (swept.contains(*e) && in_tet({s.b[v], x, p}, q, *e))
-                    return true;
-        }
-    }
-    return false;
-}
-
-bool holds_component(const GrowState& s, int f)
-{
-    const Connectivity& m = *s.mesh;
-    if (m.components < 2 || !s.excused.empty())
-        return false;
-    Box box = box_of(outer_corners(s, f));
-    box.add(box_of(inner_corners(s, f)));
-    for (const int w : s.witness) {
-        if (m.component[w] == m.component[m.corner(f, 0)])
-            continue;
-        for (const Vec3d* e : {&s.a[w], &s.b[w]})
-            // By the present split. While the diagonals of neighbours do not conform yet, a point
-            // close to a side may be in the tets of neither; the certificate at the end decides by
-            // winding numbers.
-            for (const OrientedTet& tet : tables().three[s.order[f]])
-                if (box.contains(*e) && !dropped(s, f, tet.pillar) &&
-                    in_tet({corner_of(s, f, tet.corner[0]), corner_of(s, f, tet.corner[1]),
-                            corner_of(s, f, tet.corner[2])},
-                           corner_of(s, f, tet.corner[3]), *e))
-                    return true;
-    }
-    return false;
 }
 
 bool split_positive(const GrowState& s, int f, int order)

@@ -41,12 +41,6 @@ Vec3d end_within_cap(const GrowState& s, int v, const Vec3d& unit, double length
 /// The float32 point nearest x that respects the cap.
 Vec3d capped(const GrowState& s, int v, const Vec3d& x);
 
-/// Would moving b_v to x sweep over another component as a whole, touching nothing? The contact
-/// tests see only where the triangles end up.
-bool swallows_component(const GrowState& s, int v, const Vec3d& x);
-/// Does prism f hold another component as a whole? Precondition: its tets are positive.
-bool holds_component(const GrowState& s, int f);
-
 /// All tets of face f positive (under s.twelve or its order), and its inner triangle not
 /// degenerate.
 bool prism_valid(const GrowState& s, int f);

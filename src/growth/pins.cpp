@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "growth/move_tests.h"
+#include "growth/other_components.h"
 #include "mesh/most_visible.h"
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "growth/move_tests.h"
+#include "growth/other_components.h"
 
 #include <algorithm>
 #include <atomic>
@@ -101,18 +102,22 @@ private:
     Marks& bad_;
 };
 
-/// Marks the triangles that touch others in a place where they should not, of those that `changed`
-/// and are not marked yet.
-void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool first, Marks& bad)
+void update_tree(GrowState& s, const std::vector<std::uint8_t>& changed, bool first)
 {
     std::vector<FloatBox> boxes(changed.size());
-    std::vector<std::uint8_t> tested(changed.size());
-    for_each_index(tested.size(), [&](std::size_t f) {
+    for_each_index(boxes.size(), [&](std::size_t f) {
         if (changed[f])
             boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
-        tested[f] = changed[f] && !bad[f];
     });
     first ? s.inner_tree.build(std::move(boxes)) : s.inner_tree.refit(boxes, changed);
+}
+
+/// Marks the triangles that touch others in a place where they should not, of those that `changed`
+/// and are not marked yet.
+void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed, Marks& bad)
+{
+    std::vector<std::uint8_t> tested(changed.size());
+    for_each_index(tested.size(), [&](std::size_t f) { tested[f] = changed[f] && !bad[f]; });
     const ContactSearch search(s, tested, changed, bad);
     for_each_range(
         s.inner_tree.groups(),
@@ -124,6 +129,7 @@ void mark_contacts(GrowState& s, const std::vector<std::uint8_t>& changed, bool 
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
                                           bool first)
 {
+    update_tree(s, changed, first);
     Marks bad(changed.size());
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
@@ -132,7 +138,7 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
     });
     // A face that fails already is not tested for contacts: its pillars will be shortened anyway,
     // and contact tests are the dearer ones.
-    mark_contacts(s, changed, first, bad);
+    mark_contacts(s, changed, bad);
     return {bad.begin(), bad.end()};
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "growth/move_tests.h"
+#include "growth/other_components.h"
 #include "growth/separating_planes.h"
 #include "growth/sweep.h"
 #include "growth/trust_radius.h"
