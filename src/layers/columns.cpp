@@ -201,7 +201,7 @@ void mend_columns(Columns& c, const StageProgress& progress)
 {
     bool improved = true;
     for (int round = 0; improved && round < kMostRounds; ++round) {
-        progress.stop_if_interrupted(100 * round / kMostRounds);
+        progress.stop_if_interrupted(100.0 * round / kMostRounds);
         improved = false;
         const auto corners = movable_corners(c, bad_prisms(c));
         // One point after the other in index order, in one thread: each move sees those before it,

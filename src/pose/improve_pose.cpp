@@ -250,7 +250,7 @@ void improve_pose(const Parts& parts, const SkinSide& side, const PoseOptions& o
     growth::SeparatingPlanes planes;
     std::vector<std::uint8_t> inactive = at_rest(job, s, state);
     for (int round = 0; round < options.rounds; ++round) {
-        progress.stop_if_interrupted(100 * round / options.rounds);
+        progress.stop_if_interrupted(100.0 * round / options.rounds);
         // What does not move needs no room.
         for (int v = 0; v < s.mesh->vertices; ++v)
             s.trust_radius[v] = inactive[v] ? 0 : kRadius * growth::mean_edge(*s.mesh, s.b, v);

@@ -261,7 +261,7 @@ void inflate(GrowState& s, const Region& region, const StageProgress& progress)
     }
     const double enough = kHighEnough * s.rounding;
     for (int sweep = 0; sweep < kSweeps && lowest(s, region.faces) < enough; ++sweep) {
-        progress.stop_if_interrupted(100 * sweep / kSweeps);
+        progress.stop_if_interrupted(100.0 * sweep / kSweeps);
         for (const int v : region.vertices)
             move_apart(s, v, longest[v]);
     }

@@ -147,7 +147,7 @@ void part_faces(const Parts& parts, PoseState& state, const std::vector<Vec3s>& 
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     double weight = kFirstWeight;
     for (int round = 0, idle = 0; round < kPartingRounds && idle < kIdleRounds; ++round, ++idle) {
-        progress.stop_if_interrupted(100 * round / kPartingRounds);
+        progress.stop_if_interrupted(100.0 * round / kPartingRounds);
         const std::vector<Vec3s> points = stored_points(parts, state, skin);
         const std::vector<std::uint32_t> inverted = inverted_tets(parts, points);
         const std::vector<FacePair> pairs = faces_not_apart(parts, points, skin, crossings);

@@ -51,7 +51,7 @@ int relax_pose(const Parts& parts, PoseState& state, double most_distortion,
     // A point is looked at again only if it, or one that it shares a tet with, has just moved.
     std::vector<std::uint8_t> awake = may_move, next(parts.rest.size());
     for (int round = 0; round < kRounds; ++round) {
-        progress.stop_if_interrupted(100 * round / kRounds);
+        progress.stop_if_interrupted(100.0 * round / kRounds);
         std::fill(next.begin(), next.end(), std::uint8_t(0));
         bool any = false;
         for (const std::vector<std::uint32_t>& colour : parts.colour) {

@@ -81,7 +81,7 @@ EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limi
 {
     limits.fixed.resize(mesh.points.size());
     for (int repeat = 0;; ++repeat) {
-        progress.stop_if_interrupted(100 * repeat / (most_repeats + 1));
+        progress.stop_if_interrupted(100.0 * repeat / (most_repeats + 1));
         Coarsened left = collapse_edges(mesh, limits);
         std::vector<FloatBox> places = spoiled_places(left.mesh);
         const bool embedded = places.empty();

@@ -86,7 +86,7 @@ RemeshResult attempt(const Job& job, double tolerance, double& length)
     for (std::uint32_t v = 0; v < surface.vertex_slots(); ++v)
         surface.size(v) = length;
     for (int round = 0; round < kRounds; ++round) {
-        job.progress.stop_if_interrupted(90 * round / kRounds);
+        job.progress.stop_if_interrupted(90.0 * round / kRounds);
         if (round > 1 && wanted > 0) {
             const double before = length;
             length *= std::sqrt(double(surface.live_triangles()) / wanted);
