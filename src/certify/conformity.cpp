@@ -221,15 +221,12 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh, std::size_t most
                       // Places without a point have numbers beyond all points.
         points = mesh.points.size() + free.first.size(),
                       points_of_part = 1 + mesh.points.size() / parts;
-    for (std::size_t first = 0; first < points; first += points_of_part) {
+    for (std::size_t first = 0, last = 0; first < points; first = last) {
         // The last part has all numbers beyond the points too, of which hardly any are used.
-        const std::size_t last =
-            first + points_of_part >= mesh.points.size() ? points : first + points_of_part;
+        last = first + points_of_part < mesh.points.size() ? first + points_of_part : points;
         judge_part(free, index, mesh,
                    {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last), {}},
                    findings);
-        if (last == points)
-            break;
     }
     return {findings.crowded.listed(), findings.misoriented.listed(), findings.stray.listed(),
             findings.missing.listed()};

@@ -56,9 +56,6 @@ public:
             throw Cancelled();
     }
 
-    /// For what asks it on its own (core/polled_stop.h); may be null.
-    Interrupter* interrupter() const { return interrupter_; }
-
 private:
     StageProgress(Interrupter* interrupter, double from, double to)
         : interrupter_(interrupter), from_(from), to_(to), is_part_(true)

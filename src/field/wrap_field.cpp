@@ -10,7 +10,7 @@
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
-#include "core/polled_stop.h"
+#include "core/stage_stop.h"
 #include "field/mesh_distances.h"
 #include "resample/triangle_pieces.h"
 
@@ -261,14 +261,11 @@ WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progre
 {
     const std::vector<TriangleCorners> all = cut_up(winding.triangles());
     std::vector<Part> parts(all.size());
-    const PolledStop stop(progress.interrupter());
     for_each_index((all.size() + kPiecesAtOnce - 1) / kPiecesAtOnce, [&](std::size_t run) {
-        if (stop.wanted())
-            return;
+        stop_if_stage_wants();
         const std::size_t begin = run * kPiecesAtOnce;
         sort_run(&all[begin], std::min(kPiecesAtOnce, all.size() - begin), winding, &parts[begin]);
     });
-    stop.throw_if_wanted();
     progress.stop_if_interrupted(20);
     WrapPieces pieces;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -307,17 +304,17 @@ openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber
     // ends on triangles only. Followed from their band, no part of it is missed. Each pass computes
     // voxels that had no value before, so the loop ends when the surface is closed.
     std::vector<Coord> fresh = band_voxels(*boundary, *sheet);
-    const PolledStop stop(progress.interrupter());
     while (!fresh.empty()) {
         progress.stop_if_interrupted(50);
         std::vector<float> computed(fresh.size());
         const std::vector<std::size_t> begins = block_begins(fresh);
         for_each_range(begins.size() - 1, [&](std::size_t begin, std::size_t end) {
             FieldValues values_at(*boundary, *sheet, winding, sheet_voxels);
-            for (std::size_t b = begin; b < end && !stop.wanted(); ++b)
+            for (std::size_t b = begin; b < end; ++b) {
+                stop_if_stage_wants();
                 values_at.at(&fresh[begins[b]], begins[b + 1] - begins[b], &computed[begins[b]]);
+            }
         });
-        stop.throw_if_wanted();
         for (std::size_t i = 0; i < fresh.size(); ++i)
             values.setValue(fresh[i], computed[i]);
         fresh = beyond_sign_changes(fresh, *field);

@@ -134,4 +134,13 @@ double fill_of(const GrowState& s)
     return s.bounded ? 1 - ratio : ratio - 1;
 }
 
+std::vector<FloatBox> inner_boxes(const GrowState& s)
+{
+    std::vector<FloatBox> boxes(s.mesh->faces.size());
+    for_each_index(boxes.size(), [&](std::size_t f) {
+        boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
+    });
+    return boxes;
+}
+
 } // namespace vdb_shell::growth

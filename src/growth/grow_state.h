@@ -117,4 +117,7 @@ Vec3d inner_volume6_gradient(const GrowState& s, int v);
 /// What lies between the surfaces over what the outer one encloses, whichever side it lies on.
 double fill_of(const GrowState& s);
 
+/// By face, the box of its inner triangle as it is.
+std::vector<FloatBox> inner_boxes(const GrowState& s);
+
 } // namespace vdb_shell::growth

@@ -10,9 +10,10 @@
 #include "growth/move_groups.h"
 
 #include "core/parallel.h"
-#include "core/polled_stop.h"
+#include "core/stage_stop.h"
 #include "growth/cell_moves.h"
 #include "growth/group_cells.h"
+#include "growth/other_components.h"
 #include "growth/ray_hit.h"
 
 #include <algorithm>
@@ -42,11 +43,7 @@ std::vector<Group> groups_of(const std::vector<GroupShare>& shares)
 
 void rebuild_tree(GrowState& s)
 {
-    std::vector<FloatBox> boxes(s.mesh->faces.size());
-    for_each_index(boxes.size(), [&](std::size_t f) {
-        boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
-    });
-    s.inner_tree.build(std::move(boxes));
+    s.inner_tree.build(inner_boxes(s));
     s.inner_tree.index_parents();
 }
 
@@ -92,13 +89,9 @@ std::vector<Group> with_room(const GrowState& s, std::vector<Group> groups, doub
 class Sweeps
 {
 public:
-    Sweeps(GroupField& field, const std::vector<Group>& groups, const StageProgress& progress)
-        : field_(field), s_(field.s), groups_(groups), progress_(progress),
-          tried_(groups.size(), 0), is_witness_(s_.b.size(), 0)
+    Sweeps(GroupField& field, const std::vector<Group>& groups)
+        : field_(field), s_(field.s), groups_(groups), tried_(groups.size(), 0)
     {
-        // Any cell may ask where the witness of another component is.
-        for (const int w : s_.witness)
-            is_witness_[w] = s_.mesh->components > 1;
     }
 
     void sweep(const StageProgress& progress)
@@ -151,9 +144,11 @@ private:
     {
         const Box box = box_of_faces(group);
         return domain.contains(box.lo) && domain.contains(box.hi) &&
-               std::none_of(group.begin(), group.end(), [&](const GroupShare& share) {
-                   return is_witness_[share.vertex] != 0;
-               });
+               // Any cell may ask where the witness of another component is.
+               (s_.mesh->components < 2 ||
+                std::none_of(group.begin(), group.end(), [&](const GroupShare& share) {
+                    return is_witness(s_, share.vertex);
+                }));
     }
 
     /// The cells of one turn at the same time.
@@ -172,11 +167,11 @@ private:
         moves.reserve(turn.size());
         for (const GroupCell& cell : turn)
             moves.emplace_back(field_, cell.domain);
-        const PolledStop stop(progress_.interrupter());
         for_each_index(
             turn.size(),
             [&](std::size_t c) {
-                for (std::size_t k = 0; k < within[c].size() && !stop.wanted(); ++k) {
+                for (std::size_t k = 0; k < within[c].size(); ++k) {
+                    stop_if_stage_wants();
                     const std::size_t i = within[c][k];
                     // Cells of a turn know nothing of each other, so their times may be the same.
                     const std::uint32_t now = now_ + 1 + static_cast<std::uint32_t>(k);
@@ -188,7 +183,6 @@ private:
                 }
             },
             1);
-        stop.throw_if_wanted();
         std::size_t most = 0;
         for (std::size_t c = 0; c < turn.size(); ++c) {
             moves[c].update_tree();
@@ -202,11 +196,9 @@ private:
     GroupField& field_;
     GrowState& s_;
     const std::vector<Group>& groups_;
-    const StageProgress& progress_;
     std::uint32_t now_ = 1;
     std::vector<std::uint32_t> tried_; ///< by group: when it was last
-    std::vector<std::uint8_t> is_witness_;
-    std::vector<std::size_t> last_; ///< groups that are moved after all turns
+    std::vector<std::size_t> last_;    ///< groups that are moved after all turns
     std::size_t made_ = 0;
 };
 
@@ -225,7 +217,7 @@ std::size_t move_groups(GrowState& s, const std::vector<GroupShare>& shares,
     rebuild_tree(s);
     groups = with_room(s, std::move(groups), schedule.least_void * mean_void6);
     GroupField field(s, schedule.least_gain * mean_void6);
-    Sweeps sweeps(field, groups, progress);
+    Sweeps sweeps(field, groups);
     for (int i = 0; i < schedule.sweeps; ++i) {
         if (i > 0)
             rebuild_tree(s);

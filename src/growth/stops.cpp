@@ -94,11 +94,7 @@ StopReason reason_at(const GrowState& s, int v, double step, Near& near)
 std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = s.schedule.stops.step * s.diagonal;
-    std::vector<FloatBox> boxes(s.mesh->faces.size());
-    for_each_index(boxes.size(), [&](std::size_t f) {
-        boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
-    });
-    s.inner_tree.refit(boxes);
+    s.inner_tree.refit(inner_boxes(s));
     std::vector<StopReason> stop(s.b.size());
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
         Near near;
