@@ -24,10 +24,7 @@ namespace
 using openvdb::Vec3d;
 
 constexpr std::uint32_t kLeafTriangles = 8;
-// From this many radii on, a cluster counts as one dipole. The error of the field comes from this
-// number.
-constexpr double kFar = 3.0;
-// The same for a single triangle, whose dipole is nearer to the truth: 0.017 turns off beside a
+// As kFar for a single triangle, whose dipole is nearer to the truth: 0.017 turns off beside a
 // sphere, 0.021 from twice the radius on.
 constexpr double kFarTriangle = 2.5;
 // Rarely are there more of either kind around a group of points.
@@ -129,10 +126,10 @@ struct WindingNumber::Surroundings {
     }
 };
 
-void WindingNumber::look_around(Surroundings& from) const
+void WindingNumber::look_around(std::uint32_t first, Surroundings& from) const
 {
-    std::array<std::uint32_t, 64> stack{};
-    std::size_t height = nodes_.empty() ? 0 : 1;
+    std::array<std::uint32_t, 64> stack{first};
+    std::size_t height = 1;
     while (height > 0) {
         const std::uint32_t index = stack[--height];
         const Node& node = nodes_[index];
@@ -152,6 +149,13 @@ void WindingNumber::look_around(Surroundings& from) const
 
 void WindingNumber::around(const Vec3d* points, std::size_t count, float* turns) const
 {
+    static const std::vector<std::uint32_t> root{0}, none;
+    around(nodes_.empty() ? none : root, points, count, turns);
+}
+
+void WindingNumber::around(const std::vector<std::uint32_t>& nodes, const Vec3d* points,
+                           std::size_t count, float* turns) const
+{
     if (count == 0)
         return;
     Vec3d low = points[0], high = points[0];
@@ -162,7 +166,8 @@ void WindingNumber::around(const Vec3d* points, std::size_t count, float* turns)
     Surroundings from{0.5 * (low + high), 0.5 * (high - low).length(), {}, {}};
     from.far.reserve(kUsualList);
     from.near.reserve(kUsualList);
-    look_around(from);
+    for (const std::uint32_t node : nodes)
+        look_around(node, from);
     for (std::size_t first = 0; first < count; first += kLanes) {
         const std::size_t some = std::min(kLanes, count - first);
         EightPoints eight;

@@ -29,7 +29,7 @@ public:
     /// In the order of the tree: triangles that are near each other stand near each other.
     const std::vector<TriangleCorners>& triangles() const { return triangles_; }
 
-private:
+    /// A cluster of triangles: a node of the tree, or a leaf of it.
     struct Node {
         openvdb::Vec3d centre{0.0};      ///< mean, weighted by area
         openvdb::Vec3d area_normal{0.0}; ///< sum of areas times normals
@@ -37,10 +37,21 @@ private:
         std::uint32_t begin = 0, end = 0;
         std::uint32_t right = 0; ///< 0: a leaf; the left child stands next to its parent
     };
+    /// The root first; none without triangles.
+    const std::vector<Node>& nodes() const { return nodes_; }
+    /// As above, of the triangles in these nodes only.
+    void around(const std::vector<std::uint32_t>& nodes, const openvdb::Vec3d* points,
+                std::size_t count, float* turns) const;
+
+    /// From this many radii on, a cluster counts as one dipole. The error of the field comes from
+    /// this number.
+    static constexpr double kFar = 3.0;
+
+private:
     struct Surroundings;
     void build(std::uint32_t begin, std::uint32_t end);
     void summarise(Node& node) const;
-    void look_around(Surroundings& from) const;
+    void look_around(std::uint32_t node, Surroundings& from) const;
 
     std::vector<TriangleCorners> triangles_;
     std::vector<Node> nodes_;

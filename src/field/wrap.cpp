@@ -77,20 +77,25 @@ void set_shares(WrapReport& report, const WrapPieces& pieces)
     report.interior_share = pieces.interior_area / area;
 }
 
-openvdb::FloatGrid::Ptr field_of(std::vector<TriangleCorners> triangles, const WrapOptions& options,
-                                 WrapReport& report, const StageProgress& progress)
+openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
+                                 const WrapOptions& options, WrapReport& report,
+                                 const StageProgress& progress)
 {
-    const WindingNumber winding(std::move(triangles));
+    const WindingNumber winding(cut_to_sum_up(triangles));
     WrapPieces pieces = sort_pieces(winding, progress);
-    auto field = wrap_field(pieces, winding, options.sheet_voxels, progress);
+    auto field = wrap_field(pieces, winding, options.sheet_voxels, half_size, progress);
     // A solid that is smaller than a voxel can slip between the voxel centres. As plates its
     // triangles cannot, so there always is a surface.
     if (!(value_range(*field).least < 0)) {
         pieces = all_sheets(winding.triangles());
-        field = wrap_field(pieces, winding, options.sheet_voxels, progress);
+        field = wrap_field(pieces, winding, options.sheet_voxels, half_size, progress);
     }
     set_shares(report, pieces);
     report.voxels = field->activeVoxelCount();
+    // Before there is a surface: those in a soup that fills space may have ten times the triangles
+    // of what is around them.
+    if (!options.keep_voids)
+        report.filled_voxels = fill_voids(*field);
     return field;
 }
 
@@ -140,7 +145,9 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     WrapResult result;
     const double voxel = result.report.voxel_size = voxel_size_for(bounds, options);
 
-    const auto field = field_of(in_voxels(mesh, centre, voxel), options, result.report, progress);
+    const auto field =
+        field_of(in_voxels(mesh, centre, voxel), 0.5 / voxel * (bounds.high - bounds.low), options,
+                 result.report, progress);
     const auto to_world = [&](const Vec3d& index) { return centre + voxel * index; };
     result.mesh = contour_mapped(*field, to_world, {options.adaptivity, !options.keep_voids},
                                  result.report.contour, interrupter);

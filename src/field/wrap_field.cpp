@@ -12,8 +12,10 @@
 #include "core/parallel.h"
 #include "core/stage_stop.h"
 #include "field/mesh_distances.h"
+#include "field/winding_field.h"
 #include "resample/triangle_pieces.h"
 
+#include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
@@ -45,11 +47,13 @@ constexpr double kBandVoxels = 3.0;
 // Turns the fall of the winding number across a gap into a field about as steep as a distance.
 // Times 1 - kInsideWinding it is no less than the band, so closed solids reach their full depth.
 constexpr double kVoxelsPerTurn = 8.0;
-// How many pieces and voxels ask for the winding number together: with fewer the tree is walked
-// more often, with more less of it is far from all of them.
-constexpr std::size_t kPiecesAtOnce = 64;
-constexpr int kBlockSideLog = 2;
-constexpr std::size_t kBlockVoxels = std::size_t(1) << (3 * kBlockSideLog);
+// What the winding number is summed up of is cut, so that few triangles are near to a point: long
+// ones would be near to most of the grid. Half as long, a surface of small triangles gains nothing.
+constexpr double kSummedVoxels = 4.0;
+constexpr std::size_t kVoxelsAtOnce = 4096;
+
+// Voxels. Any depth will do in a void that was filled; 0 would be a surface.
+constexpr float kLeastFilledDepth = 0.1F;
 
 enum class Part : char { boundary, sheet, interior };
 
@@ -76,46 +80,45 @@ Stance stance_of(const TriangleCorners& piece)
     return stance;
 }
 
-/// What a run of pieces is, which stand near each other: first just above and below each, then
-/// where only one side is inside, at the depth at which a solid is one.
-void sort_run(const TriangleCorners* pieces, std::size_t count, const WindingNumber& winding,
-              Part* parts)
+/// What each piece is: first from just above and below it, then, where only one side is inside,
+/// from the depth at which a solid is one.
+std::vector<Part> parts_of(const std::vector<TriangleCorners>& pieces, const WindingNumber& winding)
 {
-    std::array<Stance, kPiecesAtOnce> stances{};
-    std::array<Vec3d, 2 * kPiecesAtOnce> points{};
-    std::array<float, 2 * kPiecesAtOnce> turns{};
-    for (std::size_t i = 0; i < count; ++i) {
+    std::vector<Stance> stances(pieces.size());
+    std::vector<Vec3d> points;
+    points.reserve(2 * pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
         stances[i] = stance_of(pieces[i]);
-        points[2 * i] = stances[i].centre + kBesideVoxels * stances[i].normal;
-        points[2 * i + 1] = stances[i].centre - kBesideVoxels * stances[i].normal;
+        points.push_back(stances[i].centre + kBesideVoxels * stances[i].normal);
+        points.push_back(stances[i].centre - kBesideVoxels * stances[i].normal);
     }
-    winding.around(points.data(), 2 * count, turns.data());
-    std::size_t deep = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const bool above = short_of_inside(turns[2 * i]) < 0;
-        const bool below = short_of_inside(turns[2 * i + 1]) < 0;
-        parts[i] = above && below && stances[i].has_sides ? Part::interior : Part::sheet;
-        if (above == below || !stances[i].has_sides)
+    const std::vector<float> beside = turns_at(winding, points);
+    std::vector<Part> parts(pieces.size());
+    points.clear();
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        Stance& stance = stances[i];
+        const bool above = short_of_inside(beside[2 * i]) < 0;
+        const bool below = short_of_inside(beside[2 * i + 1]) < 0;
+        parts[i] = above && below && stance.has_sides ? Part::interior : Part::sheet;
+        if (above == below || !stance.has_sides)
             continue; // without area it leaves a trace as a sheet
-        stances[i].inner_side = above ? 1 : -1;
-        points[deep++] =
-            stances[i].centre + stances[i].inner_side * kSolidVoxels * stances[i].normal;
+        stance.inner_side = above ? 1 : -1;
+        points.push_back(stance.centre + stance.inner_side * kSolidVoxels * stance.normal);
     }
-    winding.around(points.data(), deep, turns.data());
-    deep = 0;
-    for (std::size_t i = 0; i < count; ++i)
-        if (stances[i].inner_side != 0 &&
-            short_of_inside(turns[deep++]) < kInsideWinding - kSureWinding)
+    const std::vector<float> deep = turns_at(winding, points);
+    auto turns = deep.begin();
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        if (stances[i].inner_side != 0 && short_of_inside(*turns++) < kInsideWinding - kSureWinding)
             parts[i] = Part::boundary;
+    return parts;
 }
 
-/// A large triangle may bound the solid in one part and stick out of it in another, so it is judged
-/// in pieces of no more than two voxels.
-std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles)
+/// Pieces with edges of no more than so many voxels.
+std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles, double voxels)
 {
     std::vector<TriangleCorners> pieces;
     for (const TriangleCorners& t : triangles)
-        for_each_piece(t[0], t[1], t[2], kPieceVoxels,
+        for_each_piece(t[0], t[1], t[2], voxels,
                        [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
                            pieces.push_back({a, b, c});
                        });
@@ -141,28 +144,28 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
                               nullptr);
 }
 
+std::vector<float> turns_at_voxels(const WindingNumber& winding, const std::vector<Coord>& voxels)
+{
+    std::vector<Vec3d> points;
+    points.reserve(voxels.size());
+    for (const Coord& voxel : voxels)
+        points.push_back(voxel.asVec3d());
+    return turns_at(winding, points);
+}
+
 /// The parts of the field at voxels. An accessor must not be shared, so each range of voxels has an
 /// object of its own.
 class FieldValues
 {
 public:
     FieldValues(const openvdb::FloatGrid& boundary, const openvdb::FloatGrid& sheet,
-                const WindingNumber& winding, double sheet_voxels)
+                double sheet_voxels, const Vec3d& half_size)
         : boundary_(boundary.getConstAccessor()), sheet_(sheet.getConstAccessor()),
-          winding_(winding), sheet_voxels_(sheet_voxels)
+          sheet_voxels_(sheet_voxels), limit_(half_size + Vec3d(sheet_voxels))
     {
     }
 
-    /// At voxels of one block.
-    void at(const Coord* voxels, std::size_t count, float* values)
-    {
-        std::array<Vec3d, kBlockVoxels> points{};
-        for (std::size_t i = 0; i < count; ++i)
-            points[i] = voxels[i].asVec3d();
-        winding_.around(points.data(), count, values);
-        for (std::size_t i = 0; i < count; ++i)
-            values[i] = value(voxels[i], short_of_inside(values[i]));
-    }
+    float at(const Coord& voxel, float turns) { return value(voxel, short_of_inside(turns)); }
 
 private:
     float value(const Coord& voxel, double turns)
@@ -172,13 +175,19 @@ private:
         // So the smaller of both has its zero set on the triangles and across the gaps.
         const double depth = std::min(
             {double(boundary_.getValue(voxel)), kVoxelsPerTurn * std::abs(turns), kBandVoxels});
-        const double solid = turns < 0 ? -depth : depth;
+        const Vec3d at = voxel.asVec3d();
+        double beyond = -kBandVoxels;
+        for (int axis = 0; axis < 3; ++axis)
+            beyond = std::max(beyond, std::abs(at[axis]) - limit_[axis]);
+        // Triangles that lie one behind the other, turned alike, such as the faces of a tet mesh,
+        // are seen as a solid far beyond them. Nothing of it is kept outside of their box.
+        const double solid = std::max(turns < 0 ? -depth : depth, std::min(beyond, kBandVoxels));
         return static_cast<float>(std::min(solid, double(sheet_.getValue(voxel)) - sheet_voxels_));
     }
 
     openvdb::FloatGrid::ConstAccessor boundary_, sheet_;
-    const WindingNumber& winding_;
     double sheet_voxels_;
+    Vec3d limit_; ///< of the solid: the box of the triangles, with room for their thickness
 };
 
 template <typename Visit> void for_each_neighbour(const Coord& voxel, const Visit& visit)
@@ -190,40 +199,24 @@ template <typename Visit> void for_each_neighbour(const Coord& voxel, const Visi
                     visit(voxel.offsetBy(i, j, k));
 }
 
-Coord block_of(const Coord& voxel)
-{
-    return voxel >> kBlockSideLog;
-}
-
-/// By block, and in a block by coordinate: the order does not depend on how the voxels were found.
+/// In an order that does not depend on how the voxels were found.
 void sort_and_unite(std::vector<Coord>& voxels)
 {
-    std::sort(voxels.begin(), voxels.end(), [](const Coord& a, const Coord& b) {
-        const Coord block_a = block_of(a), block_b = block_of(b);
-        return block_a == block_b ? a < b : block_a < block_b;
-    });
+    std::sort(voxels.begin(), voxels.end());
     voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
 }
 
-/// Where each block begins in sorted voxels, and their number.
-std::vector<std::size_t> block_begins(const std::vector<Coord>& voxels)
-{
-    std::vector<std::size_t> begins;
-    for (std::size_t i = 0; i < voxels.size(); ++i)
-        if (i == 0 || block_of(voxels[i]) != block_of(voxels[i - 1]))
-            begins.push_back(i);
-    begins.push_back(voxels.size());
-    return begins;
-}
-
+/// The active voxels of both, each once.
 std::vector<Coord> band_voxels(const openvdb::FloatGrid& boundary, const openvdb::FloatGrid& sheet)
 {
+    openvdb::FloatTree both;
+    both.topologyUnion(boundary.tree());
+    both.topologyUnion(sheet.tree());
     std::vector<Coord> voxels;
-    for (const openvdb::FloatGrid* grid : {&boundary, &sheet})
-        for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf)
-            for (auto value = leaf->cbeginValueOn(); value; ++value)
-                voxels.push_back(value.getCoord());
-    sort_and_unite(voxels);
+    voxels.reserve(both.activeVoxelCount());
+    for (auto leaf = both.cbeginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->cbeginValueOn(); value; ++value)
+            voxels.push_back(value.getCoord());
     return voxels;
 }
 
@@ -257,15 +250,16 @@ std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
 
 } // namespace
 
+std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles)
+{
+    return cut_up(triangles, kSummedVoxels);
+}
+
 WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progress)
 {
-    const std::vector<TriangleCorners> all = cut_up(winding.triangles());
-    std::vector<Part> parts(all.size());
-    for_each_index((all.size() + kPiecesAtOnce - 1) / kPiecesAtOnce, [&](std::size_t run) {
-        stop_if_stage_wants();
-        const std::size_t begin = run * kPiecesAtOnce;
-        sort_run(&all[begin], std::min(kPiecesAtOnce, all.size() - begin), winding, &parts[begin]);
-    });
+    // A large triangle may bound the solid in one part and stick out of it in another.
+    const std::vector<TriangleCorners> all = cut_up(winding.triangles(), kPieceVoxels);
+    const std::vector<Part> parts = parts_of(all, winding);
     progress.stop_if_interrupted(20);
     WrapPieces pieces;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -286,14 +280,15 @@ WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progre
 WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles)
 {
     WrapPieces pieces;
-    pieces.sheet = cut_up(triangles);
+    pieces.sheet = cut_up(triangles, kPieceVoxels);
     for (const TriangleCorners& piece : pieces.sheet)
         pieces.sheet_area += area_of(piece);
     return pieces;
 }
 
 openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber& winding,
-                                   double sheet_voxels, const StageProgress& progress)
+                                   double sheet_voxels, const Vec3d& half_size,
+                                   const StageProgress& progress)
 {
     const auto boundary = unsigned_distance(pieces.boundary, kBandVoxels);
     const auto sheet = unsigned_distance(pieces.sheet, sheet_voxels + kBandVoxels);
@@ -306,21 +301,37 @@ openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber
     std::vector<Coord> fresh = band_voxels(*boundary, *sheet);
     while (!fresh.empty()) {
         progress.stop_if_interrupted(50);
-        std::vector<float> computed(fresh.size());
-        const std::vector<std::size_t> begins = block_begins(fresh);
-        for_each_range(begins.size() - 1, [&](std::size_t begin, std::size_t end) {
-            FieldValues values_at(*boundary, *sheet, winding, sheet_voxels);
-            for (std::size_t b = begin; b < end; ++b) {
+        std::vector<float> computed = turns_at_voxels(winding, fresh);
+        for_each_range(
+            fresh.size(),
+            [&](std::size_t begin, std::size_t end) {
                 stop_if_stage_wants();
-                values_at.at(&fresh[begins[b]], begins[b + 1] - begins[b], &computed[begins[b]]);
-            }
-        });
+                FieldValues values_at(*boundary, *sheet, sheet_voxels, half_size);
+                for (std::size_t i = begin; i < end; ++i)
+                    computed[i] = values_at.at(fresh[i], computed[i]);
+            },
+            kVoxelsAtOnce);
         for (std::size_t i = 0; i < fresh.size(); ++i)
             values.setValue(fresh[i], computed[i]);
         fresh = beyond_sign_changes(fresh, *field);
     }
     openvdb::tools::signedFloodFill(field->tree());
     return field;
+}
+
+std::size_t fill_voids(openvdb::FloatGrid& field)
+{
+    const auto solid = openvdb::tools::extractEnclosedRegion(field);
+    const auto is_solid = solid->getConstAccessor();
+    std::size_t filled = 0;
+    for (auto leaf = field.tree().beginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->beginValueOn(); value; ++value)
+            if (*value >= 0 && is_solid.isValueOn(value.getCoord())) {
+                value.setValue(-std::max(*value, kLeastFilledDepth));
+                ++filled;
+            }
+    openvdb::tools::signedFloodFill(field.tree());
+    return filled;
 }
 
 } // namespace vdb_shell

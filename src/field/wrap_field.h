@@ -5,10 +5,14 @@
 #include "core/stage_progress.h"
 #include "field/winding_number.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace vdb_shell
 {
+
+/// Triangles cut for the winding number: the same sum, of which little is near to any point.
+std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles);
 
 /// The input's triangles in pieces of no more than two voxels, by what they are to the solid. All
 /// coordinates in voxels.
@@ -23,8 +27,14 @@ WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles);
 
 /// The field whose zero surface is the wrap: negative inside, in voxels, near the zero surface of
 /// the pieces about a distance. Active wherever it was computed: within three voxels of every
-/// piece, and around every change of sign; flood-filled elsewhere.
+/// piece, and around every change of sign; flood-filled elsewhere. `half_size`: of the triangles'
+/// box about the origin, beyond which nothing is solid but what is within `sheet_voxels` of it.
 openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber& winding,
-                                   double sheet_voxels, const StageProgress& progress);
+                                   double sheet_voxels, const openvdb::Vec3d& half_size,
+                                   const StageProgress& progress);
+
+/// Makes solid what no path from voxel to voxel over their faces leads out of, and what stands in
+/// there. The number of active voxels that became solid.
+std::size_t fill_voids(openvdb::FloatGrid& field);
 
 } // namespace vdb_shell

@@ -71,6 +71,7 @@ ordered_json wrap_json(const WrapReport& wrap)
 {
     return {{"voxel_size", wrap.voxel_size},
             {"voxels", wrap.voxels},
+            {"filled_voxels", wrap.filled_voxels},
             {"boundary_share", wrap.boundary_share},
             {"sheet_share", wrap.sheet_share},
             {"interior_share", wrap.interior_share},

@@ -59,7 +59,13 @@ std::string contour_text(const ContourReport& contour)
 /// Lengths also in voxels, which are what bounds the detail of a wrap.
 void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
 {
-    line(out, "wrap", "voxel " + number(wrap.voxel_size) + ", " + contour_text(wrap.contour));
+    // Said only where it happened: it changes what the solid is.
+    const std::string filled =
+        wrap.filled_voxels > 0
+            ? "; voids of " + number(wrap.filled_voxels, 12) + " of its voxels made solid"
+            : "";
+    line(out, "wrap",
+         "voxel " + number(wrap.voxel_size) + ", " + contour_text(wrap.contour) + filled);
     line(out, "  input",
          percent(wrap.boundary_share) + " of its area bounds the solid, " +
              percent(wrap.sheet_share) + " thickened as sheets, " + percent(wrap.interior_share) +

@@ -32,7 +32,8 @@ OptionList describe(WrapOptions& options);
 
 struct WrapReport {
     double voxel_size = 0;
-    std::size_t voxels = 0; ///< where the field was computed
+    std::size_t voxels = 0;        ///< where the field was computed
+    std::size_t filled_voxels = 0; ///< of these, in enclosed voids that were made solid
     /// Shares of the input's area: boundary of the solid, sheets that were given a thickness, and
     /// what lies inside the solid.
     double boundary_share = 0, sheet_share = 0, interior_share = 0;
