@@ -77,9 +77,10 @@ void set_shares(WrapReport& report, const WrapPieces& pieces)
     report.interior_share = pieces.interior_area / area;
 }
 
+/// `half_size`: of the triangles' box, whose middle is the origin, voxels.
 openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
-                                 const WrapOptions& options, WrapReport& report,
-                                 const StageProgress& progress)
+                                 const Vec3d& half_size, const WrapOptions& options,
+                                 WrapReport& report, const StageProgress& progress)
 {
     const WindingNumber winding(cut_to_sum_up(triangles));
     WrapPieces pieces = sort_pieces(winding, progress);
