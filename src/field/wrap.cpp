@@ -82,13 +82,13 @@ openvdb::FloatGrid::Ptr field_of(const std::vector<TriangleCorners>& triangles,
                                  const Vec3d& half_size, const WrapOptions& options,
                                  WrapReport& report, const StageProgress& progress)
 {
-    const WindingNumber winding(cut_to_sum_up(triangles));
+    WindingGrid winding(cut_to_sum_up(triangles));
     WrapPieces pieces = sort_pieces(winding, progress);
     auto field = wrap_field(pieces, winding, options.sheet_voxels, half_size, progress);
     // A solid that is smaller than a voxel can slip between the voxel centres. As plates its
     // triangles cannot, so there always is a surface.
     if (!(value_range(*field).least < 0)) {
-        pieces = all_sheets(winding.triangles());
+        pieces = all_sheets(winding.number().triangles());
         field = wrap_field(pieces, winding, options.sheet_voxels, half_size, progress);
     }
     set_shares(report, pieces);

@@ -16,11 +16,13 @@
 #include "resample/triangle_pieces.h"
 
 #include <openvdb/tools/LevelSetUtil.h>
+#include <openvdb/tools/Morphology.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace vdb_shell
 {
@@ -51,6 +53,8 @@ constexpr double kVoxelsPerTurn = 8.0;
 // ones would be near to most of the grid. Half as long, a surface of small triangles gains nothing.
 constexpr double kSummedVoxels = 4.0;
 constexpr std::size_t kVoxelsAtOnce = 4096;
+// From the voxel that the middle of a piece is in to all that are nearer to it than kSolidVoxels.
+constexpr int kReachVoxels = 2;
 
 // Voxels. Any depth will do in a void that was filled; 0 would be a surface.
 constexpr float kLeastFilledDepth = 0.1F;
@@ -64,6 +68,11 @@ double short_of_inside(float turns)
     return kInsideWinding - std::abs(double(turns));
 }
 
+Vec3d middle_of(const TriangleCorners& t)
+{
+    return (t[0] + t[1] + t[2]) / 3.0;
+}
+
 /// A piece's middle and unit normal; without area it has none, and no sides to look at.
 struct Stance {
     Vec3d centre, normal;
@@ -74,8 +83,7 @@ struct Stance {
 
 Stance stance_of(const TriangleCorners& piece)
 {
-    Stance stance{(piece[0] + piece[1] + piece[2]) / 3.0,
-                  (piece[1] - piece[0]).cross(piece[2] - piece[0]), true};
+    Stance stance{middle_of(piece), (piece[1] - piece[0]).cross(piece[2] - piece[0]), true};
     stance.has_sides = stance.normal.normalize();
     return stance;
 }
@@ -114,15 +122,70 @@ std::vector<Part> parts_of(const std::vector<TriangleCorners>& pieces, const Win
 }
 
 /// Pieces with edges of no more than so many voxels.
-std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles, double voxels)
+template <typename Visit>
+void for_each_cut(const std::vector<TriangleCorners>& triangles, double voxels, const Visit& visit)
 {
-    std::vector<TriangleCorners> pieces;
     for (const TriangleCorners& t : triangles)
         for_each_piece(t[0], t[1], t[2], voxels,
                        [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-                           pieces.push_back({a, b, c});
+                           visit(TriangleCorners{a, b, c});
                        });
+}
+
+std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles, double voxels)
+{
+    std::vector<TriangleCorners> pieces;
+    for_each_cut(triangles, voxels, [&](const TriangleCorners& piece) { pieces.push_back(piece); });
     return pieces;
+}
+
+/// The voxels around pieces where the winding number says inside, and those where it says outside,
+/// each with all voxels that a piece might reach from the one that its middle is in. Where all
+/// voxels around a piece are on one side, the grid cannot show another. A soup may have many times
+/// more pieces than there are voxels, and nearly all are of this kind.
+struct KnownSides {
+    openvdb::MaskTree inside, outside;
+};
+
+std::vector<Coord> active_voxels(const openvdb::MaskTree& tree)
+{
+    std::vector<Coord> voxels;
+    voxels.reserve(tree.activeVoxelCount());
+    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->cbeginValueOn(); value; ++value)
+            voxels.push_back(value.getCoord());
+    return voxels;
+}
+
+void dilate(openvdb::MaskTree& tree)
+{
+    openvdb::tools::dilateActiveValues(tree, kReachVoxels, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::IGNORE_TILES);
+}
+
+/// None where there are more such voxels than points to look at beside the pieces.
+std::optional<KnownSides> sides_around(const std::vector<TriangleCorners>& triangles,
+                                       WindingGrid& winding)
+{
+    openvdb::MaskTree around;
+    openvdb::tree::ValueAccessor<openvdb::MaskTree> mark(around);
+    std::size_t pieces = 0;
+    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
+        mark.setValueOn(Coord::round(middle_of(piece)));
+        ++pieces;
+    });
+    dilate(around);
+    if (around.activeVoxelCount() > 2 * pieces)
+        return std::nullopt;
+    const std::vector<Coord> voxels = active_voxels(around);
+    const std::vector<float> turns = winding.at(voxels);
+    KnownSides sides;
+    openvdb::tree::ValueAccessor<openvdb::MaskTree> inside(sides.inside), outside(sides.outside);
+    for (std::size_t i = 0; i < voxels.size(); ++i)
+        (short_of_inside(turns[i]) < 0 ? inside : outside).setValueOn(voxels[i]);
+    dilate(sides.inside);
+    dilate(sides.outside);
+    return sides;
 }
 
 double area_of(const TriangleCorners& t)
@@ -142,15 +205,6 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
     }
     return unsigned_distances(mesh, *openvdb::math::Transform::createLinearTransform(1.0), band,
                               nullptr);
-}
-
-std::vector<float> turns_at_voxels(const WindingNumber& winding, const std::vector<Coord>& voxels)
-{
-    std::vector<Vec3d> points;
-    points.reserve(voxels.size());
-    for (const Coord& voxel : voxels)
-        points.push_back(voxel.asVec3d());
-    return turns_at(winding, points);
 }
 
 /// The parts of the field at voxels. An accessor must not be shared, so each range of voxels has an
@@ -209,15 +263,10 @@ void sort_and_unite(std::vector<Coord>& voxels)
 /// The active voxels of both, each once.
 std::vector<Coord> band_voxels(const openvdb::FloatGrid& boundary, const openvdb::FloatGrid& sheet)
 {
-    openvdb::FloatTree both;
+    openvdb::MaskTree both;
     both.topologyUnion(boundary.tree());
     both.topologyUnion(sheet.tree());
-    std::vector<Coord> voxels;
-    voxels.reserve(both.activeVoxelCount());
-    for (auto leaf = both.cbeginLeaf(); leaf; ++leaf)
-        for (auto value = leaf->cbeginValueOn(); value; ++value)
-            voxels.push_back(value.getCoord());
-    return voxels;
+    return active_voxels(both);
 }
 
 /// Voxels without a value beside those where the sign changes at one of `fresh`. Both ends of a
@@ -250,30 +299,64 @@ std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
 
 } // namespace
 
+std::vector<float> WindingGrid::at(const std::vector<Coord>& voxels)
+{
+    auto turns = turns_.getAccessor();
+    std::vector<Coord> missing;
+    std::vector<Vec3d> points;
+    for (const Coord& voxel : voxels)
+        if (!turns.isValueOn(voxel)) {
+            missing.push_back(voxel);
+            points.push_back(voxel.asVec3d());
+        }
+    const std::vector<float> computed = turns_at(number_, points);
+    for (std::size_t i = 0; i < missing.size(); ++i)
+        turns.setValue(missing[i], computed[i]);
+    std::vector<float> values;
+    values.reserve(voxels.size());
+    for (const Coord& voxel : voxels)
+        values.push_back(turns.getValue(voxel));
+    return values;
+}
+
 std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles)
 {
     return cut_up(triangles, kSummedVoxels);
 }
 
-WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progress)
+WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
 {
-    // A large triangle may bound the solid in one part and stick out of it in another.
-    const std::vector<TriangleCorners> all = cut_up(winding.triangles(), kPieceVoxels);
-    const std::vector<Part> parts = parts_of(all, winding);
-    progress.stop_if_interrupted(20);
+    const std::vector<TriangleCorners>& triangles = winding.number().triangles();
+    const std::optional<KnownSides> sides = sides_around(triangles, winding);
+    progress.stop_if_interrupted(10);
     WrapPieces pieces;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const double area = area_of(all[i]);
-        // Pieces inside the solid are left out of the field: the distance to them would bring
-        // values near zero into the solid.
-        if (parts[i] == Part::interior) {
+    // Pieces inside the solid are left out of the field: the distance to them would bring values
+    // near zero into the solid.
+    const auto put = [&](const TriangleCorners& piece, Part part) {
+        const double area = area_of(piece);
+        if (part == Part::interior) {
             pieces.interior_area += area;
-            continue;
+            return;
         }
-        const bool sheet = parts[i] == Part::sheet;
-        (sheet ? pieces.sheet : pieces.boundary).push_back(all[i]);
+        const bool sheet = part == Part::sheet;
+        (sheet ? pieces.sheet : pieces.boundary).push_back(piece);
         (sheet ? pieces.sheet_area : pieces.boundary_area) += area;
-    }
+    };
+    // A large triangle may bound the solid in one part and stick out of it in another.
+    std::vector<TriangleCorners> open;
+    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
+        const Coord voxel = Coord::round(middle_of(piece));
+        if (sides && !sides->inside.isValueOn(voxel))
+            put(piece, Part::sheet);
+        else if (sides && !sides->outside.isValueOn(voxel) && area_of(piece) > 0)
+            put(piece, Part::interior);
+        else
+            open.push_back(piece);
+    });
+    const std::vector<Part> parts = parts_of(open, winding.number());
+    for (std::size_t i = 0; i < open.size(); ++i)
+        put(open[i], parts[i]);
+    progress.stop_if_interrupted(20);
     return pieces;
 }
 
@@ -286,7 +369,7 @@ WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles)
     return pieces;
 }
 
-openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber& winding,
+openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, WindingGrid& winding,
                                    double sheet_voxels, const Vec3d& half_size,
                                    const StageProgress& progress)
 {
@@ -301,7 +384,7 @@ openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber
     std::vector<Coord> fresh = band_voxels(*boundary, *sheet);
     while (!fresh.empty()) {
         progress.stop_if_interrupted(50);
-        std::vector<float> computed = turns_at_voxels(winding, fresh);
+        std::vector<float> computed = winding.at(fresh);
         for_each_range(
             fresh.size(),
             [&](std::size_t begin, std::size_t end) {

@@ -6,6 +6,7 @@
 #include "field/winding_number.h"
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace vdb_shell
@@ -14,13 +15,27 @@ namespace vdb_shell
 /// Triangles cut for the winding number: the same sum, of which little is near to any point.
 std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles);
 
+/// The winding number of triangles at voxels, each computed once.
+class WindingGrid
+{
+public:
+    explicit WindingGrid(std::vector<TriangleCorners> triangles) : number_(std::move(triangles)) {}
+
+    const WindingNumber& number() const { return number_; }
+    std::vector<float> at(const std::vector<openvdb::Coord>& voxels);
+
+private:
+    WindingNumber number_;
+    openvdb::FloatGrid turns_;
+};
+
 /// The input's triangles in pieces of no more than two voxels, by what they are to the solid. All
 /// coordinates in voxels.
 struct WrapPieces {
     std::vector<TriangleCorners> boundary, sheet;
     double boundary_area = 0, sheet_area = 0, interior_area = 0;
 };
-WrapPieces sort_pieces(const WindingNumber& winding, const StageProgress& progress);
+WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress);
 
 /// Takes all pieces for sheets: what is left when no voxel is inside otherwise.
 WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles);
@@ -29,7 +44,7 @@ WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles);
 /// the pieces about a distance. Active wherever it was computed: within three voxels of every
 /// piece, and around every change of sign; flood-filled elsewhere. `half_size`: of the triangles'
 /// box about the origin, beyond which nothing is solid but what is within `sheet_voxels` of it.
-openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, const WindingNumber& winding,
+openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, WindingGrid& winding,
                                    double sheet_voxels, const openvdb::Vec3d& half_size,
                                    const StageProgress& progress);
 
