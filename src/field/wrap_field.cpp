@@ -22,6 +22,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <optional>
 
 namespace vdb_shell
@@ -51,7 +53,7 @@ constexpr double kBandVoxels = 3.0;
 constexpr double kVoxelsPerTurn = 8.0;
 // What the winding number is summed up of is cut, so that few triangles are near to a point: long
 // ones would be near to most of the grid. Half as long, a surface of small triangles gains nothing.
-constexpr double kSummedVoxels = 4.0;
+constexpr double kSummedVoxels = 8.0;
 constexpr std::size_t kVoxelsAtOnce = 4096;
 // From the voxel that the middle of a piece is in to all that are nearer to it than kSolidVoxels.
 constexpr int kReachVoxels = 2;
@@ -186,6 +188,43 @@ std::optional<KnownSides> sides_around(const std::vector<TriangleCorners>& trian
     dilate(sides.inside);
     dilate(sides.outside);
     return sides;
+}
+
+/// Pieces to ask for, and which of them answers for each.
+struct Alike {
+    std::vector<TriangleCorners> asked;
+    std::vector<std::uint32_t> answer;
+};
+
+/// A piece's voxel, and its normal's direction as one of those to a cube's faces, edges and
+/// corners. None without area.
+using Kind = std::array<int, 6>;
+
+Kind kind_of(const TriangleCorners& piece)
+{
+    const Stance stance = stance_of(piece);
+    const Coord voxel = Coord::round(stance.centre);
+    Kind kind{voxel[0], voxel[1], voxel[2], 0, 0, 0};
+    if (stance.has_sides)
+        for (int axis = 0; axis < 3; ++axis)
+            kind[std::size_t(3 + axis)] = int(std::lround(1.2 * stance.normal[axis]));
+    return kind;
+}
+
+/// The grid shows one surface in a voxel, so pieces that have their middles in one and are turned
+/// alike get one answer. It bounds the pieces to ask for by the voxels.
+Alike alike_in_a_voxel(const std::vector<TriangleCorners>& pieces)
+{
+    Alike alike;
+    std::map<Kind, std::uint32_t> known;
+    for (const TriangleCorners& piece : pieces) {
+        const auto next = static_cast<std::uint32_t>(alike.asked.size());
+        const auto [at, is_new] = known.try_emplace(kind_of(piece), next);
+        if (is_new)
+            alike.asked.push_back(piece);
+        alike.answer.push_back(at->second);
+    }
+    return alike;
 }
 
 double area_of(const TriangleCorners& t)
@@ -343,19 +382,32 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
         (sheet ? pieces.sheet_area : pieces.boundary_area) += area;
     };
     // A large triangle may bound the solid in one part and stick out of it in another.
-    std::vector<TriangleCorners> open;
-    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
-        const Coord voxel = Coord::round(middle_of(piece));
-        if (sides && !sides->inside.isValueOn(voxel))
-            put(piece, Part::sheet);
-        else if (sides && !sides->outside.isValueOn(voxel) && area_of(piece) > 0)
-            put(piece, Part::interior);
-        else
-            open.push_back(piece);
-    });
-    const std::vector<Part> parts = parts_of(open, winding.number());
+    std::vector<TriangleCorners> open, cut;
+    for (const TriangleCorners& triangle : triangles) {
+        cut.clear();
+        bool outside_only = sides.has_value();
+        for_each_cut({triangle}, kPieceVoxels, [&](const TriangleCorners& piece) {
+            cut.push_back(piece);
+            outside_only = outside_only && !sides->inside.isValueOn(Coord::round(middle_of(piece)));
+        });
+        if (outside_only) {
+            put(triangle, Part::sheet);
+            continue;
+        }
+        for (const TriangleCorners& piece : cut) {
+            const Coord voxel = Coord::round(middle_of(piece));
+            if (sides && !sides->inside.isValueOn(voxel))
+                put(piece, Part::sheet);
+            else if (sides && !sides->outside.isValueOn(voxel) && area_of(piece) > 0)
+                put(piece, Part::interior);
+            else
+                open.push_back(piece);
+        }
+    }
+    const Alike alike = alike_in_a_voxel(open);
+    const std::vector<Part> parts = parts_of(alike.asked, winding.number());
     for (std::size_t i = 0; i < open.size(); ++i)
-        put(open[i], parts[i]);
+        put(open[i], parts[alike.answer[i]]);
     progress.stop_if_interrupted(20);
     return pieces;
 }
@@ -363,9 +415,9 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
 WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles)
 {
     WrapPieces pieces;
-    pieces.sheet = cut_up(triangles, kPieceVoxels);
-    for (const TriangleCorners& piece : pieces.sheet)
-        pieces.sheet_area += area_of(piece);
+    pieces.sheet = triangles;
+    for (const TriangleCorners& triangle : triangles)
+        pieces.sheet_area += area_of(triangle);
     return pieces;
 }
 

@@ -29,8 +29,8 @@ private:
     openvdb::FloatGrid turns_;
 };
 
-/// The input's triangles in pieces of no more than two voxels, by what they are to the solid. All
-/// coordinates in voxels.
+/// The input's triangles by what they are to the solid: whole where all of one is a sheet, in
+/// pieces of no more than two voxels elsewhere. All coordinates in voxels.
 struct WrapPieces {
     std::vector<TriangleCorners> boundary, sheet;
     double boundary_area = 0, sheet_area = 0, interior_area = 0;
