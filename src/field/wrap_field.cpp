@@ -52,7 +52,8 @@ constexpr double kBandVoxels = 3.0;
 // Times 1 - kInsideWinding it is no less than the band, so closed solids reach their full depth.
 constexpr double kVoxelsPerTurn = 8.0;
 // What the winding number is summed up of is cut, so that few triangles are near to a point: long
-// ones would be near to most of the grid. Half as long, a surface of small triangles gains nothing.
+// ones would be near to most of the grid. Half as long, the faces of a tet mesh take a tenth longer
+// and 8,000 needles a tenth less time, and there are three times as many triangles.
 constexpr double kSummedVoxels = 8.0;
 constexpr std::size_t kVoxelsAtOnce = 4096;
 // From the voxel that the middle of a piece is in to all that are nearer to it than kSolidVoxels.

@@ -117,6 +117,41 @@ TEST(Wrap, ACleanSphereComesBackWithinAVoxel)
     EXPECT_NEAR(volume_of(wrap.mesh), 4.0 / 3.0 * M_PI, 0.05);
 }
 
+// More pieces than voxels around them: those of one voxel that are turned alike are looked at
+// together.
+TEST(Wrap, ASphereFinerThanTheGridComesBackWithinAVoxel)
+{
+    const double voxel = 0.1;
+    const WrapResult wrap = sound_wrap(icosphere(1.0, 6), with_voxel(voxel));
+    EXPECT_GT(wrap.report.boundary_share, 0.99);
+    EXPECT_LT(wrap.report.input_to_wrap.max, voxel);
+    EXPECT_LT(wrap.report.wrap_to_input.max, voxel);
+}
+
+// Loose triangles one behind the other, turned alike, have a winding number over one half far
+// beyond themselves.
+TEST(Wrap, NothingIsSolidBeyondTheBoxOfTheTriangles)
+{
+    TriangleMesh stack;
+    for (int layer = 0; layer < 60; ++layer) {
+        const auto first = std::uint32_t(stack.points.size());
+        const float z = 0.01F * float(layer);
+        for (const Vec3s& corner : {Vec3s(0, 0, z), Vec3s(1, 0, z), Vec3s(1, 1, z), Vec3s(0, 1, z)})
+            stack.points.push_back(corner);
+        stack.triangles.emplace_back(first, first + 1, first + 2);
+        stack.triangles.emplace_back(first, first + 2, first + 3);
+    }
+    const double voxel = 0.05;
+    const WrapResult wrap = sound_wrap(stack, with_voxel(voxel));
+    const Bounds bounds = bounds_of(wrap.mesh.points);
+    // Half the thickness of a sheet, and a voxel for the contour.
+    const double beyond = (WrapOptions().sheet_voxels + 1) * voxel;
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_GT(bounds.low[axis], -beyond);
+        EXPECT_LT(bounds.high[axis], (axis == 2 ? 0.59 : 1.0) + beyond);
+    }
+}
+
 TEST(Wrap, TwoCrossingBoxesBecomeTheirUnion)
 {
     const TriangleMesh soup = joined(box({0, 0, 0}, {2, 2, 2}), box({1, 1, 1}, {3, 3, 3}));
@@ -189,9 +224,13 @@ TEST(Wrap, NestedSurfacesAreFilledUnlessVoidsAreKept)
     const TriangleMesh nested = joined(icosphere(1.0, 4), reversed(icosphere(0.5, 4)));
     const double ball = 4.0 / 3.0 * M_PI;
     WrapOptions options = with_voxel(0.04);
-    EXPECT_NEAR(volume_of(sound_wrap(nested, options).mesh), ball, 0.05 * ball);
+    const WrapResult filled = sound_wrap(nested, options);
+    EXPECT_NEAR(volume_of(filled.mesh), ball, 0.05 * ball);
+    EXPECT_GT(filled.report.filled_voxels, 0U);
     options.keep_voids = true;
-    EXPECT_NEAR(volume_of(sound_wrap(nested, options).mesh), 0.875 * ball, 0.05 * ball);
+    const WrapResult kept = sound_wrap(nested, options);
+    EXPECT_NEAR(volume_of(kept.mesh), 0.875 * ball, 0.05 * ball);
+    EXPECT_EQ(kept.report.filled_voxels, 0U);
     // Of the same sense as the outer one, the inner sphere is just inside.
     const TriangleMesh same = joined(icosphere(1.0, 4), icosphere(0.5, 4));
     EXPECT_NEAR(volume_of(sound_wrap(same, options).mesh), ball, 0.05 * ball);
