@@ -24,7 +24,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <memory>
 
 namespace vdb_shell
 {
@@ -147,7 +147,7 @@ std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangle
 /// voxels around a piece are on one side, the grid cannot show another. A soup may have many times
 /// more pieces than there are voxels, and nearly all are of this kind.
 struct KnownSides {
-    openvdb::MaskTree inside, outside;
+    openvdb::MaskTree::Ptr inside, outside;
 };
 
 std::vector<Coord> active_voxels(const openvdb::MaskTree& tree)
@@ -166,9 +166,8 @@ void dilate(openvdb::MaskTree& tree)
                                        openvdb::tools::IGNORE_TILES);
 }
 
-/// None where there are more such voxels than points to look at beside the pieces.
-std::optional<KnownSides> sides_around(const std::vector<TriangleCorners>& triangles,
-                                       WindingGrid& winding)
+/// No trees where there are more such voxels than points to look at beside the pieces.
+KnownSides sides_around(const std::vector<TriangleCorners>& triangles, WindingGrid& winding)
 {
     openvdb::MaskTree around;
     openvdb::tree::ValueAccessor<openvdb::MaskTree> mark(around);
@@ -179,15 +178,15 @@ std::optional<KnownSides> sides_around(const std::vector<TriangleCorners>& trian
     });
     dilate(around);
     if (around.activeVoxelCount() > 2 * pieces)
-        return std::nullopt;
+        return {};
     const std::vector<Coord> voxels = active_voxels(around);
     const std::vector<float> turns = winding.at(voxels);
-    KnownSides sides;
-    openvdb::tree::ValueAccessor<openvdb::MaskTree> inside(sides.inside), outside(sides.outside);
+    KnownSides sides{std::make_shared<openvdb::MaskTree>(), std::make_shared<openvdb::MaskTree>()};
+    openvdb::tree::ValueAccessor<openvdb::MaskTree> inside(*sides.inside), outside(*sides.outside);
     for (std::size_t i = 0; i < voxels.size(); ++i)
         (short_of_inside(turns[i]) < 0 ? inside : outside).setValueOn(voxels[i]);
-    dilate(sides.inside);
-    dilate(sides.outside);
+    dilate(*sides.inside);
+    dilate(*sides.outside);
     return sides;
 }
 
@@ -367,7 +366,7 @@ std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& t
 WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
 {
     const std::vector<TriangleCorners>& triangles = winding.number().triangles();
-    const std::optional<KnownSides> sides = sides_around(triangles, winding);
+    const KnownSides sides = sides_around(triangles, winding);
     progress.stop_if_interrupted(10);
     WrapPieces pieces;
     // Pieces inside the solid are left out of the field: the distance to them would bring values
@@ -386,10 +385,11 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
     std::vector<TriangleCorners> open, cut;
     for (const TriangleCorners& triangle : triangles) {
         cut.clear();
-        bool outside_only = sides.has_value();
+        const bool known = sides.inside != nullptr;
+        bool outside_only = known;
         for_each_cut({triangle}, kPieceVoxels, [&](const TriangleCorners& piece) {
             cut.push_back(piece);
-            outside_only = outside_only && !sides->inside.isValueOn(Coord::round(middle_of(piece)));
+            outside_only = outside_only && !sides.inside->isValueOn(Coord::round(middle_of(piece)));
         });
         if (outside_only) {
             put(triangle, Part::sheet);
@@ -397,9 +397,9 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
         }
         for (const TriangleCorners& piece : cut) {
             const Coord voxel = Coord::round(middle_of(piece));
-            if (sides && !sides->inside.isValueOn(voxel))
+            if (known && !sides.inside->isValueOn(voxel))
                 put(piece, Part::sheet);
-            else if (sides && !sides->outside.isValueOn(voxel) && area_of(piece) > 0)
+            else if (known && !sides.outside->isValueOn(voxel) && area_of(piece) > 0)
                 put(piece, Part::interior);
             else
                 open.push_back(piece);
