@@ -39,7 +39,8 @@ double weight_decrease(const GrowState& s, StartedFrom from, const GrowOptions& 
 {
     const BarrierSchedule& barrier = s.schedule.barrier;
     if (options.method == Method::thickest)
-        return barrier.weight_decrease_thickest;
+        return from == StartedFrom::prolonged ? barrier.weight_decrease_thickest_prolonged
+                                              : barrier.weight_decrease_thickest;
     return thrifty(from, options) ? barrier.weight_decrease_prolonged : barrier.weight_decrease;
 }
 
@@ -100,8 +101,10 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
     RelaxOptions relax;
     relax.most_rounds = most_rounds(s, from, options);
     if (options.method == Method::thickest)
-        relax.most_rounds =
-            std::min(s.schedule.barrier.twelve_rounds_before_three, relax.most_rounds);
+        relax.most_rounds = std::min(relax.most_rounds,
+                                     from == StartedFrom::prolonged
+                                         ? s.schedule.barrier.twelve_rounds_before_three_prolonged
+                                         : s.schedule.barrier.twelve_rounds_before_three);
     relax.first_weight = first_weight(s, from, saves_time);
     relax.weight_decrease = weight_decrease(s, from, options);
     relax.least_gain = least_gain(s, options);
@@ -117,9 +120,14 @@ RelaxOptions relax_thickest(const GrowState& s, StartedFrom from, const GrowOpti
 {
     RelaxOptions relax;
     relax.most_rounds = most_rounds(s, from, options);
-    // All vertices are active and no gain is predicted: under the new test every vertex has new
-    // room.
-    relax.first_weight = s.schedule.barrier.first_weight_three;
+    // No gain is predicted, so all vertices are active at first: under the new test every vertex
+    // has new room. From lines they stay so.
+    if (from == StartedFrom::prolonged) {
+        relax.first_weight = first_weight(s, from, true);
+        relax.active_gain = s.schedule.active.gain_of_all_thickest / s.mesh->vertices;
+    } else {
+        relax.first_weight = s.schedule.barrier.first_weight_three;
+    }
     relax.weight_decrease = weight_decrease(s, from, options);
     relax.least_gain = least_gain(s, options);
     return relax;

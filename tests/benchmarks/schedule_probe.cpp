@@ -124,6 +124,8 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, enough_fill),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, most_rounds),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, twelve_rounds_before_three),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, twelve_rounds_before_three_prolonged),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, weight_decrease_thickest_prolonged),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, sweeps),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, planes_weight),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, plane_range),
@@ -144,6 +146,7 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_per_vertex),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, full_size),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_of_all),
+    VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_of_all_thickest),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_share_to_go_on),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_share_in_round),
 };

@@ -156,7 +156,7 @@ struct BarrierSchedule {
     /// slower, the thicker and the longer.
     double weight_decrease = 0.65, weight_decrease_thickest = 0.72;
     /// The same after a prolongation, where most is done already.
-    double weight_decrease_prolonged = 0.4;
+    double weight_decrease_prolonged = 0.4, weight_decrease_thickest_prolonged = 0.6;
     /// The same in a round that won less than stale_gain (share of the solid) with the weight below
     /// settled_weight.
     double weight_decrease_stale = 0.3, stale_gain = 5e-4;
@@ -169,6 +169,8 @@ struct BarrierSchedule {
     double enough_fill = 0.998;
     /// Count. Rounds at most, and those under the twelve-tet test before the three-tet one.
     int most_rounds = 40, twelve_rounds_before_three = 25;
+    /// The same after a prolongation: one, which wins back what mending has lost.
+    int twelve_rounds_before_three_prolonged = 1;
     /// Count. Sweeps in a round; before each but the first the separating planes are recentred.
     int sweeps = 2;
     /// Weight of all near separating planes of a vertex together, where one tet has weight 1.
@@ -214,6 +216,9 @@ struct ActiveSetSchedule {
     double gain_per_vertex = 1e-6, full_size = 6500;
     /// Share of the solid over all vertices: the same from lines.
     double gain_of_all = 3e-4;
+    /// The same for Method::thickest after a prolongation. A third of it: a tenth more time and
+    /// .0004 more fill on the scan boot.
+    double gain_of_all_thickest = 1e-3;
     /// Share of that gain that all active vertices have to win on average for another round.
     double gain_share_to_go_on = 0.46;
     /// Share of that gain that keeps a vertex active from one sweep to the next.
