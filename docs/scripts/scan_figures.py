@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """How full the default's shells are on large surfaces that nobody made for a textbook, for docs/measurements/scans.md.
 
-    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST] [--wall]
+    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST] [--wall] [--thickest]
 
 LIST has a line "tuning NAME" or "judging NAME" for each mesh, found as NAME.obj or NAME.off in one of the folders; what
 is not there is left out and named. --before is a binary of an older version. Each build is one run on one thread; times
 are processor times, so other work on the machine matters little. Where TetGen is installed its time is measured too.
 --wall: also the wall time of a build with a .vdb on all threads over TetGen's, the better of two runs each, for a machine
-that does nothing else.
+that does nothing else. --thickest: with that flag, for docs/measurements/scans_thickest.md.
 """
 import argparse
 import pathlib
@@ -32,6 +32,7 @@ def arguments():
     parser.add_argument("folders", type=pathlib.Path, nargs="+")
     parser.add_argument("--before", help="the binary of an older version")
     parser.add_argument("--wall", action="store_true")
+    parser.add_argument("--thickest", action="store_const", const=["--thickest"], default=[], dest="flags")
     parser.add_argument("--meshes", type=pathlib.Path,
                         default=pathlib.Path(__file__).parent.parent / "measurements/scan_meshes.txt")
     return parser.parse_args()
@@ -68,21 +69,21 @@ def tetgen_seconds(mesh):
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall
 
 
-def wall_seconds(command, mesh):
+def wall_seconds(command, mesh, flags):
     """Of a build that writes a .vdb, on all threads."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.monotonic()
-        subprocess.run([command, "build", "-q", "-o", f"{folder}/shell.vdb", mesh], check=True)
+        subprocess.run([command, "build", *flags, "-q", "-o", f"{folder}/shell.vdb", mesh], check=True)
         return time.monotonic() - begin
 
 
-def row_of(mesh, command, before, wall):
-    now = build(command, mesh, [])
+def row_of(mesh, command, before, wall, flags):
+    now = build(command, mesh, flags)
     if now["exit"] != 0:
         raise SystemExit(f"{mesh}: {now['message']}")
-    row = {"now": now, "then": build(before, mesh, []) if before else None, "tetgen": tetgen_seconds(mesh)}
+    row = {"now": now, "then": build(before, mesh, flags) if before else None, "tetgen": tetgen_seconds(mesh)}
     if wall and row["tetgen"]:
-        row["wall"] = (min(wall_seconds(command, mesh) for _ in range(2)) /
+        row["wall"] = (min(wall_seconds(command, mesh, flags) for _ in range(2)) /
                        min(row["tetgen"][1], tetgen_seconds(mesh)[1]))
     return row
 
@@ -119,7 +120,7 @@ def main():
         if mesh is None:
             missing.append(name)
             continue
-        row = row_of(mesh, options.command, options.before, options.wall)
+        row = row_of(mesh, options.command, options.before, options.wall, options.flags)
         by_half.setdefault(half, []).append(row)
         lines.append(cells(name, half, row))
         print(" ".join(lines[-1]), flush=True)
