@@ -4,6 +4,8 @@
 # sanitize.sh fuzz [SECONDS]      every fuzzer for so many seconds (20)
 # sanitize.sh readers             what continuous integration has time for: the first of mesh readers and options, and every
 #                                 fuzzer of a mesh reader for 10 seconds
+# sanitize.sh threads             what continuous integration has time for of the second: every test that a stage does the same with any
+#                                 number of threads, as those are made to share its loops
 # Without rooms: readers, exact tests, shells, certificates and the kept inputs of all fuzzers with the first, the stages whose loops are parallel
 # with the second. `all` is every test.
 set -euo pipefail
@@ -39,13 +41,20 @@ readers)
     ctest --preset readers -j "$(nproc)" -R "^($(IFS='|'; echo "${rooms[*]}"))\."
     exec python3 tests/fuzz/run.py build/readers --seconds 10 --targets obj ply off stl obj_texture ply_texture
     ;;
+threads)
+    export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
+    [ -e build/threads/CMakeCache.txt ] || unity=-DVDB_SHELL_UNITY=ON # as in tests/run.sh
+    cmake --preset threads ${unity:-}
+    cmake --build --preset threads --target chosen_tests
+    exec ctest --preset threads -j "$(nproc)" -R Threads
+    ;;
 fuzz)
     cmake --preset fuzz
     cmake --build --preset fuzz --target fuzzers
     exec python3 tests/fuzz/run.py build/fuzz --seconds "${1:-20}"
     ;;
 *)
-    echo "usage: $0 address|thread [ROOM ...]|readers|fuzz [SECONDS]" >&2
+    echo "usage: $0 address|thread [ROOM ...]|readers|threads|fuzz [SECONDS]" >&2
     exit 2
     ;;
 esac
