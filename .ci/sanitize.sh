@@ -5,7 +5,8 @@
 # sanitize.sh readers             what continuous integration has time for: the first of mesh readers and options, and every
 #                                 fuzzer of a mesh reader for 10 seconds
 # sanitize.sh threads             what continuous integration has time for of the second: every test that a stage does the same with any
-#                                 number of threads, as those are made to share its loops
+#                                 number of threads, as those are made to share its loops; the slowest are left to
+#                                 `thread resample field step growth layers`
 # Without rooms: readers, exact tests, shells, certificates and the kept inputs of all fuzzers with the first, the stages whose loops are parallel
 # with the second. `all` is every test.
 set -euo pipefail
@@ -46,7 +47,9 @@ threads)
     [ -e build/threads/CMakeCache.txt ] || unity=-DVDB_SHELL_UNITY=ON # as in tests/run.sh
     cmake --preset threads ${unity:-}
     cmake --build --preset threads --target chosen_tests
-    exec ctest --preset threads -j "$(nproc)" -R Threads
+    # These take one to ten minutes each.
+    slow='Decimate|Remesh|Wrap|SparseStep|GrownFromCoarse|CutLayers'
+    exec ctest --preset threads -j "$(nproc)" -R Threads -E "$slow"
     ;;
 fuzz)
     cmake --preset fuzz

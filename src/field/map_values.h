@@ -2,8 +2,9 @@
 #pragma once
 
 #include "core/grid_instances.h"
+#include "core/parallel.h"
 
-#include <openvdb/tree/NodeManager.h>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -25,13 +26,28 @@ template <typename Change> struct MapNode {
     }
 };
 
+/// MapNode for all nodes of one level.
+template <typename Node, typename Change>
+void map_nodes(openvdb::FloatTree& tree, const Change& change, std::size_t grain)
+{
+    std::vector<Node*> nodes;
+    tree.getNodes(nodes);
+    for_each_index(
+        nodes.size(), [&](std::size_t i) { MapNode<Change>{change}(*nodes[i]); }, grain);
+}
+
 /// Replaces every value of the tree, active or not, and its background by change(value); called
 /// from several threads at a time. The iterators of tools::foreach climb the tree from value to
 /// value.
 template <typename Change> void map_values(openvdb::FloatTree& tree, const Change& change)
 {
-    openvdb::tree::NodeManager<openvdb::FloatTree> nodes(tree);
-    nodes.foreachTopDown(MapNode<Change>{change});
+    using Root = openvdb::FloatTree::RootNodeType;
+    using Upper = Root::ChildNodeType;
+    using Lower = Upper::ChildNodeType;
+    map_nodes<openvdb::FloatTree::LeafNodeType>(tree, change, 64);
+    map_nodes<Lower>(tree, change, 1);
+    map_nodes<Upper>(tree, change, 1);
+    MapNode<Change>{change}(tree.root());
     // Inactive values are changed already, so the root must not replace them once more.
     tree.root().setBackground(change(tree.background()), false);
 }
