@@ -4,7 +4,7 @@
 # sanitize.sh fuzz [SECONDS]      every fuzzer for so many seconds (20)
 # sanitize.sh readers             what continuous integration has time for: the first of mesh readers and options, and every
 #                                 fuzzer of a mesh reader for 10 seconds
-# sanitize.sh threads             what continuous integration has time for of the second: every test that a stage does the same with any
+# sanitize.sh threads             of the second what takes minutes, not run by continuous integration yet: every test that a stage does the same with any
 #                                 number of threads, as those are made to share its loops; the slowest are left to
 #                                 `thread resample field step growth layers`
 # Without rooms: readers, exact tests, shells, certificates and the kept inputs of all fuzzers with the first, the stages whose loops are parallel

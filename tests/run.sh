@@ -11,4 +11,3 @@ cmake --build --preset dev
 ctest --preset dev -j "$(nproc)"
 bash .ci/lint.sh tidy
 bash .ci/sanitize.sh readers
-bash .ci/sanitize.sh threads
