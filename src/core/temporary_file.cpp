@@ -91,6 +91,15 @@ bool is_name_of_ours(const std::string& name)
            (rest.rfind(".tmp", 0) == 0 || rest.rfind(".old", 0) == 0);
 }
 
+/// Whether the path still names the file that is open.
+bool is_named(int descriptor, const fs::path& path)
+{
+    struct stat opened {
+    }, named{};
+    return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+           opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
 void remove_if_left(const fs::path& path)
 {
     // O_NONBLOCK, for somebody may have put a fifo there.
@@ -101,7 +110,9 @@ void remove_if_left(const fs::path& path)
     if (file.number() < 0 || ::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode) ||
         status.st_uid != ::geteuid())
         return;
-    if (::flock(file.number(), LOCK_EX | LOCK_NB) == 0)
+    // Another that tidies up may have removed the file since it was opened, and its owner made it
+    // again: that one is locked, and this lock is of a file without a name.
+    if (::flock(file.number(), LOCK_EX | LOCK_NB) == 0 && is_named(file.number(), path))
         ::unlink(path.c_str());
 }
 
@@ -158,10 +169,7 @@ TemporaryFile::TemporaryFile(const fs::path& folder, const fs::path& target, mod
 
 bool TemporaryFile::still_there() const
 {
-    struct stat opened {
-    }, named{};
-    return ::fstat(file_.number(), &opened) == 0 && ::lstat(path().c_str(), &named) == 0 &&
-           opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+    return is_named(file_.number(), path());
 }
 
 void remove_leftovers(const fs::path& folder)
