@@ -44,6 +44,20 @@ def schema_of(values):
     return schema
 
 
+def add_rare(schema):
+    """Puts the keys that only reports of surfaces without use have after those that they are said of."""
+    properties = {}
+    for key, entry in schema.get("properties", {}).items():
+        properties[key] = entry
+        if key + "_at_least" in report_keys.RARE:
+            properties[key + "_at_least"] = {"const": True}
+        add_rare(entry)
+    if properties:
+        schema["properties"] = properties
+    if "items" in schema:
+        add_rare(schema["items"])
+
+
 def lines(value, indent=""):
     """JSON with all that fits on a line on one."""
     short = json.dumps(value)
@@ -61,6 +75,7 @@ def main():
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Report of vdb_shell build",
               **schema_of(reports)}
     schema["properties"]["schema"] = {"const": reports[0]["schema"]}
+    add_rare(schema)
     # In the .vdb the report is without times.
     schema["required"].remove("stages")
     path = project / "docs" / "schema" / "report.schema.json"

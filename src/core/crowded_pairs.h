@@ -3,6 +3,7 @@
 
 #include "core/box_tree.h"
 #include "core/layered_pairs.h"
+#include "core/pair_bounds.h"
 #include "core/parallel.h"
 #include "core/polled_stop.h"
 
@@ -58,43 +59,37 @@ private:
 template <class Piece> class CrowdedPairs
 {
 public:
-    CrowdedPairs(std::vector<Piece> pieces, const PolledStop& stop)
-        : pieces_(std::move(pieces)), whole_(pieces_), whole_of_(pieces_.size()), stop_(stop),
-          most_pieces_(std::max(4 * pieces_.size() + 1024, kMostPieces))
+    CrowdedPairs(std::vector<Piece> pieces, const PairBounds& wanted, const PolledStop& stop)
+        : pieces_(std::move(pieces)), whole_(pieces_), whole_of_(pieces_.size()), wanted_(wanted),
+          stop_(stop), most_pieces_(std::max(4 * pieces_.size() + 1024, kMostPieces))
     {
         std::iota(whole_of_.begin(), whole_of_.end(), 0U);
     }
 
     /// Appends pairs i < j of items for which keep(i, j) holds, some of them more than once. keep
     /// is called from several threads at a time, at least once for each pair with a common point.
+    /// False if there are more pairs than are wanted; then not all are there.
     template <class Keep>
-    void list(const Keep& keep, std::vector<std::array<std::uint32_t, 2>>& pairs)
+    bool list(const Keep& keep, std::vector<std::array<std::uint32_t, 2>>& pairs)
     {
+        const std::size_t most = wanted_.most_of(whole_.size());
         double before = 0;
         for (int round = 0; !pieces_.empty() && !stop_.wanted(); ++round) {
             build_tree();
             const Crowd found = sampled_crowd();
             if (round > 0 && 2 * found.near > before)
-                return LayeredPairs<Piece>(whole_items(), stop_).list(keep, pairs);
+                return LayeredPairs<Piece>(whole_items(), wanted_, stop_).list(keep, pairs);
             before = found.near_crowded;
             const bool last = round == kMostRounds || pieces_.size() > most_pieces_ / 4 ||
                               (round > 0 && found.near < kWorthHalving * double(pieces_.size()));
             crowded_.assign(pieces_.size(), 0);
             near_.assign(last ? 0 : pieces_.size(), {});
             for_each_index(near_.size(), [&](std::size_t p) { look_around(p); });
-            const std::vector<std::size_t> begins = items();
-            std::vector<std::vector<std::uint32_t>> kept(begins.size() - 1);
-            for_each_index(kept.size(), [&](std::size_t i) {
-                kept[i] = kept_with(begins[i], begins[i + 1], keep);
-            });
-            for (std::size_t i = 0; i < kept.size(); ++i)
-                for (const std::uint32_t other : kept[i]) {
-                    const auto [low, high] =
-                        std::minmax(whole_[whole_of_[begins[i]]].item, whole_[other].item);
-                    pairs.push_back({low, high});
-                }
+            if (!list_round(keep, most, pairs))
+                return false;
             halve_crowded();
         }
+        return true;
     }
 
 private:
@@ -177,6 +172,33 @@ private:
             std::vector<std::uint32_t>().swap(near);
     }
 
+    /// The pairs of the pieces that are not crowded; false if there are more than are wanted.
+    template <class Keep>
+    bool list_round(const Keep& keep, std::size_t most,
+                    std::vector<std::array<std::uint32_t, 2>>& pairs) const
+    {
+        const std::vector<std::size_t> begins = items();
+        // An item may meet all others. Not more than some are looked at before what they have is
+        // counted, and these always the same, so what is found does not depend on threads.
+        constexpr std::size_t kAtOnce = 1024;
+        const std::size_t items = begins.size() - 1, at_once = most == SIZE_MAX ? items : kAtOnce;
+        for (std::size_t first = 0; first < items; first += at_once) {
+            std::vector<std::vector<std::uint32_t>> kept(std::min(at_once, items - first));
+            for_each_index(kept.size(), [&](std::size_t i) {
+                kept[i] = kept_with(begins[first + i], begins[first + i + 1], keep);
+            });
+            for (std::size_t i = 0; i < kept.size(); ++i)
+                for (const std::uint32_t other : kept[i]) {
+                    const auto [low, high] =
+                        std::minmax(whole_[whole_of_[begins[first + i]]].item, whole_[other].item);
+                    pairs.push_back({low, high});
+                }
+            if (pairs.size() >= most)
+                return false;
+        }
+        return true;
+    }
+
     /// Where the pieces of each item begin, which stand together, and the end.
     std::vector<std::size_t> items() const
     {
@@ -197,7 +219,8 @@ private:
         std::vector<std::uint32_t> others;
         // Each pair once: by the smaller item, or by the piece that is done.
         const auto add = [&](std::uint32_t q) {
-            if (crowded_[q] || own < whole_of_[q])
+            if ((crowded_[q] || own < whole_of_[q]) &&
+                !wanted_.both_settled(whole_[own].item, whole_[whole_of_[q]].item))
                 others.push_back(whole_of_[q]);
             return !stop_.wanted();
         };
@@ -239,6 +262,7 @@ private:
 
     std::vector<Piece> pieces_, whole_;   ///< the second as they were given, one an item
     std::vector<std::uint32_t> whole_of_; ///< of each piece; pieces are many, and this is small
+    const PairBounds& wanted_;
     const PolledStop& stop_;
     std::size_t most_pieces_;
     std::vector<FloatBox> boxes_; ///< of the pieces

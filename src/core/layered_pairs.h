@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/box_tree.h"
+#include "core/pair_bounds.h"
 #include "core/parallel.h"
 #include "core/polled_stop.h"
 #include "core/unit_vector.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -42,8 +44,9 @@ inline float float_below(double x)
 template <class Piece> class LayeredPairs
 {
 public:
-    LayeredPairs(std::vector<Piece> pieces, const PolledStop& stop)
-        : pieces_(std::move(pieces)), stop_(stop), order_(pieces_.size()), bounds_(pieces_.size())
+    LayeredPairs(std::vector<Piece> pieces, const PairBounds& wanted, const PolledStop& stop)
+        : pieces_(std::move(pieces)), wanted_(wanted), stop_(stop), order_(pieces_.size()),
+          bounds_(pieces_.size()), leaf_of_(pieces_.size())
     {
         choose_directions();
         for_each_index(pieces_.size(), [&](std::size_t i) {
@@ -51,15 +54,18 @@ public:
             bounds_[i] = bounds_of(pieces_[i]);
         });
         if (!order_.empty())
-            add_node(0, order_.size());
+            add_node(0, order_.size(), 0);
+        if (wanted_.settled)
+            count_unsettled();
     }
 
     /// Appends the pairs i < j of items for which keep(i, j) holds, called from several threads.
+    /// False if there are more of them than are wanted; then not all are there.
     template <class Keep>
-    void list(const Keep& keep, std::vector<std::array<std::uint32_t, 2>>& pairs) const
+    bool list(const Keep& keep, std::vector<std::array<std::uint32_t, 2>>& pairs)
     {
         if (order_.empty())
-            return;
+            return true;
         // Enough parts of the walk for any number of threads.
         constexpr std::size_t kParts = 512;
         std::vector<NodePair> parts{{0, 0}}, next;
@@ -69,11 +75,22 @@ public:
                 look(both, next, [&](std::uint32_t, std::uint32_t) { next.push_back(both); });
             std::swap(parts, next);
         }
-        std::vector<std::vector<std::array<std::uint32_t, 2>>> found(parts.size());
-        for_each_index(
-            parts.size(), [&](std::size_t i) { walk(parts[i], keep, found[i]); }, 1);
-        for (const auto& some : found)
-            pairs.insert(pairs.end(), some.begin(), some.end());
+        // Some parts at a time, each to what the parts before have left: so what is found does not
+        // depend on threads.
+        const std::size_t most = wanted_.most_of(pieces_.size());
+        constexpr std::size_t kAtOnce = 64;
+        const std::size_t at_once = most == SIZE_MAX ? parts.size() : kAtOnce;
+        for (std::size_t begin = 0; begin < parts.size() && pairs.size() < most; begin += at_once) {
+            std::vector<std::vector<std::array<std::uint32_t, 2>>> found(
+                std::min(at_once, parts.size() - begin));
+            const std::size_t left = most - pairs.size();
+            for_each_index(
+                found.size(), [&](std::size_t i) { walk(parts[begin + i], keep, left, found[i]); },
+                1);
+            for (const auto& some : found)
+                pairs.insert(pairs.end(), some.begin(), some.end());
+        }
+        return pairs.size() < most;
     }
 
 private:
@@ -109,6 +126,7 @@ private:
         BoxTree::Marks common;              ///< that all pieces in it carry
         std::uint32_t piece;                ///< of a leaf
         std::array<std::uint32_t, 2> child; ///< both 0: it is a leaf
+        std::uint32_t parent;               ///< of the root: itself
     };
     using NodePair = std::array<std::uint32_t, 2>;
 
@@ -152,17 +170,20 @@ private:
         return bounds;
     }
 
-    std::uint32_t add_node(std::size_t begin, std::size_t end)
+    std::uint32_t add_node(std::size_t begin, std::size_t end, std::uint32_t parent)
     {
-        Node node{bounds_[order_[begin]], 0, common_marks(begin, end), order_[begin], {0, 0}};
+        Node node{bounds_[order_[begin]], 0,      common_marks(begin, end),
+                  order_[begin],          {0, 0}, parent};
         for (std::size_t i = begin + 1; i < end; ++i)
             node.bounds.add(bounds_[order_[i]]);
         const std::size_t widest = node.bounds.widest();
         node.width = node.bounds.high[widest] - node.bounds.low[widest];
         const auto at = std::uint32_t(nodes_.size());
         nodes_.push_back(node);
-        if (end - begin == 1)
+        if (end - begin == 1) {
+            leaf_of_[order_[begin]] = at;
             return at;
+        }
         const std::size_t middle = begin + (end - begin) / 2;
         const auto place = [&](std::size_t i) { return order_.begin() + std::ptrdiff_t(i); };
         std::nth_element(place(begin), place(middle), place(end),
@@ -171,7 +192,7 @@ private:
                                          y = bounds_[b].low[widest] + bounds_[b].high[widest];
                              return x != y ? x < y : a < b;
                          });
-        const std::uint32_t low = add_node(begin, middle), high = add_node(middle, end);
+        const std::uint32_t low = add_node(begin, middle, at), high = add_node(middle, end, at);
         nodes_[at].child = {low, high};
         return at;
     }
@@ -186,6 +207,34 @@ private:
         return common;
     }
 
+    void count_unsettled()
+    {
+        unsettled_ = std::vector<std::atomic<std::uint32_t>>(nodes_.size());
+        told_ = std::vector<std::atomic<bool>>(pieces_.size());
+        for (std::size_t n = nodes_.size(); n-- > 0;)
+            unsettled_[n] = is_leaf(std::uint32_t(n))
+                                ? 1
+                                : unsettled_[nodes_[n].child[0]] + unsettled_[nodes_[n].child[1]];
+        for (std::uint32_t p = 0; p < pieces_.size(); ++p)
+            note_if_settled(p);
+    }
+    /// Whether nothing is asked about two pieces of these nodes.
+    bool settled(std::uint32_t a, std::uint32_t b) const
+    {
+        return !unsettled_.empty() && unsettled_[a].load(std::memory_order_relaxed) == 0 &&
+               unsettled_[b].load(std::memory_order_relaxed) == 0;
+    }
+    void note_if_settled(std::uint32_t piece)
+    {
+        if (unsettled_.empty() || told_[piece].load(std::memory_order_relaxed) ||
+            !wanted_.settled(pieces_[piece].item) || told_[piece].exchange(true))
+            return;
+        std::uint32_t at = leaf_of_[piece];
+        for (; at != nodes_[at].parent; at = nodes_[at].parent)
+            unsettled_[at].fetch_sub(1, std::memory_order_relaxed);
+        unsettled_[at].fetch_sub(1, std::memory_order_relaxed);
+    }
+
     bool is_leaf(std::uint32_t node) const { return nodes_[node].child[1] == 0; }
     /// Adds what has to be looked at next, or calls meet with two pieces.
     template <class Meet>
@@ -193,6 +242,8 @@ private:
     {
         const auto [a, b] = both;
         const Node &first = nodes_[a], &second = nodes_[b];
+        if (settled(a, b))
+            return;
         if (a == b) {
             const auto [low, high] = first.child;
             if (!is_leaf(a))
@@ -208,27 +259,35 @@ private:
             next.push_back(part_first ? NodePair{child, b} : NodePair{a, child});
     }
     template <class Keep>
-    void walk(const NodePair& from, const Keep& keep,
-              std::vector<std::array<std::uint32_t, 2>>& pairs) const
+    void walk(const NodePair& from, const Keep& keep, std::size_t most,
+              std::vector<std::array<std::uint32_t, 2>>& pairs)
     {
         std::vector<NodePair> open{from};
-        while (!open.empty() && !stop_.wanted()) {
+        while (!open.empty() && pairs.size() < most && !stop_.wanted()) {
             const NodePair both = open.back();
             open.pop_back();
             look(both, open, [&](std::uint32_t p, std::uint32_t q) {
                 const auto [low, high] = std::minmax(pieces_[p].item, pieces_[q].item);
                 if (!pieces_[p].surely_apart(pieces_[q]) && keep(low, high))
                     pairs.push_back({low, high});
+                note_if_settled(p);
+                note_if_settled(q);
             });
         }
     }
 
     std::vector<Piece> pieces_;
+    const PairBounds& wanted_;
     const PolledStop& stop_;
     std::array<openvdb::Vec3d, kDirections> direction_;
     std::vector<std::uint32_t> order_; ///< of the pieces
     std::vector<Bounds> bounds_;       ///< of the pieces
     std::vector<Node> nodes_;
+    std::vector<std::uint32_t> leaf_of_; ///< by piece
+    /// By node, how many of its pieces are not settled, if that is wanted; by piece, whether it has
+    /// been counted as settled.
+    std::vector<std::atomic<std::uint32_t>> unsettled_;
+    std::vector<std::atomic<bool>> told_;
 };
 
 } // namespace vdb_shell

@@ -19,6 +19,7 @@
 #include "core/unit_vector.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -115,9 +116,9 @@ class PairsOfTriangles
 {
 public:
     PairsOfTriangles(const std::vector<Vec3s>& points, const std::vector<Vec3I>& triangles,
-                     const KeepPair& keep, Interrupter* interrupter,
+                     const KeepPair& keep, const PairBounds& wanted, Interrupter* interrupter,
                      const std::vector<char>& left_out)
-        : points_(points), triangles_(triangles), keep_(keep), stop_(interrupter),
+        : points_(points), triangles_(triangles), keep_(keep), wanted_(wanted), stop_(interrupter),
           crowds_(points.size())
     {
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
@@ -129,7 +130,7 @@ public:
         any_crowd_ = crowds_.any();
     }
 
-    std::vector<Pair> all()
+    FoundPairs find()
     {
         look_at_groups();
         if (any_crowd_)
@@ -141,7 +142,7 @@ public:
             parts_, triangles_.size(), [](const Pair& pair) { return pair[0]; },
             [](const Pair& x, const Pair& y) { return x[1] < y[1]; });
         pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-        return pairs;
+        return {std::move(pairs), all_.load()};
     }
 
 private:
@@ -229,7 +230,7 @@ private:
                     found[p].push_back({s, t});
             });
         });
-        CrowdedPairs<TrianglePiece>(std::move(pieces), stop_).list(keep_, found.back());
+        list(CrowdedPairs<TrianglePiece>(std::move(pieces), wanted_, stop_), found.back());
         take(found);
     }
 
@@ -293,7 +294,7 @@ private:
             arcs.push_back(arc_between(seen(apex, others[0]), seen(apex, others[1]), kDirectionPad,
                                        (*use)[1], marks));
         }
-        CrowdedPairs<Arc>(std::move(arcs), stop_).list(keep_, pairs);
+        list(CrowdedPairs<Arc>(std::move(arcs), wanted_, stop_), pairs);
     }
 
     /// The pairs of triangles around one edge, of which each has one direction there.
@@ -313,7 +314,16 @@ private:
             arcs.push_back(
                 arc_between(direction, direction, kDirectionPad / length, (*use)[1], kNoMarks));
         }
-        CrowdedPairs<Arc>(std::move(arcs), stop_).list(keep_, pairs);
+        list(CrowdedPairs<Arc>(std::move(arcs), wanted_, stop_), pairs);
+    }
+
+    /// Appends the pairs of a crowd.
+    template <class Piece> void list(CrowdedPairs<Piece>&& crowd, std::vector<Pair>& pairs) const
+    {
+        std::vector<Pair> found;
+        if (!crowd.list(keep_, found))
+            all_ = false;
+        pairs.insert(pairs.end(), found.begin(), found.end());
     }
 
     /// The corners but for one use of the apex.
@@ -332,7 +342,9 @@ private:
     const std::vector<Vec3s>& points_;
     const std::vector<Vec3I>& triangles_;
     const KeepPair& keep_;
+    const PairBounds& wanted_;
     PolledStop stop_;
+    mutable std::atomic<bool> all_{true};
     std::vector<std::uint32_t> asked_; ///< triangles that may be in pairs, ascending
     Crowds crowds_;
     bool any_crowd_ = false;
@@ -347,7 +359,16 @@ std::vector<std::array<std::uint32_t, 2>> overlapping_triangles(const std::vecto
                                                                 Interrupter* interrupter,
                                                                 const std::vector<char>& left_out)
 {
-    return PairsOfTriangles(points, triangles, keep, interrupter, left_out).all();
+    return overlapping_triangles(points, triangles, keep, PairBounds{}, interrupter, left_out)
+        .pairs;
+}
+
+FoundPairs overlapping_triangles(const std::vector<Vec3s>& points,
+                                 const std::vector<Vec3I>& triangles, const KeepPair& keep,
+                                 const PairBounds& wanted, Interrupter* interrupter,
+                                 const std::vector<char>& left_out)
+{
+    return PairsOfTriangles(points, triangles, keep, wanted, interrupter, left_out).find();
 }
 
 } // namespace vdb_shell

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/box_pairs.h"
+#include "core/pair_bounds.h"
 
 #include <vector>
 
@@ -17,5 +18,15 @@ std::vector<std::array<std::uint32_t, 2>>
 overlapping_triangles(const std::vector<openvdb::Vec3s>& points,
                       const std::vector<openvdb::Vec3I>& triangles, const KeepPair& keep,
                       Interrupter* interrupter = nullptr, const std::vector<char>& left_out = {});
+
+struct FoundPairs {
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    bool all = true; ///< false: there were more than were wanted
+};
+/// The same as far as they are wanted.
+FoundPairs overlapping_triangles(const std::vector<openvdb::Vec3s>& points,
+                                 const std::vector<openvdb::Vec3I>& triangles, const KeepPair& keep,
+                                 const PairBounds& wanted, Interrupter* interrupter = nullptr,
+                                 const std::vector<char>& left_out = {});
 
 } // namespace vdb_shell

@@ -130,7 +130,11 @@ void add_triangles_and_components(Findings& findings, const MeshInspection& insp
     findings.add({"duplicate_triangles", "triangles that repeat an earlier one", true,
                   "--repair removes them"},
                  check.duplicate_triangles);
-    findings.add({"self_intersections", "pairs of triangles that cross or touch", true,
+    findings.add({"self_intersections",
+                  check.self_intersections.at_least
+                      ? "or more pairs of triangles that cross or touch"
+                      : "pairs of triangles that cross or touch",
+                  true,
                   "--repair --cut-crossings where few cross, else --wrap; "
                   "--allow-self-intersections for a shell that overlaps"},
                  check.self_intersections);

@@ -85,6 +85,7 @@ MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
     check.degenerate_triangles = summary_of(defects.degenerate_triangles);
     check.duplicate_triangles = summary_of(defects.duplicate_triangles);
     check.self_intersections = summary_of(defects.self_intersections);
+    check.self_intersections.at_least = defects.more_self_intersections;
     const std::vector<std::uint32_t> component_of =
         component_of_triangles(sorted_uses, mesh.triangles.size());
     check.components =

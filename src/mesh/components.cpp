@@ -16,9 +16,11 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/triangle_piece.h"
+#include "mesh/equal_points.h"
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -57,9 +59,9 @@ double volume_of(const TriangleMesh& mesh, const Indices& triangles)
     return six_volumes / 6.0;
 }
 
-/// Components may have a common point, which counts for each of them: Euler's number is that of a
-/// surface by itself.
-/// How many points each component has, and which points are of several.
+/// How many points each component has, and which points are of several or stand where one of
+/// another component stands. Components may have a common point, which counts for each of them:
+/// Euler's number is that of a surface by itself.
 struct PointFindings {
     std::vector<int> points;
     std::vector<char> shared;
@@ -68,17 +70,21 @@ struct PointFindings {
 PointFindings look_at_points(const TriangleMesh& mesh, const std::vector<Indices>& triangles)
 {
     PointFindings found{std::vector<int>(triangles.size()), std::vector<char>(mesh.points.size())};
-    Indices counted_for(mesh.points.size(), ~0U); // the last component
+    Indices counted_for(mesh.points.size(), ~0U), at_place = counted_for; // the last component
+    const Indices place =
+        triangles.size() > 1 ? first_equal_point(mesh.points) : Indices(mesh.points.size());
     for (std::uint32_t c = 0; c < triangles.size(); ++c)
         for (const std::uint32_t t : triangles[c])
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t v = mesh.triangles[t][corner];
-                if (counted_for[v] == c)
+                if (std::exchange(counted_for[v], c) == c)
                     continue;
                 ++found.points[c];
-                found.shared[v] = counted_for[v] != ~0U;
-                counted_for[v] = c;
+                const std::uint32_t before = std::exchange(at_place[place[v]], c);
+                found.shared[place[v]] |= char(before != ~0U && before != c);
             }
+    for (std::size_t v = 0; v < place.size(); ++v)
+        found.shared[v] = found.shared[place[v]];
     return found;
 }
 
@@ -259,7 +265,8 @@ private:
         return hits;
     }
 
-    /// One that no other piece has by index, if there is one: it may be on the surface of none.
+    /// One that no other piece has, if there is one: it may be on the surface of none, and is not
+    /// where thousands of pieces meet.
     std::uint32_t own_point(const Indices& triangles) const
     {
         for (const std::uint32_t t : triangles)

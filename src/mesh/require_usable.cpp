@@ -33,8 +33,8 @@ void add_finding(std::string& findings, const Defect<Element>& defect, const cha
 {
     if (defect.count == 0)
         return;
-    findings += (findings.empty() ? "" : "; ") + std::to_string(defect.count) + " " +
-                (defect.count == 1 ? one : many) + ": ";
+    findings += (findings.empty() ? "" : "; ") + std::string(defect.at_least ? "at least " : "") +
+                std::to_string(defect.count) + " " + (defect.count == 1 ? one : many) + ": ";
     for (std::size_t i = 0; i < defect.first.size(); ++i)
         findings += (i == 0 ? "" : ", ") + shown(defect.first[i]);
     if (defect.count > defect.first.size())

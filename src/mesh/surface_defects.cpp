@@ -158,6 +158,24 @@ std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
         interrupter, left_out);
 }
 
+namespace
+{
+
+void find_contacts(const TriangleMesh& mesh, Interrupter* interrupter, SurfaceDefects& defects)
+{
+    const TriangleContacts contacts(mesh.points, mesh.triangles);
+    PairBounds wanted;
+    wanted.limited = true;
+    FoundPairs found = overlapping_triangles(
+        mesh.points, mesh.triangles,
+        [&](std::uint32_t first, std::uint32_t second) { return contacts.touch(first, second); },
+        wanted, interrupter, left_out_of_contacts(mesh.triangles.size(), defects));
+    defects.self_intersections = std::move(found.pairs);
+    defects.more_self_intersections = !found.all;
+}
+
+} // namespace
+
 SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
                             Interrupter* interrupter)
 {
@@ -168,8 +186,7 @@ SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>
     stop_if_stage_wants();
     defects.degenerate_triangles = raised(find_degenerate(mesh));
     defects.duplicate_triangles = find_duplicates(mesh);
-    defects.self_intersections = find_self_intersections(
-        mesh, left_out_of_contacts(mesh.triangles.size(), defects), interrupter);
+    find_contacts(mesh, interrupter, defects);
     return defects;
 }
 

@@ -17,6 +17,7 @@ struct SurfaceDefects {
     std::vector<Edge> boundary_edges, non_manifold_edges, inconsistent_edges;
     std::vector<std::uint32_t> non_manifold_vertices, degenerate_triangles, duplicate_triangles;
     std::vector<TrianglePair> self_intersections;
+    bool more_self_intersections = false; ///< a crowd has more than are listed
 };
 
 /// The pairs of triangles that meet beyond shared corners, ascending; those marked in `left_out`,

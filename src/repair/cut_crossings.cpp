@@ -101,8 +101,8 @@ std::vector<char> find_rags(const TriangleMesh& mesh)
 
 /// Triangles that cross or touch another one. The exact test is defined for triangles with an area
 /// only, so one without area is marked together with everything that its box meets. A pair of which
-/// both are marked already need not be tested, which saves most tests where much crosses; that a
-/// triangle crosses something does not depend on which pair shows it first.
+/// both are marked already is neither tested nor sought, which saves most where much crosses; that
+/// a triangle crosses something does not depend on which pair shows it first.
 std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* interrupter)
 {
     std::vector<char> flat(mesh.triangles.size());
@@ -112,10 +112,10 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* inte
     });
     const TriangleContacts contacts(mesh.points, mesh.triangles);
     std::vector<std::atomic<bool>> crossing(mesh.triangles.size());
+    const auto marked = [&](std::uint32_t t) {
+        return crossing[t].load(std::memory_order_relaxed);
+    };
     const auto mark = [&](std::uint32_t first, std::uint32_t second) {
-        const auto marked = [&](std::uint32_t t) {
-            return crossing[t].load(std::memory_order_relaxed);
-        };
         if (marked(first) && marked(second))
             return false;
         if (flat[first] || flat[second] || contacts.touch(first, second)) {
@@ -124,7 +124,9 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* inte
         }
         return false; // no list of the pairs is wanted
     };
-    overlapping_triangles(mesh.points, mesh.triangles, mark, interrupter);
+    PairBounds wanted;
+    wanted.settled = marked;
+    overlapping_triangles(mesh.points, mesh.triangles, mark, wanted, interrupter);
     return {crossing.begin(), crossing.end()};
 }
 

@@ -164,6 +164,14 @@ std::size_t longest_optimal(const std::vector<Hole>& holes)
     return kLongestOptimalRim;
 }
 
+/// To how many crossings a fill is counted: to so few that all fills together have no more than
+/// some million, a second's work.
+std::size_t most_counted(std::size_t holes)
+{
+    constexpr std::size_t kInAll = 2'000'000, kLeast = 10;
+    return std::clamp(kInAll / std::max<std::size_t>(holes, 1), kLeast, HoleFill::kMostCounted);
+}
+
 /// The fills of one rim. Three of them begin with the same triangulation, which is made once.
 class Fills
 {
@@ -208,25 +216,39 @@ private:
     std::optional<Patch> plain_, refined_;
 };
 
+bool same(const Patch& a, const Patch& b)
+{
+    return a.points == b.points && a.triangles == b.triangles;
+}
+
+/// What bounds the work on each of many holes.
+struct Bounds {
+    std::size_t longest_optimal, most_counted;
+};
+
 /// Fills one hole, or leaves the surface as it was.
-void fill_hole(WorkingSurface& surface, Surroundings& rest, const Hole& hole, std::size_t longest,
+void fill_hole(WorkingSurface& surface, Surroundings& rest, const Hole& hole, const Bounds& bounds,
                bool keep_crossing, const StageProgress& progress, HoleFill& fill)
 {
     const Rim rim = look_around(surface.mesh, rest, hole);
-    Fills fills(rim, longest);
+    Fills fills(rim, bounds.longest_optimal);
     std::optional<FillMethod> best;
+    Patch last;
     for (const FillMethod method : fills.methods()) {
         progress.stop_if_interrupted(50);
-        const Patch patch = fills.make(method);
-        if (patch.triangles.empty())
+        Patch patch = fills.make(method);
+        // Of a small rim all fills are the same.
+        if (patch.triangles.empty() || same(patch, last))
             continue;
         Trial trial(surface, hole, patch);
+        last = std::move(patch);
         const std::size_t crossings =
-            trial.count_crossings(rest, best ? fill.crossings : HoleFill::kMostCounted);
+            trial.count_crossings(rest, best ? fill.crossings : bounds.most_counted);
         // Of fills with equally many crossings the first, which is the fairest, is kept.
         if (!best || crossings < fill.crossings) {
             best = method;
             fill.crossings = crossings;
+            fill.crossings_at_least = crossings >= bounds.most_counted;
         }
         if (crossings > 0) {
             trial.undo();
@@ -309,7 +331,7 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
         walk_holes(mesh, partner, fans, link_fans(mesh, partner, fans), one_sided);
     const std::vector<Hole> never = holes_of_one_sided(mesh, partner, one_sided);
     Surroundings surroundings(mesh, holes);
-    const std::size_t longest = longest_optimal(holes);
+    const Bounds bounds{longest_optimal(holes), most_counted(holes.size())};
     for (std::size_t h = 0; h < holes.size(); ++h) {
         progress.stop_if_interrupted(static_cast<int>(100 * h / holes.size()));
         const Hole& hole = holes[h];
@@ -317,7 +339,7 @@ void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairRep
         // same figures.
         HoleFill fill = measured(mesh, hole);
         if (hole.points.size() >= 3 && !passes_a_point_twice(hole))
-            fill_hole(surface, surroundings, hole, longest, options.keep_crossing_fills, progress,
+            fill_hole(surface, surroundings, hole, bounds, options.keep_crossing_fills, progress,
                       fill);
         surroundings.update();
         report.holes.push_back(fill);

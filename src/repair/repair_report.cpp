@@ -56,7 +56,7 @@ std::string hole_text(const HoleFill& hole)
             << hole.new_points << " new points";
     if (hole.crossings > 0)
         out << ", every fill tried crosses the surface, the best in " << hole.crossings
-            << (hole.crossings < HoleFill::kMostCounted ? "" : " or more") << " pairs of triangles";
+            << (hole.crossings_at_least ? " or more" : "") << " pairs of triangles";
     return out.str();
 }
 
@@ -96,7 +96,7 @@ std::string repair_text(const RepairReport& report)
 std::string repair_json(const RepairReport& report)
 {
     ordered_json holes = ordered_json::array();
-    for (const HoleFill& hole : report.holes)
+    for (const HoleFill& hole : report.holes) {
         holes.push_back({{"first_point", hole.first_point},
                          {"edges", hole.edges},
                          {"length", hole.length},
@@ -104,6 +104,9 @@ std::string repair_json(const RepairReport& report)
                          {"new_points", hole.new_points},
                          {"new_triangles", hole.new_triangles},
                          {"crossings", hole.crossings}});
+        if (hole.crossings_at_least)
+            holes.back()["crossings_at_least"] = true;
+    }
     const ordered_json json{{"welded_points", defect_json(report.welded_points)},
                             {"collapsed", defect_json(report.collapsed)},
                             {"degenerate", defect_json(report.degenerate)},

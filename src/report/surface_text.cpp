@@ -26,7 +26,8 @@ std::string mesh_lines(const MeshCheck& mesh)
     text += mesh.closed() ? ", closed" : ", OPEN";
     text += mesh.manifold() ? ", manifold" : ", NOT MANIFOLD";
     if (!mesh.embedded())
-        text += ", " + number(mesh.self_intersections.count, 12) + " SELF-INTERSECTIONS";
+        text += (mesh.self_intersections.at_least ? ", at least " : ", ") +
+                number(mesh.self_intersections.count, 12) + " SELF-INTERSECTIONS";
     return text;
 }
 

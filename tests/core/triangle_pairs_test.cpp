@@ -4,7 +4,9 @@
 #include "core/exact.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <random>
@@ -200,6 +202,78 @@ TEST(overlapping_triangles, few_are_asked_about_where_none_touch)
         EXPECT_LT(asked(pages_of_an_edge(n)), 50 * n);
         EXPECT_LT(asked(layers(n, 0.25F)), 50 * n);
     }
+}
+
+/// Pages of an edge, each with an edge of its own, so that all touch along it.
+Soup parted_pages(std::uint32_t count)
+{
+    Soup pages;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double angle = 2 * M_PI * i / count;
+        pages.add(Vec3s(0, 0, -1), Vec3s(0, 0, 1),
+                  Vec3s(float(std::cos(angle)), float(std::sin(angle)), 0));
+    }
+    return pages;
+}
+
+FoundPairs found_in(const Soup& soup, const PairBounds& wanted)
+{
+    return overlapping_triangles(
+        soup.points, soup.triangles,
+        [&](std::uint32_t i, std::uint32_t j) { return soup.touch(i, j); }, wanted);
+}
+
+TEST(overlapping_triangles, of_a_crowd_that_all_meets_some_are_listed_if_so_wanted)
+{
+    PairBounds wanted;
+    wanted.limited = true;
+    const FoundPairs few = found_in(parted_pages(1400), wanted);
+    EXPECT_TRUE(few.all);
+    EXPECT_EQ(few.pairs.size(), 1400u * 1399 / 2);
+    const Soup soup = parted_pages(4000);
+    const FoundPairs many = found_in(soup, wanted);
+    EXPECT_FALSE(many.all);
+    EXPECT_GE(many.pairs.size(), wanted.most_of(4000));
+    EXPECT_LT(many.pairs.size(), 4000u * 3999 / 2);
+    EXPECT_TRUE(std::is_sorted(many.pairs.begin(), many.pairs.end()));
+    for (const std::size_t threads : {1U, 3U, 4U}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        EXPECT_EQ(found_in(soup, wanted).pairs, many.pairs) << threads;
+    }
+}
+
+/// By triangle, whether it touches another one, found without those pairs of which both are known.
+std::vector<char> touching(const Soup& soup, std::atomic<std::size_t>& tests)
+{
+    std::vector<std::atomic<bool>> touching(soup.triangles.size());
+    PairBounds wanted;
+    wanted.settled = [&](std::uint32_t t) { return touching[t].load(); };
+    overlapping_triangles(
+        soup.points, soup.triangles,
+        [&](std::uint32_t i, std::uint32_t j) {
+            if (touching[i] && touching[j])
+                return false;
+            ++tests;
+            if (soup.touch(i, j))
+                touching[i] = touching[j] = true;
+            return false;
+        },
+        wanted);
+    return {touching.begin(), touching.end()};
+}
+
+TEST(overlapping_triangles, of_settled_ones_no_more_is_asked)
+{
+    std::atomic<std::size_t> tests{0};
+    for (const Soup& soup : {random_needles(700, 0), layers(1500, 1), parted_pages(1400)}) {
+        std::vector<char> by_pairs(soup.triangles.size());
+        for (const auto& [i, j] : by_brute_force(soup))
+            by_pairs[i] = by_pairs[j] = 1;
+        EXPECT_EQ(touching(soup, tests), by_pairs);
+    }
+    tests = 0;
+    touching(parted_pages(8000), tests);
+    EXPECT_LT(tests, 80000u);
 }
 
 } // namespace

@@ -29,6 +29,9 @@ FILLER = next(filter(shutil.which, ["tetgen", "gmsh"]), None)
 
 BOUND_NOT_MET = 6
 
+# There only where a number is not the whole count, which takes thousands of triangles in one place.
+RARE = {"self_intersections_at_least", "crossings_at_least"}
+
 
 def surfaces(samples, folder):
     """Of the sample box: with a hole, with a copy that crosses it, and small."""
@@ -114,7 +117,7 @@ def faults(found, rows, shapes):
         for keys in lists:
             if [key for key in told if key in keys] != keys:
                 yield f"{name}: the report has {', '.join(keys)}; the page has {', '.join(told)}"
-        for key in sorted(set(told) - {key for keys in lists for key in keys}):
+        for key in sorted(set(told) - RARE - {key for keys in lists for key in keys}):
             if path in rows:
                 yield f"{name}: no report has {key}"
     for path in sorted(set(rows) - set(found)):

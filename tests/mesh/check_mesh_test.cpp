@@ -287,6 +287,52 @@ TEST(check_mesh, nests_a_piece_of_which_every_corner_is_of_another_by_index)
         EXPECT_EQ(check.components[c].nesting_depth, c == 0 ? 0 : 1) << c;
 }
 
+TEST(check_mesh, nests_pieces_that_meet_in_a_place_under_numbers_of_their_own)
+{
+    // Tets in a box, all with a corner in one place, which is the first corner of each.
+    TriangleMesh mesh = unit_box(Vec3d(0), 8);
+    const TriangleMesh tet = test::unit_tetrahedron();
+    for (int octant = 0; octant < 8; ++octant) {
+        TriangleMesh turned = tet;
+        int mirrors = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            for (Vec3s& p : turned.points)
+                if (octant >> axis & 1)
+                    p[axis] = -p[axis];
+        for (int axis = 0; axis < 3; ++axis)
+            mirrors += octant >> axis & 1;
+        for (Vec3I& t : turned.triangles)
+            if (mirrors % 2 == 1)
+                std::swap(t[1], t[2]);
+        mesh = joined(mesh, turned);
+    }
+    const MeshCheck check = check_mesh(mesh);
+    ASSERT_EQ(check.components.size(), 9u);
+    for (std::size_t c = 0; c < 9; ++c)
+        EXPECT_EQ(check.components[c].nesting_depth, c == 0 ? 0 : 1) << c;
+    EXPECT_FALSE(check.self_intersections.at_least);
+}
+
+TEST(check_mesh, says_where_it_has_not_counted_all_contacts)
+{
+    TriangleMesh pages;
+    constexpr std::uint32_t kPages = 3000;
+    for (std::uint32_t i = 0; i < kPages; ++i) {
+        const double angle = 2 * M_PI * i / kPages;
+        pages.points.insert(pages.points.end(),
+                            {Vec3s(0, 0, -1), Vec3s(0, 0, 1),
+                             Vec3s(float(std::cos(angle)), float(std::sin(angle)), 0)});
+        pages.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    const MeshCheck check = check_mesh(pages);
+    EXPECT_TRUE(check.self_intersections.at_least);
+    EXPECT_GT(check.self_intersections.count, 1'000'000u);
+    EXPECT_LT(check.self_intersections.count, std::size_t(kPages) * (kPages - 1) / 2);
+    EXPECT_NE(complaint(check).find("at least " + std::to_string(check.self_intersections.count) +
+                                    " pairs of triangles"),
+              std::string::npos);
+}
+
 TEST(check_mesh, keeps_the_sign_of_a_small_component_far_away)
 {
     const TriangleMesh small = test::translated(unit_box(Vec3d(0), 1), Vec3d(1e5, 0, 0));

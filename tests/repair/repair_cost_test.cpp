@@ -86,8 +86,10 @@ TEST(RepairCost, CrossingsOfAFillAreCountedToAThousand)
     }
     const std::vector<HoleFill> holes = repair_mesh(mesh, {}).report.holes;
     EXPECT_GT(holes.size(), 1000u);
-    for (const HoleFill& hole : holes)
+    for (const HoleFill& hole : holes) {
         EXPECT_LE(hole.crossings, HoleFill::kMostCounted);
+        EXPECT_EQ(hole.crossings_at_least, hole.crossings == HoleFill::kMostCounted);
+    }
     EXPECT_TRUE(std::any_of(holes.begin(), holes.end(), [](const HoleFill& hole) {
         return hole.crossings == HoleFill::kMostCounted;
     }));

@@ -23,6 +23,7 @@ template <typename Element> struct Defect {
     static constexpr std::size_t kFirstShown = 8;
     std::size_t count = 0;
     std::vector<Element> first;
+    bool at_least = false; ///< not all were counted, since there are very many
 };
 using Edge = std::array<std::uint32_t, 2>;         ///< two point indices, smaller first
 using TrianglePair = std::array<std::uint32_t, 2>; ///< two triangle indices, smaller first
@@ -53,9 +54,11 @@ struct MeshCheck {
     Defect<std::uint32_t> non_manifold_vertices;
     Defect<std::uint32_t> degenerate_triangles; ///< exactly zero area (exact arithmetic)
     Defect<std::uint32_t> duplicate_triangles;  ///< same three points as an earlier triangle
-    Defect<TrianglePair> self_intersections; ///< touching other than in shared vertices and edges
-    std::vector<Component> components;       ///< by first triangle
-    double volume = 0;                       ///< sum of the signed volumes
+    /// Touching other than in shared vertices and edges. Of n triangles that all meet in one place
+    /// some million pairs and 16 n are counted, not all n^2 / 2.
+    Defect<TrianglePair> self_intersections;
+    std::vector<Component> components; ///< by first triangle
+    double volume = 0;                 ///< sum of the signed volumes
 
     bool closed() const { return boundary_edges.count == 0; }
     bool manifold() const { return non_manifold_edges.count + non_manifold_vertices.count == 0; }

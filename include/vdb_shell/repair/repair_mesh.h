@@ -50,9 +50,10 @@ struct HoleFill {
     FillMethod method = FillMethod::none;
     std::size_t new_points = 0, new_triangles = 0;
     /// Pairs of a new triangle and another one that cross or touch; of the best fill tried when
-    /// the hole was left open. Counted up to kMostCounted: a thousand holes in a crowd would take
-    /// the square of that otherwise.
+    /// the hole was left open. Counted up to kMostCounted, and of thousands of holes to fewer: a
+    /// thousand holes in a crowd would take the square of that otherwise.
     std::size_t crossings = 0;
+    bool crossings_at_least = false; ///< it was not counted further
     static constexpr std::size_t kMostCounted = 1000;
 };
 
