@@ -14,6 +14,22 @@
 namespace vdb_shell::growth
 {
 
+void leave_out_crowds(const GrowState& s, std::vector<std::uint8_t>& inactive)
+{
+    FanWork work;
+    for (int v = 0; v < s.mesh->vertices; ++v)
+        work.add(std::size_t(star(*s.mesh, v).size()));
+    if (!work.too_much())
+        return;
+    for (int v = 0; v < s.mesh->vertices; ++v) {
+        if (std::size_t(star(*s.mesh, v).size()) <= FanWork::kCrowd)
+            continue;
+        inactive[v] = 1;
+        for (const int u : neighbours(*s.mesh, v))
+            inactive[u] = 1;
+    }
+}
+
 std::vector<std::uint8_t> inactive_vertices(const GrowState& s, const ActiveSet& set)
 {
     const ActiveSetSchedule& schedule = s.schedule.active;
@@ -25,6 +41,7 @@ std::vector<std::uint8_t> inactive_vertices(const GrowState& s, const ActiveSet&
         inactive[v] =
             s.pinned[v] || (idle > schedule.patience && (idle + int(v)) % schedule.period != 0);
     }
+    leave_out_crowds(s, inactive);
     return inactive;
 }
 

@@ -20,8 +20,38 @@ struct ActiveSet {
     std::vector<int> idle_rounds; ///< running, in which it hardly moved
 };
 
-/// By vertex, whether it is left out of the next round: pinned ones, and those that have not moved
-/// for some rounds, but for one round in a few.
+/// What the fans of a surface cost: a move asks about those of the vertex and of its neighbours, so
+/// a round takes the sum of the squares of their sizes.
+class FanWork
+{
+public:
+    /// Triangles around a vertex. Middles of caps in models of machine parts have some hundred.
+    static constexpr std::size_t kCrowd = 1024;
+
+    void add(std::size_t triangles)
+    {
+        squares_ += double(triangles) * double(triangles);
+        corners_ += double(triangles);
+        any_crowd_ |= triangles > kCrowd;
+    }
+    /// A good surface has 6 for each corner.
+    bool too_much() const
+    {
+        constexpr double kMost = 100;
+        return any_crowd_ && squares_ > kMost * corners_;
+    }
+
+private:
+    double squares_ = 0, corners_ = 0;
+    bool any_crowd_ = false;
+};
+
+/// Where fans are too much work, leaves out the vertices of crowds and those beside them: they keep
+/// their lines.
+void leave_out_crowds(const GrowState& s, std::vector<std::uint8_t>& inactive);
+
+/// By vertex, whether it is left out of the next round: pinned ones, those of crowds, and those
+/// that have not moved for some rounds, but for one round in a few.
 std::vector<std::uint8_t> inactive_vertices(const GrowState& s, const ActiveSet& set);
 
 /// Leaves out also those that have no more than `least_gain` (six times a volume) to win, nor has

@@ -132,19 +132,25 @@ struct Seams {
     explicit Seams(const Connectivity& m) : of_face(m.faces.size(), {-1, -1, -1})
     {
         seam.reserve(m.faces.size() * 3 / 2);
-        for (int u = 0; u < m.vertices; ++u)
+        // By vertex w, the face at u whose side from w ends at u: a star of thousands of faces is
+        // not to be searched for each of them.
+        std::vector<FaceCorner> from(m.vertices, FaceCorner{-1, 0});
+        for (int u = 0; u < m.vertices; ++u) {
+            for (const FaceCorner& at : star(m, u))
+                if (FaceCorner& first = from[m.corner(at.face, (at.local + 2) % 3)]; first.face < 0)
+                    first = at;
             for (const FaceCorner& at : star(m, u)) {
                 const int w = m.corner(at.face, (at.local + 1) % 3);
-                if (w < u)
+                const FaceCorner other = from[w];
+                if (w < u || other.face < 0)
                     continue;
-                for (const FaceCorner& other : star(m, u))
-                    if (other.face != at.face && m.corner(other.face, (other.local + 2) % 3) == w) {
-                        of_face[at.face][at.local] = static_cast<int>(seam.size());
-                        of_face[other.face][(other.local + 2) % 3] = static_cast<int>(seam.size());
-                        seam.push_back({at, other});
-                        break;
-                    }
+                of_face[at.face][at.local] = static_cast<int>(seam.size());
+                of_face[other.face][(other.local + 2) % 3] = static_cast<int>(seam.size());
+                seam.push_back({at, other});
             }
+            for (const FaceCorner& at : star(m, u))
+                from[m.corner(at.face, (at.local + 2) % 3)] = {-1, 0};
+        }
     }
 };
 

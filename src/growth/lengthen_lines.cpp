@@ -6,6 +6,7 @@
 
 #include "growth/lengthen_lines.h"
 
+#include "growth/active_set.h"
 #include "growth/sweep.h"
 
 #include <algorithm>
@@ -83,10 +84,11 @@ Steps first_steps(const GrowState& s)
 /// Makes the next step of each vertex its trust radius; marks those that take none.
 void set_radii(GrowState& s, const Steps& steps, std::vector<std::uint8_t>& inactive)
 {
-    for (int v = 0; v < s.mesh->vertices; ++v) {
+    for (int v = 0; v < s.mesh->vertices; ++v)
         inactive[v] = !may_grow(s, steps, v);
+    leave_out_crowds(s, inactive);
+    for (int v = 0; v < s.mesh->vertices; ++v)
         s.trust_radius[v] = inactive[v] ? 0 : (1 + kRadiusMargin) * steps.step[v] + s.rounding;
-    }
 }
 
 } // namespace

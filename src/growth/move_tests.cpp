@@ -320,7 +320,8 @@ bool beside_a_pin(const GrowState& s, int v)
 bool inner_fan_surely_embedded(const GrowState& s, int u)
 {
     Fan fan;
-    return set_inner_fan(s, u, u, s.b[u], fan) && fan.surely_embedded();
+    return set_inner_fan(s, u, u, s.b[u], fan) ? fan.surely_embedded()
+                                               : large_inner_fan_surely_embedded(s, u, u, s.b[u]);
 }
 
 bool adjacent_clear_at(const GrowState& s, int v, const Vec3d& x)

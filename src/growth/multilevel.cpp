@@ -9,6 +9,7 @@
 
 #include "growth/multilevel.h"
 
+#include "growth/active_set.h"
 #include "growth/group_shares.h"
 #include "growth/initialise.h"
 #include "growth/mend_prolonged.h"
@@ -153,10 +154,24 @@ std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<dou
     return std::move(s.b);
 }
 
+/// On coarser surfaces too, rounds around a crowd would take the square of it.
+bool has_large_fans(const TriangleMesh& mesh)
+{
+    std::vector<std::size_t> triangles(mesh.points.size());
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k)
+            ++triangles[t[k]];
+    FanWork work;
+    for (const std::size_t n : triangles)
+        work.add(n);
+    return work.too_much();
+}
+
 bool wants_levels(const TriangleMesh& mesh, const GrowOptions& options)
 {
     return options.coarse_from > 0 && mesh.triangles.size() >= options.coarse_from &&
-           options.top_down && options.free_moves && signed_volume(mesh.points, mesh.triangles) > 0;
+           options.top_down && options.free_moves &&
+           signed_volume(mesh.points, mesh.triangles) > 0 && !has_large_fans(mesh);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "growth/stops.h"
 
 #include "core/parallel.h"
+#include "growth/active_set.h"
 #include "growth/move_tests.h"
 
 #include <algorithm>
@@ -73,7 +74,9 @@ StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
     return StopReason::none;
 }
 
-StopReason reason_at(const GrowState& s, int v, double step, Near& near)
+/// `in_crowd`: one of thousands around a vertex, each of which would ask about all of its
+/// triangles.
+StopReason reason_at(const GrowState& s, int v, double step, bool in_crowd, Near& near)
 {
     if (s.pinned[v])
         return StopReason::pinned;
@@ -86,7 +89,7 @@ StopReason reason_at(const GrowState& s, int v, double step, Near& near)
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
     const StopReason met = met_on_way(s, v, x);
-    return met == StopReason::none ? contact_at(s, v, x, near) : met;
+    return met == StopReason::none && !in_crowd ? contact_at(s, v, x, near) : met;
 }
 
 } // namespace
@@ -96,10 +99,12 @@ std::vector<StopReason> probe_stops(GrowState& s)
     const double step = s.schedule.stops.step * s.diagonal;
     s.inner_tree.refit(inner_boxes(s));
     std::vector<StopReason> stop(s.b.size());
+    std::vector<std::uint8_t> in_crowd(s.b.size());
+    leave_out_crowds(s, in_crowd);
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
         Near near;
         for (std::size_t v = begin; v < end; ++v)
-            stop[v] = reason_at(s, static_cast<int>(v), step, near);
+            stop[v] = reason_at(s, static_cast<int>(v), step, in_crowd[v] != 0, near);
     });
     return stop;
 }
