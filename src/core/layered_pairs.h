@@ -75,20 +75,24 @@ public:
                 look(both, next, [&](std::uint32_t, std::uint32_t) { next.push_back(both); });
             std::swap(parts, next);
         }
-        // Some parts at a time, each to what the parts before have left: so what is found does not
-        // depend on threads.
+        // So many parts at a time as seem to have no more than is left, each to that at most: so
+        // what is found does not depend on threads.
         const std::size_t most = wanted_.most_of(pieces_.size());
-        constexpr std::size_t kAtOnce = 64;
-        const std::size_t at_once = most == SIZE_MAX ? parts.size() : kAtOnce;
-        for (std::size_t begin = 0; begin < parts.size() && pairs.size() < most; begin += at_once) {
-            std::vector<std::vector<std::array<std::uint32_t, 2>>> found(
-                std::min(at_once, parts.size() - begin));
+        std::size_t at_once = most == SIZE_MAX ? parts.size() : 1;
+        for (std::size_t begin = 0, end = 0; begin < parts.size() && pairs.size() < most;
+             begin = end) {
+            end = std::min(begin + at_once, parts.size());
+            std::vector<std::vector<std::array<std::uint32_t, 2>>> found(end - begin);
             const std::size_t left = most - pairs.size();
             for_each_index(
                 found.size(), [&](std::size_t i) { walk(parts[begin + i], keep, left, found[i]); },
                 1);
-            for (const auto& some : found)
+            std::size_t largest = 1;
+            for (const auto& some : found) {
                 pairs.insert(pairs.end(), some.begin(), some.end());
+                largest = std::max(largest, some.size());
+            }
+            at_once = std::clamp<std::size_t>(left / largest, 1, 2 * at_once);
         }
         return pairs.size() < most;
     }

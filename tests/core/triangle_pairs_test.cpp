@@ -233,7 +233,7 @@ TEST(overlapping_triangles, of_a_crowd_that_all_meets_some_are_listed_if_so_want
     const Soup soup = parted_pages(4000);
     const FoundPairs many = found_in(soup, wanted);
     EXPECT_FALSE(many.all);
-    EXPECT_GE(many.pairs.size(), wanted.most_of(4000));
+    EXPECT_GT(many.pairs.size(), std::size_t(1) << 20U);
     EXPECT_LT(many.pairs.size(), 4000u * 3999 / 2);
     EXPECT_TRUE(std::is_sorted(many.pairs.begin(), many.pairs.end()));
     for (const std::size_t threads : {1U, 3U, 4U}) {
