@@ -20,8 +20,11 @@
 #include "vdb_shell/core/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace vdb_shell
@@ -44,8 +47,61 @@ constexpr double kLeastUnit = 1e-30;
 struct Samples {
     std::vector<Vec3d> points;
     std::vector<double> areas;
+
+    void add(const Vec3d& point, double area)
+    {
+        points.push_back(point);
+        areas.push_back(area);
+    }
 };
 
+/// Samples, of which the first in a cell of a grid has the area of all in it. They are no farther
+/// apart than its diagonal.
+class SamplesInCells
+{
+public:
+    SamplesInCells(Samples& samples, double cell) : samples_(samples), cell_(cell) {}
+
+    void add(const Vec3d& point, double area)
+    {
+        std::array<std::int64_t, 3> key{};
+        for (int k = 0; k < 3; ++k)
+            key[std::size_t(k)] = static_cast<std::int64_t>(std::floor(point[k] / cell_));
+        const auto [at, is_new] = place_.try_emplace(key, samples_.points.size());
+        if (is_new)
+            samples_.add(point, 0.0);
+        samples_.areas[at->second] += area;
+    }
+
+private:
+    struct Hash {
+        std::size_t operator()(const std::array<std::int64_t, 3>& key) const
+        {
+            std::uint64_t sum = 0;
+            for (const std::int64_t k : key)
+                sum = (sum ^ std::uint64_t(k)) * 0x9E3779B97F4A7C15ULL;
+            return std::size_t(sum ^ (sum >> 32U));
+        }
+    };
+    Samples& samples_;
+    double cell_;
+    std::unordered_map<std::array<std::int64_t, 3>, std::size_t, Hash> place_;
+};
+
+/// Whether there is so much of the surface that each cell of a grid around it has several pieces.
+bool fills_cells(const TriangleMesh& mesh, double spacing, double area)
+{
+    // Without that a cell has one sheet of a surface in it, and most have none.
+    constexpr double kCrowd = 8;
+    const Bounds bounds = bounds_of(mesh.points);
+    double cells = 1;
+    for (int k = 0; k < 3; ++k)
+        cells *= 1 + (bounds.high[k] - bounds.low[k]) / spacing;
+    return area / (spacing * spacing) > kCrowd * cells;
+}
+
+/// Where sheets lie many in one place, samples of a place are asked once: the place bounds them,
+/// and not the sheets.
 Samples sample(const TriangleMesh& mesh, double spacing)
 {
     const double area = surface_area(mesh.points, mesh.triangles);
@@ -57,17 +113,23 @@ Samples sample(const TriangleMesh& mesh, double spacing)
                             " for an area of " + std::to_string(area) +
                             ", must be positive and give less than 2^27 points");
     Samples samples;
-    for (const openvdb::Vec3I& t : mesh.triangles)
-        for_each_piece(Vec3d(mesh.points[t[0]]), Vec3d(mesh.points[t[1]]), Vec3d(mesh.points[t[2]]),
-                       spacing, [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-                           samples.points.push_back((a + b + c) / 3.0);
-                           samples.areas.push_back(0.5 * (b - a).cross(c - a).length());
-                       });
-    for (const openvdb::Vec3s& p : mesh.points)
-        samples.points.emplace_back(p);
-    // Vertices count for the largest distance alone: they have no area, and so no weight in the
-    // mean.
-    samples.areas.resize(samples.points.size(), 0.0);
+    const auto add_to = [&](auto& list) {
+        for (const openvdb::Vec3I& t : mesh.triangles)
+            for_each_piece(Vec3d(mesh.points[t[0]]), Vec3d(mesh.points[t[1]]),
+                           Vec3d(mesh.points[t[2]]), spacing,
+                           [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+                               list.add((a + b + c) / 3.0, 0.5 * (b - a).cross(c - a).length());
+                           });
+        // Vertices count for the largest distance alone: they have no area, and so no weight in the
+        // mean.
+        for (const openvdb::Vec3s& p : mesh.points)
+            list.add(Vec3d(p), 0.0);
+    };
+    if (fills_cells(mesh, spacing, area)) {
+        SamplesInCells cells(samples, 0.5 * spacing);
+        add_to(cells);
+    } else
+        add_to(samples);
     return samples;
 }
 

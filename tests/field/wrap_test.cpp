@@ -3,6 +3,7 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
+#include "vdb_shell/resample/surface_distance.h"
 
 #include "support/shapes.h"
 
@@ -268,6 +269,32 @@ TEST(Wrap, CoordinatesBeyondFloat32AreRefusedByName)
         EXPECT_NE(std::string(error.what()).find("too large for float32"), std::string::npos)
             << error.what();
     }
+}
+
+TEST(Wrap, OfManySheetsInOnePlaceIsThatOfOne)
+{
+    // Three sheets that cross, and each a thousand times, turned by turns. Their distances are
+    // taken voxel by voxel then.
+    TriangleMesh few;
+    few.points = {Vec3s(-1, -1, 0.1F), Vec3s(1, -1, 0),    Vec3s(0, 1, 0),
+                  Vec3s(0, -1, -1),    Vec3s(0.2F, 1, -1), Vec3s(0, 0, 1),
+                  Vec3s(-1, 0, -1),    Vec3s(1, 0.1F, -1), Vec3s(0, 0, 1)};
+    few.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+    const auto repeated = [&](int times) {
+        TriangleMesh mesh{few.points, {}};
+        for (int i = 0; i < times; ++i)
+            for (const openvdb::Vec3I& t : few.triangles)
+                mesh.triangles.push_back(i % 2 == 0 ? t : openvdb::Vec3I(t[0], t[2], t[1]));
+        return mesh;
+    };
+    constexpr double kVoxel = 0.25;
+    const WrapResult one = sound_wrap(repeated(2), with_voxel(kVoxel)),
+                     all = sound_wrap(repeated(1000), with_voxel(kVoxel));
+    EXPECT_NEAR(volume_of(all.mesh), volume_of(one.mesh), 1e-3 * volume_of(one.mesh));
+    // Winding numbers of a thousand sheets are rounded more.
+    EXPECT_LT(surface_distance(all.mesh, one.mesh, kVoxel).max, 0.1 * kVoxel);
+    EXPECT_NEAR(all.report.input_to_wrap.max, one.report.input_to_wrap.max, 0.5 * kVoxel);
+    EXPECT_NEAR(all.report.input_to_wrap.mean, one.report.input_to_wrap.mean, 0.5 * kVoxel);
 }
 
 TEST(Wrap, IsTheSameForAnyNumberOfThreads)

@@ -32,6 +32,29 @@ TEST(SurfaceDistance, OfParallelSheetsIsTheirGap)
     EXPECT_GT(figures.samples, 400U);
 }
 
+TEST(SurfaceDistance, OfManySheetsInOnePlaceAsksForOne)
+{
+    // A fan of steep triangles about one edge, and the same some hundred times over.
+    TriangleMesh fan;
+    for (int i = 0; i < 5; ++i) {
+        const auto first = std::uint32_t(fan.points.size());
+        fan.points.insert(fan.points.end(),
+                          {{0, 0, 0}, {0, 0, 1}, {1, 0.2F * float(i), 0.1F * float(i)}});
+        fan.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    TriangleMesh many;
+    for (int i = 0; i < 200; ++i)
+        many = joined(many, fan);
+    const TriangleMesh floor{{{-9, -9, -2}, {9, -9, -2}, {9, 9, -2}, {-9, 9, -2}},
+                             {{0, 1, 2}, {0, 2, 3}}};
+    constexpr double kSpacing = 0.1;
+    const DistanceFigures plain = surface_distance(fan, floor, kSpacing),
+                          figures = surface_distance(many, floor, kSpacing);
+    EXPECT_LT(figures.samples, 2 * plain.samples);
+    EXPECT_NEAR(figures.mean, plain.mean, 0.5 * kSpacing);
+    EXPECT_NEAR(figures.max, plain.max, 0.5 * kSpacing);
+}
+
 TEST(SurfaceDistance, SeesWhatLiesBetweenTheCorners)
 {
     // All corners of the square lie on the cross's ends; its middle does not.
