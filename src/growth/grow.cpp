@@ -129,7 +129,7 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     Started started = start_growth(s, mesh, directions, stepped, start, options,
                                    progress.part(0, started_at), report);
     report.released += static_cast<std::size_t>(
-        release_pins(s, started.lines.visibility, PillarsBesidePin::shortened));
+        release_pins(s, started.lines.visibility, PillarsBesidePin::turned));
     // A prolonged shell has left the lines.
     if (started.from == StartedFrom::lines)
         lengthen_if_useful(s, started.lines, options, progress);

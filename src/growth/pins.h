@@ -6,8 +6,9 @@
 namespace vdb_shell::growth
 {
 
-/// What may be done to the pillars beside a pinned vertex that they leave no direction.
-enum class PillarsBesidePin { kept, shortened };
+/// What may be done to the pillars around a pinned vertex that they leave no pillar: nothing; they
+/// may be shortened; they may be turned as well, where that is needed.
+enum class PillarsBesidePin { kept, shortened, turned };
 
 /// Gives pinned vertices a pillar again where the exact tests allow one: a start that is thin may
 /// have been lost in the rounding of the coordinates, or neighbours in the way have moved. In the

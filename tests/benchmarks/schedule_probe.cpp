@@ -75,7 +75,7 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(lines, LineSchedule, share_of_room),
     VDB_SHELL_NUMBER(pins, PinSchedule, lengths),
     VDB_SHELL_NUMBER(pins, PinSchedule, longest),
-    VDB_SHELL_NUMBER(pins, PinSchedule, shortenings),
+    VDB_SHELL_NUMBER(pins, PinSchedule, shortest_share),
     VDB_SHELL_NUMBER(pins, PinSchedule, share_of_visibility),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, coarsest_triangles),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, most_coarsest_triangles),

@@ -3,9 +3,11 @@
 
 #include "core/stage_progress.h"
 #include "growth/initialise.h"
+#include "growth/line_directions.h"
 #include "growth/move_tests.h"
 #include "growth/predicates.h"
 #include "growth/violations.h"
+#include "support/pinned_patches.h"
 #include "support/shapes.h"
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/step/directions.h"
@@ -171,6 +173,37 @@ TEST(Pins, AreReleasedByShorteningThePillarsThatLeaveNoDirection)
             EXPECT_LT(now.length(), 0.51 * was.length());
         }
     }
+}
+
+/// No pin is left, nothing around it meets anything, and no pillar has become longer.
+void expect_released(const test::PinnedPatch& patch)
+{
+    const TriangleMesh& surface = patch.surface;
+    const growth::Connectivity mesh = growth::connect(surface.points.size(), surface.triangles);
+    growth::GrowState s = with_pinned(mesh, surface, patch.inner, patch.pinned);
+    Directions directions = directions_along(surface, pseudo_normals(surface));
+    growth::mend_directions(surface, directions, s.schedule.initial);
+    const std::vector<openvdb::Vec3d> before = s.b;
+    EXPECT_EQ(violations(s), 0);
+    EXPECT_EQ(growth::release_pins(s, directions.visibility, growth::PillarsBesidePin::kept), 0);
+    EXPECT_EQ(s.b, before);
+    EXPECT_EQ(growth::release_pins(s, directions.visibility, growth::PillarsBesidePin::turned), 1);
+    EXPECT_NE(s.b[patch.pinned], s.a[patch.pinned]);
+    expect_valid(s);
+    for (std::size_t u = 0; u < before.size(); ++u)
+        if (u != patch.pinned) {
+            EXPECT_LE((s.b[u] - s.a[u]).length(), (before[u] - s.a[u]).length()) << u;
+        }
+}
+
+TEST(Pins, AreReleasedBesidePillarsThatRoundingWouldTurnOver)
+{
+    expect_released(test::patch_of_cheburashka());
+}
+
+TEST(Pins, AreReleasedBesideAPillarThatHardlySeesItsTriangles)
+{
+    expect_released(test::patch_of_hammer());
 }
 
 } // namespace

@@ -63,9 +63,9 @@ struct PinSchedule {
     int lengths = 16;
     /// Share of the diagonal: the longest that is tried.
     double longest = 0.05;
-    /// Count. Times that a pillar beside a pinned vertex may be halved, where it leaves the vertex
-    /// no direction.
-    int shortenings = 10;
+    /// Share of a pillar near a pinned vertex that is left of it at least, where it is shortened
+    /// because it leaves the vertex no direction.
+    double shortest_share = 1e-3;
     /// Share. A direction that sees the worst tet at this share of the cosine to the worst of the
     /// surface's own triangles is as good as any: what fails then does not fail for the neighbours.
     double share_of_visibility = 0.5;

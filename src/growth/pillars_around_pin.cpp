@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: a valid shell, and a pinned vertex to which the pillars around it leave none of its own.
+// Leaves: those shorter, or turned to where they see their triangles better, until it can have one.
+// Short enough they always leave one to a vertex that the surface itself does not pin; what
+// rounding takes of that, turning gives back (docs/theory.md, "Pins that geometry demands").
+
+#include "growth/pillars_around_pin.h"
+
+#include "growth/move_tests.h"
+#include "growth/other_components.h"
+#include "mesh/most_visible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vdb_shell::growth
+{
+namespace
+{
+
+std::vector<int> faces_at(const GrowState& s, int v)
+{
+    std::vector<int> faces;
+    for (const FaceCorner& at : star(*s.mesh, v))
+        faces.push_back(at.face);
+    return faces;
+}
+
+/// The float32 points around x, the nearest first: the one that it is rounded to and those beside
+/// that.
+std::vector<Vec3d> points_around(const Vec3d& x)
+{
+    std::vector<Vec3d> points;
+    const auto step = [](double coordinate, int by) {
+        constexpr float kFar = std::numeric_limits<float>::max();
+        const auto at = static_cast<float>(coordinate);
+        return double(by == 0 ? at : std::nextafter(at, by < 0 ? -kFar : kFar));
+    };
+    for (int i = 0; i < 27; ++i)
+        points.push_back({step(x[0], i % 3 - 1), step(x[1], i / 3 % 3 - 1), step(x[2], i / 9 - 1)});
+    std::stable_sort(points.begin(), points.end(), [&](const Vec3d& p, const Vec3d& q) {
+        return (p - x).lengthSqr() < (q - x).lengthSqr();
+    });
+    return points;
+}
+
+void sort_unique(std::vector<int>& list)
+{
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+} // namespace
+
+View best_view(const GrowState& s, int v)
+{
+    View view;
+    std::vector<Vec3d> normals;
+    for (const FaceCorner& at : star(*s.mesh, v)) {
+        const int j = s.mesh->corner(at.face, (at.local + 1) % 3);
+        const int k = s.mesh->corner(at.face, (at.local + 2) % 3);
+        for (const int inner_j : {-1, j})
+            for (const int inner_k : {-1, k}) {
+                const Vec3d& p = inner_j < 0 ? s.a[j] : s.b[j];
+                const Vec3d& q = inner_k < 0 ? s.a[k] : s.b[k];
+                const Vec3d n = (q - s.a[v]).cross(p - s.a[v]);
+                if (!(n.lengthSqr() > 0))
+                    continue;
+                normals.push_back(n / n.length());
+                view.bounds.push_back({normals.back(), {inner_j, inner_k}});
+            }
+    }
+    view.direction = most_visible(normals);
+    view.least = view.direction.lengthSqr() > 0 ? smallest_dot(normals, view.direction) : 0;
+    return view;
+}
+
+PillarsAround::PillarsAround(GrowState& s, int v, const std::vector<double>& visibility,
+                             Shortening shortening)
+    : s_(s), pin_(v), visibility_(visibility), shortening_(shortening), faces_(faces_at(s, v))
+{
+}
+
+bool PillarsAround::shorten(const View& view, double least)
+{
+    // The bounds that bind are about equal where the worst is as far off as can be.
+    constexpr double kAboutEqual = 0.01;
+    const double near = shortening_.all ? least : std::min(least, view.least + kAboutEqual);
+    std::vector<int> blocking;
+    for (const Bound& bound : view.bounds)
+        if (bound.normal.dot(view.direction) < near)
+            for (const int u : bound.inner)
+                if (u >= 0 && !s_.pinned[u])
+                    blocking.push_back(u);
+    sort_unique(blocking);
+    bool any = false;
+    for (const int u : blocking)
+        any = change(u, shortening_.share * (s_.b[u] - s_.a[u])) || any;
+    return any;
+}
+
+bool PillarsAround::turn(const Vec3d& direction)
+{
+    bool any = false;
+    for (const int u : corners_of_failing(direction)) {
+        const View view = best_view(s_, u);
+        const Vec3d arm = s_.b[u] - s_.a[u];
+        const double length = arm.length(), clear = clear_view(s_, visibility_[u]);
+        const Vec3d turned = arm / length + view.direction;
+        any = (view.least < clear       ? shorten(view, clear)
+               : turned.lengthSqr() > 0 ? change(u, 0.5 * length * turned.unit())
+                                        : false) ||
+              any;
+    }
+    return any;
+}
+
+std::vector<Place> PillarsAround::restore()
+{
+    std::vector<Place> ends{{pin_, s_.b[pin_]}};
+    s_.b[pin_] = s_.a[pin_];
+    s_.pinned[pin_] = 1;
+    for (const Pillar& p : pillars_) {
+        ends.push_back({p.vertex, s_.b[p.vertex]});
+        s_.b[p.vertex] = p.before;
+    }
+    return ends;
+}
+
+double PillarsAround::void6() const
+{
+    double sum = 0;
+    for (const int f : faces_) {
+        const Corners b = inner_corners(s_, f);
+        sum += (b[0] - s_.a[pin_]).dot((b[1] - s_.a[pin_]).cross(b[2] - s_.a[pin_]));
+    }
+    return sum;
+}
+
+bool PillarsAround::valid() const
+{
+    return std::all_of(faces_.begin(), faces_.end(), [&](int f) {
+        return prism_valid(s_, f) && inner_triangle_clear(s_, f) && !holds_component(s_, f);
+    });
+}
+
+/// Of the vertex's prisms that fail with its shortest pillar, the other corners.
+std::vector<int> PillarsAround::corners_of_failing(const Vec3d& direction)
+{
+    std::vector<int> corners;
+    s_.pinned[pin_] = 0;
+    s_.b[pin_] = end_within_cap(s_, pin_, direction, 2 * shortest_pillar(s_));
+    for (const FaceCorner& at : star(*s_.mesh, pin_))
+        for (int k = 1; k < 3 && !prism_valid(s_, at.face); ++k)
+            corners.push_back(s_.mesh->corner(at.face, (at.local + k) % 3));
+    s_.b[pin_] = s_.a[pin_];
+    s_.pinned[pin_] = 1;
+    sort_unique(corners);
+    const auto is_pinned = [&](int u) { return s_.pinned[u] != 0; };
+    corners.erase(std::remove_if(corners.begin(), corners.end(), is_pinned), corners.end());
+    return corners;
+}
+
+PillarsAround::Pillar& PillarsAround::pillar(int u)
+{
+    const auto at = std::find_if(pillars_.begin(), pillars_.end(),
+                                 [&](const Pillar& p) { return p.vertex == u; });
+    if (at != pillars_.end())
+        return *at;
+    pillars_.push_back({u, false, s_.b[u]});
+    return pillars_.back();
+}
+
+/// Puts the end of u's pillar to the float32 point nearest to that arm at which its prisms are
+/// valid: rounded as usual, a short one that leans may come to lie beyond a plane of its own tets.
+/// False, with nothing changed and no other try for this pillar, where there is none.
+bool PillarsAround::change(int u, const Vec3d& arm)
+{
+    Pillar& p = pillar(u);
+    const Vec3d before = s_.b[u];
+    const std::vector<int> faces = faces_at(s_, u);
+    const auto fits = [&](const Vec3d& end) {
+        s_.b[u] = end;
+        return end != s_.a[u] && within_cap(s_, u, end) &&
+               std::all_of(faces.begin(), faces.end(), [&](int f) { return prism_valid(s_, f); });
+    };
+    const std::vector<Vec3d> ends = points_around(s_.a[u] + arm);
+    const double shortest = std::max(shortest_pillar(s_), s_.schedule.pins.shortest_share *
+                                                              (p.before - s_.a[u]).length());
+    p.done = p.done || !(arm.length() > shortest) || std::none_of(ends.begin(), ends.end(), fits);
+    if (p.done) {
+        s_.b[u] = before;
+        return false;
+    }
+    faces_.insert(faces_.end(), faces.begin(), faces.end());
+    sort_unique(faces_);
+    return true;
+}
+
+} // namespace vdb_shell::growth
