@@ -3,11 +3,13 @@
 // Takes: pillars prolonged from a coarser shell, or those of a refined surface; a few prisms in a
 // hundred are sheared so much that a tet of theirs is inverted. Leaves: a valid shell that is
 // nearly as thick. Moving inner points along the inner surface loses nothing, so it comes first;
-// shortening always ends, so it comes last (docs/theory.md, "Termination").
+// shortening always ends, so it comes after that (docs/theory.md, "Termination"). What was
+// shortened in vain is lengthened again last.
 
 #include "growth/mend_prolonged.h"
 
 #include "core/parallel.h"
+#include "growth/lengthen_again.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
 #include "growth/untangle.h"
@@ -21,6 +23,9 @@ namespace vdb_shell::growth
 {
 namespace
 {
+
+// Percent of the stage's time: on the scans boot and skull a seventh goes into what comes after.
+constexpr double kMendedAt = 85;
 
 /// Shortens the pillars of violating prisms, each by its share, which grows by the factor; marks in
 /// `moved` what this moves. False when there is nothing to shorten.
@@ -55,17 +60,6 @@ void look_around(const Connectivity& m, const std::vector<std::uint8_t>& moved,
     }
 }
 
-/// To first order, what each vertex's move from where it was has taken from the shell.
-std::vector<double> volume6_lost(const GrowState& s, const std::vector<Vec3d>& before)
-{
-    std::vector<double> lost(before.size());
-    for_each_index(lost.size(), [&](std::size_t i) {
-        const int v = static_cast<int>(i);
-        lost[i] = -inner_volume6_gradient(s, v).dot(before[i] - s.b[i]);
-    });
-    return lost;
-}
-
 } // namespace
 
 std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
@@ -74,7 +68,8 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
     pin_unservable(s, directions, length);
     place_pillars(s, directions, length);
     const std::vector<Vec3d> prolonged = s.b;
-    mend_placed(s, progress);
+    mend_placed(s, progress.part(0, kMendedAt));
+    lengthen_again(s, prolonged, progress.part(kMendedAt, 100));
     return volume6_lost(s, prolonged);
 }
 

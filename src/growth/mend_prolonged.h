@@ -14,8 +14,9 @@ namespace vdb_shell::growth
 /// Puts the inner points at these lengths, of pillars that are nearly valid together, as prolonged
 /// ones are, and mends what is not: inner points of prisms that fail a test are moved (untangle.h),
 /// and only what that leaves is shortened, by little the first time and by more each time it fails
-/// again. Leaves a valid shell; may pin. Gives back what each inner point has lost by that, as six
-/// times a volume: about what it can win back.
+/// again; points that have lost much by that go back as far as they can (lengthen_again.h). Leaves
+/// a valid shell; may pin. Gives back what each inner point has lost by that, as six times a
+/// volume: about what it can win back.
 std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
                                    const std::vector<double>& length,
                                    const StageProgress& progress);

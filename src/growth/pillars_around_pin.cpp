@@ -32,13 +32,15 @@ std::vector<int> faces_at(const GrowState& s, int v)
 /// that.
 std::vector<Vec3d> points_around(const Vec3d& x)
 {
+    constexpr int kPoints = 27;
     std::vector<Vec3d> points;
+    points.reserve(kPoints);
     const auto step = [](double coordinate, int by) {
         constexpr float kFar = std::numeric_limits<float>::max();
         const auto at = static_cast<float>(coordinate);
         return double(by == 0 ? at : std::nextafter(at, by < 0 ? -kFar : kFar));
     };
-    for (int i = 0; i < 27; ++i)
+    for (int i = 0; i < kPoints; ++i)
         points.push_back({step(x[0], i % 3 - 1), step(x[1], i / 3 % 3 - 1), step(x[2], i / 9 - 1)});
     std::stable_sort(points.begin(), points.end(), [&](const Vec3d& p, const Vec3d& q) {
         return (p - x).lengthSqr() < (q - x).lengthSqr();

@@ -103,6 +103,8 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(mend, MendSchedule, weight_of_staying),
     VDB_SHELL_NUMBER(mend, MendSchedule, weight_of_staying_across),
     VDB_SHELL_NUMBER(mend, MendSchedule, newton_steps),
+    VDB_SHELL_NUMBER(mend, MendSchedule, least_loss),
+    VDB_SHELL_NUMBER(mend, MendSchedule, tries_back),
     VDB_SHELL_NUMBER(groups, GroupSchedule, radius),
     VDB_SHELL_NUMBER(groups, GroupSchedule, barrier_weight),
     VDB_SHELL_NUMBER(groups, GroupSchedule, least_void),

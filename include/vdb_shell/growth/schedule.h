@@ -121,6 +121,11 @@ struct MendSchedule {
     double weight_of_staying = 1.0, weight_of_staying_across = 10.0;
     /// Count. Gauss-Newton steps for one vertex.
     int newton_steps = 6;
+    /// Share of what is empty, over the number of vertices: what a point has to have lost to be put
+    /// back. Half of it: an eighth more time for mending, as much fill (docs/measurements/scans.md).
+    double least_loss = 1;
+    /// Count. Lengths tried on the way back, each half the one before.
+    int tries_back = 4;
 };
 
 /// Prolongate: the inner points of many vertices moved at once, after mending.
@@ -130,9 +135,9 @@ struct GroupSchedule {
     /// Mean tets. Weight of the barrier.
     double barrier_weight = 0.02;
     /// Shares of what is empty, over the number of groups: what has to lie before a group for it to
-    /// be tried, and what a step of it has to win. Twice or half the first: .5 s less or 1 s more
-    /// of 6 on the scan boot, fill .0005 less or .0005 more.
-    double least_void = 1, least_gain = 0.05;
+    /// be tried, and what a step of it has to win. Half the first: groups take a third longer, fill
+    /// 0 to .001 more on the scans (docs/measurements/scans.md).
+    double least_void = 2, least_gain = 0.05;
     /// Count. Sweeps over all groups; after the first only those beside a change.
     int sweeps = 2;
     /// Share of the solid that has to be empty for groups to be moved at all.
