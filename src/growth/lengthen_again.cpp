@@ -35,7 +35,7 @@ std::vector<int> most_lost_first(const GrowState& s, const std::vector<double>& 
     return vertices;
 }
 
-void update_tree(GrowState& s, int v)
+void update_boxes(GrowState& s, int v)
 {
     for (const FaceCorner& at : star(*s.mesh, v))
         s.inner_tree.replace(static_cast<std::size_t>(at.face),
@@ -63,11 +63,11 @@ bool put_back(GrowState& s, int v, const Vec3d& before)
         if (x == here || x == s.a[v] || !tets_positive_at(s, v, x) || swallows_component(s, v, x))
             continue;
         s.b[v] = x;
-        update_tree(s, v);
+        update_boxes(s, v);
         if (star_valid(s, v))
             return true;
         s.b[v] = here;
-        update_tree(s, v);
+        update_boxes(s, v);
     }
     return false;
 }

@@ -25,7 +25,7 @@ namespace
 {
 
 // Percent of the stage's time: on the scans boot and skull a seventh goes into what comes after.
-constexpr double kMendedAt = 85;
+constexpr double kShortenedAt = 85;
 
 /// Shortens the pillars of violating prisms, each by its share, which grows by the factor; marks in
 /// `moved` what this moves. False when there is nothing to shorten.
@@ -68,8 +68,8 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
     pin_unservable(s, directions, length);
     place_pillars(s, directions, length);
     const std::vector<Vec3d> prolonged = s.b;
-    mend_placed(s, progress.part(0, kMendedAt));
-    lengthen_again(s, prolonged, progress.part(kMendedAt, 100));
+    mend_placed(s, progress.part(0, kShortenedAt));
+    lengthen_again(s, prolonged, progress.part(kShortenedAt, 100));
     return volume6_lost(s, prolonged);
 }
 

@@ -119,9 +119,9 @@ bool PillarsAround::turn(const Vec3d& direction)
     return any;
 }
 
-std::vector<Place> PillarsAround::restore()
+std::vector<PillarEnd> PillarsAround::restore()
 {
-    std::vector<Place> ends{{pin_, s_.b[pin_]}};
+    std::vector<PillarEnd> ends{{pin_, s_.b[pin_]}};
     s_.b[pin_] = s_.a[pin_];
     s_.pinned[pin_] = 1;
     for (const Pillar& p : pillars_) {

@@ -33,7 +33,7 @@ inline double clear_view(const GrowState& s, double visibility)
 }
 
 /// Where a pillar ends.
-struct Place {
+struct PillarEnd {
     int vertex;
     Vec3d end;
 };
@@ -65,7 +65,7 @@ public:
     bool turn(const Vec3d& direction);
 
     /// Puts all back as it was, the pin too; gives back what was there.
-    std::vector<Place> restore();
+    std::vector<PillarEnd> restore();
 
     /// Six times the volume between the outer point and the inner triangles that were changed.
     double void6() const;

@@ -83,14 +83,14 @@ bool release(GrowState& s, int v, double length, const std::vector<double>& visi
 {
     const double clear = clear_view(s, visibility[v]);
     double least_loss6 = std::numeric_limits<double>::infinity();
-    std::vector<Place> best;
+    std::vector<PillarEnd> best;
     for (const Shortening& shortening : kShortenings) {
         PillarsAround around(s, v, visibility, shortening);
         const bool released = make_room(s, v, length, clear, allowed, around);
         if (released && around.none_changed())
             return true;
         const double after6 = around.void6();
-        std::vector<Place> ends = around.restore();
+        std::vector<PillarEnd> ends = around.restore();
         const double loss6 = after6 - around.void6();
         if (released && loss6 < least_loss6) {
             least_loss6 = loss6;
@@ -99,8 +99,8 @@ bool release(GrowState& s, int v, double length, const std::vector<double>& visi
         if (!released || allowed == PillarsBesidePin::kept)
             break;
     }
-    for (const Place& place : best)
-        s.b[place.vertex] = place.end;
+    for (const PillarEnd& p : best)
+        s.b[p.vertex] = p.end;
     s.pinned[v] = best.empty();
     return !best.empty();
 }

@@ -122,7 +122,8 @@ struct MendSchedule {
     /// Count. Gauss-Newton steps for one vertex.
     int newton_steps = 6;
     /// Share of what is empty, over the number of vertices: what a point has to have lost to be put
-    /// back. Half of it: an eighth more time for mending, as much fill (docs/measurements/scans.md).
+    /// back. Half of it: an eighth more time for mending, as much fill
+    /// (docs/measurements/scans.md).
     double least_loss = 1;
     /// Count. Lengths tried on the way back, each half the one before.
     int tries_back = 4;
