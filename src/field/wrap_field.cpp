@@ -10,13 +10,11 @@
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "core/stage_stop.h"
 #include "field/mesh_distances.h"
+#include "field/voxel_distances.h"
 #include "field/winding_field.h"
-#include "mesh/nearest_on_triangle.h"
-#include "mesh/triangle_area.h"
-#include "mesh/triangle_corners.h"
-#include "mesh/triangle_tree.h"
 #include "resample/triangle_pieces.h"
 
 #include <openvdb/tools/LevelSetUtil.h>
@@ -236,57 +234,6 @@ double area_of(const TriangleCorners& t)
     return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).length();
 }
 
-/// The voxels of the box around a mesh that is given in voxels, with a band around it.
-openvdb::CoordBBox voxels_around(const TriangleMesh& mesh, double band)
-{
-    const Bounds bounds = bounds_of(mesh.points);
-    return {Coord::floor(bounds.low - Vec3d(band)), Coord::ceil(bounds.high + Vec3d(band))};
-}
-
-/// Whether there are so many sheets that each voxel has several in it.
-bool fills_voxels(const TriangleMesh& mesh, double band)
-{
-    // A closed surface has six in all voxels of a cube's layer, and a few hundredths of this.
-    constexpr double kCrowd = 8;
-    return !mesh.triangles.empty() && surface_area(mesh.points, mesh.triangles) >
-                                          kCrowd * double(voxels_around(mesh, band).volume());
-}
-
-/// The distances voxel by voxel, so that the grid bounds the work: OpenVDB's tool looks at all
-/// voxels of each triangle.
-openvdb::FloatGrid::Ptr distances_by_voxels(const TriangleMesh& mesh, double band)
-{
-    const openvdb::CoordBBox box = voxels_around(mesh, band);
-    const TriangleTree tree(mesh, diagonal_of(bounds_of(mesh.points)));
-    const Coord size = box.dim();
-    const auto rows = std::size_t(size[0]) * std::size_t(size[1]);
-    std::vector<std::vector<float>> row(rows);
-    const auto start_of = [&](std::size_t i) {
-        return box.min().offsetBy(int(i / std::size_t(size[1])), int(i % std::size_t(size[1])), 0);
-    };
-    for_each_index(
-        rows,
-        [&](std::size_t i) {
-            stop_if_stage_wants();
-            // A row begins anew, so its values do not depend on which thread had the one before.
-            TriangleTree::Seed seed = TriangleTree::kNoSeed;
-            for (int z = 0; z < size[2]; ++z) {
-                const Vec3d at = start_of(i).offsetBy(0, 0, z).asVec3d();
-                const std::uint32_t t = tree.nearest(at, 0.0F, seed).triangle;
-                row[i].push_back(static_cast<float>(
-                    (nearest_on_triangle(triangle_corners(mesh, t), at).point - at).length()));
-            }
-        },
-        1);
-    auto grid = openvdb::FloatGrid::create(static_cast<float>(band));
-    auto values = grid->getAccessor();
-    for (std::size_t i = 0; i < rows; ++i)
-        for (int z = 0; z < size[2]; ++z)
-            if (double(row[i][std::size_t(z)]) < band)
-                values.setValue(start_of(i).offsetBy(0, 0, z), row[i][std::size_t(z)]);
-    return grid;
-}
-
 openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pieces, double band)
 {
     TriangleMesh mesh;
@@ -298,7 +245,7 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
         mesh.triangles.emplace_back(first, first + 1, first + 2);
     }
     if (fills_voxels(mesh, band))
-        return distances_by_voxels(mesh, band);
+        return unsigned_distances_by_voxels(mesh, band);
     return unsigned_distances(mesh, *openvdb::math::Transform::createLinearTransform(1.0), band,
                               nullptr);
 }
@@ -349,13 +296,6 @@ template <typename Visit> void for_each_neighbour(const Coord& voxel, const Visi
                     visit(voxel.offsetBy(i, j, k));
 }
 
-/// In an order that does not depend on how the voxels were found.
-void sort_and_unite(std::vector<Coord>& voxels)
-{
-    std::sort(voxels.begin(), voxels.end());
-    voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
-}
-
 /// The active voxels of both, each once.
 std::vector<Coord> band_voxels(const openvdb::FloatGrid& boundary, const openvdb::FloatGrid& sheet)
 {
@@ -389,7 +329,7 @@ std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
         if (changes)
             for_each_neighbour(voxel, add_unknown);
     }
-    sort_and_unite(beyond);
+    sort_unique(beyond);
     return beyond;
 }
 

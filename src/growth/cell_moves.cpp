@@ -10,6 +10,7 @@
 #include "growth/cell_moves.h"
 
 #include "core/six_volumes.h"
+#include "core/sort_unique.h"
 #include "growth/move_tests.h"
 #include "growth/separation.h"
 
@@ -86,8 +87,7 @@ void CellMoves::list_faces(const Group& group)
         for (const FaceCorner& at : star(*s_.mesh, share.vertex))
             faces_.push_back(at.face);
     }
-    std::sort(faces_.begin(), faces_.end());
-    faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
+    sort_unique(faces_);
 }
 
 bool CellMoves::changed_since(std::uint32_t then) const

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
+#include "growth/violations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,39 +36,27 @@ std::vector<int> most_lost_first(const GrowState& s, const std::vector<double>& 
     return vertices;
 }
 
-void update_boxes(GrowState& s, int v)
+/// Puts the inner point of v to x, and the boxes of its faces with it.
+void put(GrowState& s, int v, const Vec3d& x, const std::vector<int>& faces)
 {
-    for (const FaceCorner& at : star(*s.mesh, v))
-        s.inner_tree.replace(static_cast<std::size_t>(at.face),
-                             float_box_of(inner_corners(s, at.face)));
-}
-
-bool star_valid(const GrowState& s, int v)
-{
-    const Slice<FaceCorner> around = star(*s.mesh, v);
-    // Contact tests are the dearer ones.
-    return std::all_of(around.begin(), around.end(),
-                       [&](const FaceCorner& at) {
-                           return prism_valid(s, at.face) && !holds_component(s, at.face);
-                       }) &&
-           std::all_of(around.begin(), around.end(),
-                       [&](const FaceCorner& at) { return inner_triangle_clear(s, at.face); });
+    s.b[v] = x;
+    for (const int f : faces)
+        s.inner_tree.replace(static_cast<std::size_t>(f), float_box_of(inner_corners(s, f)));
 }
 
 bool put_back(GrowState& s, int v, const Vec3d& before)
 {
     const Vec3d here = s.b[v];
+    const std::vector<int> faces = faces_at(s, v);
     double share = 1;
     for (int i = 0; i < s.schedule.mend.tries_back; ++i, share *= 0.5) {
         const Vec3d x = capped(s, v, here + share * (before - here));
         if (x == here || x == s.a[v] || !tets_positive_at(s, v, x) || swallows_component(s, v, x))
             continue;
-        s.b[v] = x;
-        update_boxes(s, v);
-        if (star_valid(s, v))
+        put(s, v, x, faces);
+        if (faces_valid(s, faces))
             return true;
-        s.b[v] = here;
-        update_boxes(s, v);
+        put(s, v, here, faces);
     }
     return false;
 }
@@ -88,6 +77,7 @@ std::size_t lengthen_again(GrowState& s, const std::vector<Vec3d>& before,
                            const StageProgress& progress)
 {
     const std::vector<int> vertices = most_lost_first(s, volume6_lost(s, before));
+    // A tree that was refitted often is slow, and later stages go in its order.
     s.inner_tree.build(inner_boxes(s));
     s.inner_tree.index_parents();
     std::size_t moved = 0;

@@ -7,8 +7,9 @@
 
 #include "growth/pillars_around_pin.h"
 
+#include "core/sort_unique.h"
 #include "growth/move_tests.h"
-#include "growth/other_components.h"
+#include "growth/violations.h"
 #include "mesh/most_visible.h"
 
 #include <algorithm>
@@ -19,14 +20,6 @@ namespace vdb_shell::growth
 {
 namespace
 {
-
-std::vector<int> faces_at(const GrowState& s, int v)
-{
-    std::vector<int> faces;
-    for (const FaceCorner& at : star(*s.mesh, v))
-        faces.push_back(at.face);
-    return faces;
-}
 
 /// The float32 points around x, the nearest first: the one that it is rounded to and those beside
 /// that.
@@ -46,12 +39,6 @@ std::vector<Vec3d> points_around(const Vec3d& x)
         return (p - x).lengthSqr() < (q - x).lengthSqr();
     });
     return points;
-}
-
-void sort_unique(std::vector<int>& list)
-{
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 } // namespace
@@ -143,9 +130,7 @@ double PillarsAround::void6() const
 
 bool PillarsAround::valid() const
 {
-    return std::all_of(faces_.begin(), faces_.end(), [&](int f) {
-        return prism_valid(s_, f) && inner_triangle_clear(s_, f) && !holds_component(s_, f);
-    });
+    return faces_valid(s_, faces_);
 }
 
 /// Of the vertex's prisms that fail with its shortest pillar, the other corners.
@@ -155,8 +140,9 @@ std::vector<int> PillarsAround::corners_of_failing(const Vec3d& direction)
     s_.pinned[pin_] = 0;
     s_.b[pin_] = end_within_cap(s_, pin_, direction, 2 * shortest_pillar(s_));
     for (const FaceCorner& at : star(*s_.mesh, pin_))
-        for (int k = 1; k < 3 && !prism_valid(s_, at.face); ++k)
-            corners.push_back(s_.mesh->corner(at.face, (at.local + k) % 3));
+        if (!prism_valid(s_, at.face))
+            for (int k = 1; k < 3; ++k)
+                corners.push_back(s_.mesh->corner(at.face, (at.local + k) % 3));
     s_.b[pin_] = s_.a[pin_];
     s_.pinned[pin_] = 1;
     sort_unique(corners);

@@ -86,18 +86,19 @@ bool release(GrowState& s, int v, double length, const std::vector<double>& visi
     std::vector<PillarEnd> best;
     for (const Shortening& shortening : kShortenings) {
         PillarsAround around(s, v, visibility, shortening);
-        const bool released = make_room(s, v, length, clear, allowed, around);
-        if (released && around.none_changed())
+        if (!make_room(s, v, length, clear, allowed, around)) {
+            around.restore();
+            break;
+        }
+        if (around.none_changed())
             return true;
         const double after6 = around.void6();
         std::vector<PillarEnd> ends = around.restore();
         const double loss6 = after6 - around.void6();
-        if (released && loss6 < least_loss6) {
+        if (loss6 < least_loss6) {
             least_loss6 = loss6;
             best = std::move(ends);
         }
-        if (!released || allowed == PillarsBesidePin::kept)
-            break;
     }
     for (const PillarEnd& p : best)
         s.b[p.vertex] = p.end;

@@ -142,6 +142,23 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
     return {bad.begin(), bad.end()};
 }
 
+std::vector<int> faces_at(const GrowState& s, int v)
+{
+    std::vector<int> faces;
+    for (const FaceCorner& at : star(*s.mesh, v))
+        faces.push_back(at.face);
+    return faces;
+}
+
+bool faces_valid(const GrowState& s, const std::vector<int>& faces)
+{
+    // Contact tests are the dearer ones.
+    return std::all_of(faces.begin(), faces.end(),
+                       [&](int f) { return prism_valid(s, f) && !holds_component(s, f); }) &&
+           std::all_of(faces.begin(), faces.end(),
+                       [&](int f) { return inner_triangle_clear(s, f); });
+}
+
 std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<std::uint8_t>& bad)
 {
     std::vector<std::uint8_t> corners(s.b.size(), 0);

@@ -18,6 +18,13 @@ namespace vdb_shell::growth
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
                                           bool first);
 
+/// The faces around a vertex.
+std::vector<int> faces_at(const GrowState& s, int v);
+
+/// Whether none of these would be a violation. Precondition: the inner tree's boxes hold the inner
+/// triangles.
+bool faces_valid(const GrowState& s, const std::vector<int>& faces);
+
 /// The corners of such faces that are not pinned.
 std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<std::uint8_t>& bad);
 

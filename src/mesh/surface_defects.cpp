@@ -147,34 +147,27 @@ std::vector<char> find_degenerate(const TriangleMesh& mesh)
     return degenerate;
 }
 
-std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
-                                                  const std::vector<char>& left_out,
-                                                  Interrupter* interrupter)
+namespace
+{
+
+FoundPairs find_contacts(const TriangleMesh& mesh, const std::vector<char>& left_out,
+                         const PairBounds& wanted, Interrupter* interrupter)
 {
     const TriangleContacts contacts(mesh.points, mesh.triangles);
     return overlapping_triangles(
         mesh.points, mesh.triangles,
         [&](std::uint32_t first, std::uint32_t second) { return contacts.touch(first, second); },
-        interrupter, left_out);
-}
-
-namespace
-{
-
-void find_contacts(const TriangleMesh& mesh, Interrupter* interrupter, SurfaceDefects& defects)
-{
-    const TriangleContacts contacts(mesh.points, mesh.triangles);
-    PairBounds wanted;
-    wanted.limited = true;
-    FoundPairs found = overlapping_triangles(
-        mesh.points, mesh.triangles,
-        [&](std::uint32_t first, std::uint32_t second) { return contacts.touch(first, second); },
-        wanted, interrupter, left_out_of_contacts(mesh.triangles.size(), defects));
-    defects.self_intersections = std::move(found.pairs);
-    defects.more_self_intersections = !found.all;
+        wanted, interrupter, left_out);
 }
 
 } // namespace
+
+std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
+                                                  const std::vector<char>& left_out,
+                                                  Interrupter* interrupter)
+{
+    return find_contacts(mesh, left_out, PairBounds{}, interrupter).pairs;
+}
 
 SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
                             Interrupter* interrupter)
@@ -186,7 +179,12 @@ SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>
     stop_if_stage_wants();
     defects.degenerate_triangles = raised(find_degenerate(mesh));
     defects.duplicate_triangles = find_duplicates(mesh);
-    find_contacts(mesh, interrupter, defects);
+    PairBounds wanted;
+    wanted.limited = true;
+    FoundPairs found = find_contacts(mesh, left_out_of_contacts(mesh.triangles.size(), defects),
+                                     wanted, interrupter);
+    defects.self_intersections = std::move(found.pairs);
+    defects.more_self_intersections = !found.all;
     return defects;
 }
 

@@ -35,14 +35,7 @@ public:
     SeenCorners(const std::vector<Vec3d>& points, const Vec3d& normal)
         : points_(points), in_(points.size(), 1)
     {
-        // The axis along which the normal is shortest makes the largest angle with it.
-        int axis = 0;
-        for (int k = 1; k < 3; ++k)
-            if (std::abs(normal[k]) < std::abs(normal[axis]))
-                axis = k;
-        Vec3d other(0.0);
-        other[axis] = 1;
-        x_ = unit_vector(normal.cross(other));
+        x_ = unit_vector(at_right_angles_to(normal));
         y_ = normal.cross(x_);
         double farthest = 0;
         for (const Vec3d& p : points)

@@ -184,14 +184,7 @@ public:
     View(const TriangleMesh& mesh, const Vec3d& centre, const Vec3d& normal)
         : mesh_(mesh), centre_(centre)
     {
-        // The axis along which the normal is shortest makes the largest angle with it.
-        int axis = 0;
-        for (int k = 1; k < 3; ++k)
-            if (std::abs(normal[k]) < std::abs(normal[axis]))
-                axis = k;
-        Vec3d other(0.0);
-        other[axis] = 1;
-        x_ = unit_vector(normal.cross(other));
+        x_ = unit_vector(at_right_angles_to(normal));
         y_ = unit_vector(normal).cross(x_);
     }
     double angle(std::uint32_t point) const

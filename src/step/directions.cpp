@@ -10,6 +10,7 @@
 
 #include "core/counter_random.h"
 #include "core/parallel.h"
+#include "core/unit_vector.h"
 #include "field/field_sampler.h"
 #include "step/most_radians.h"
 #include "vdb_shell/core/error.h"
@@ -57,14 +58,7 @@ Disk disk_point(std::uint64_t seed, std::size_t vertex)
 
 Vec3d tilted(const Vec3d& direction, const Disk& offset, double tangent)
 {
-    // Any frame does; the axis along which the direction is shortest keeps it well conditioned.
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-        if (std::abs(direction[i]) < std::abs(direction[axis]))
-            axis = i;
-    Vec3d other(0.0);
-    other[axis] = 1;
-    const Vec3d u = direction.cross(other).unit();
+    const Vec3d u = at_right_angles_to(direction).unit(); // any frame does
     const Vec3d v = direction.cross(u);
     return (direction + tangent * (offset.x * u + offset.y * v)).unit();
 }

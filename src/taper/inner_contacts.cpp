@@ -8,6 +8,7 @@
 #include "taper/inner_contacts.h"
 
 #include "core/disjoint_sets.h"
+#include "core/sort_unique.h"
 #include "growth/grow_state.h"
 #include "growth/predicates.h"
 
@@ -145,12 +146,6 @@ struct SweptTet {
         return least > 0 ? turn : 0;
     }
 };
-
-void sort_unique(std::vector<int>& values)
-{
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 bool among(const std::vector<int>& sorted, int value)
 {
