@@ -4,13 +4,16 @@
 # sanitize.sh fuzz [SECONDS]      every fuzzer for so many seconds (20)
 # sanitize.sh readers             what continuous integration has time for: the first of mesh readers and options, and every
 #                                 fuzzer of a mesh reader for 10 seconds
-# sanitize.sh threads             of the second what takes minutes, not run by continuous integration yet: every test that a stage does the same with any
+# sanitize.sh races               the same of the second: field, steps, growth, layers and certificate on small surfaces with
+#                                 four threads, and a race of our own that has to be reported
+# sanitize.sh threads             more of the second, in a quarter of an hour: every test that a stage does the same with any
 #                                 number of threads, as those are made to share its loops; the slowest are left to
 #                                 `thread resample field step growth layers`
 # Without rooms: readers, exact tests, shells, certificates and the kept inputs of all fuzzers with the first, the stages whose loops are parallel
 # with the second. `all` is every test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+export LSAN_OPTIONS="suppressions=$PWD/tests/lsan_suppressions.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
 
 run_tests() { # PRESET ROOM...
     local preset=$1
@@ -42,6 +45,12 @@ readers)
     ctest --preset readers -j "$(nproc)" -R "^($(IFS='|'; echo "${rooms[*]}"))\."
     exec python3 tests/fuzz/run.py build/readers --seconds 10 --targets obj ply off stl obj_texture ply_texture
     ;;
+races)
+    export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
+    cmake --preset races
+    cmake --build --preset races --target races_test own_race
+    exec ctest --preset races -R '^races\.' # one after the other, as each takes several threads
+    ;;
 threads)
     export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
     [ -e build/threads/CMakeCache.txt ] || unity=-DVDB_SHELL_UNITY=ON # as in tests/run.sh
@@ -57,7 +66,7 @@ fuzz)
     exec python3 tests/fuzz/run.py build/fuzz --seconds "${1:-20}"
     ;;
 *)
-    echo "usage: $0 address|thread [ROOM ...]|readers|threads|fuzz [SECONDS]" >&2
+    echo "usage: $0 address|thread [ROOM ...]|readers|races|threads|fuzz [SECONDS]" >&2
     exit 2
     ;;
 esac

@@ -19,6 +19,10 @@
 #if defined(VDB_SHELL_TELL_THREAD_SANITIZER)
 #include <openvdb/openvdb.h>
 #include <sanitizer/tsan_interface.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
 #endif
 
 namespace vdb_shell
@@ -75,6 +79,36 @@ private:
 #endif
 };
 
+/// Of a short loop the thread that begins it does all before another one is awake, and what one
+/// thread does is no race. So under the thread sanitizer it waits for a second one, up to a
+/// millisecond.
+class Company
+{
+public:
+#if defined(VDB_SHELL_TELL_THREAD_SANITIZER)
+    void join()
+    {
+        using Clock = std::chrono::steady_clock;
+        const std::thread::id self = std::this_thread::get_id();
+        std::thread::id first;
+        if (!first_.compare_exchange_strong(first, self)) {
+            if (first != self)
+                complete_ = true;
+            return;
+        }
+        const Clock::time_point end = Clock::now() + std::chrono::milliseconds(1);
+        while (!complete_ && Clock::now() < end)
+            std::this_thread::yield();
+    }
+
+private:
+    std::atomic<std::thread::id> first_{};
+    std::atomic<bool> complete_{false};
+#else
+    void join() {}
+#endif
+};
+
 } // namespace
 
 void for_ranges(std::size_t count, std::size_t grain, const void* body,
@@ -88,10 +122,13 @@ void for_ranges(std::size_t count, std::size_t grain, const void* body,
             call(body, i, std::min(last, i + part));
     };
     Milestone begin, end;
+    Company company;
     begin.passed();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           begin.awaited();
+                          if (range.size() < count)
+                              company.join();
                           call_in_parts(range.begin(), range.end());
                           end.passed();
                       });
