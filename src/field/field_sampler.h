@@ -47,7 +47,10 @@ public:
 
     FieldSample at(const openvdb::Vec3d& world)
     {
-        const openvdb::Vec3d index = transform_.worldToIndex(world);
+        // A step may be of any length; voxels are whole numbers, and no grid reaches so far.
+        const openvdb::Vec3d far(1e9);
+        const openvdb::Vec3d index = openvdb::math::maxComponent(
+            -far, openvdb::math::minComponent(transform_.worldToIndex(world), far));
         const openvdb::Coord base = openvdb::Coord::floor(index);
         if (!fetched_ || base != base_)
             fetch(base);

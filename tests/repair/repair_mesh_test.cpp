@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace vdb_shell::test
 {
@@ -210,13 +210,13 @@ TEST(RepairMesh, RemovesTensOfThousandsOfFlatTrianglesInSeconds)
         mesh.triangles.emplace_back(middle, corner[1], corner[2]);
         mesh.triangles.emplace_back(corner[0], corner[1], middle);
     }
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock(); // of all threads: a busy machine does not fail a test
     const RepairResult result = repair_mesh(mesh);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
     expect_sound(result.report);
     EXPECT_EQ(result.report.degenerate.count, flat);
     EXPECT_EQ(signed_volume(result.mesh.points, result.mesh.triangles), std::pow(kSide, 3));
-    EXPECT_LT(seconds.count(), 30.0);
+    EXPECT_LT(seconds, 30.0);
 }
 
 TEST(RepairMesh, WeldsWithinATolerance)

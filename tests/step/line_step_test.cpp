@@ -288,6 +288,17 @@ TEST(LineStep, WithoutATestOnlyTheThicknessBounds)
     EXPECT_THAT(stage.step(options).length, ::testing::Each(7.0));
 }
 
+TEST(LineStep, NothingIsReadBeyondTheNumbersOfVoxels)
+{
+    const Stage stage = stage_of(test::icosphere(1, 1), 16);
+    FieldSampler field(*stage.field);
+    for (const double far : {1e9, 1e300, HUGE_VAL})
+        for (const Vec3d& p : {Vec3d(far, 0, 0), Vec3d(0, -far, 0), Vec3d(far)}) {
+            EXPECT_FALSE(field.at(p).in_band);
+            EXPECT_EQ(field.at(p).gradient, Vec3d(0.0));
+        }
+}
+
 TEST(LineStep, SameBitsForAnyNumberOfThreads)
 {
     const Stage stage = stage_of(test::torus(1, 0.4, 60, 30), 48);
