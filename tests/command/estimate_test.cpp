@@ -20,6 +20,16 @@ namespace
 using command::ExitCode;
 using nlohmann::json;
 
+// The address sanitizer keeps freed memory for a while, so that a peak is no longer what a build
+// needs.
+#if defined(__SANITIZE_ADDRESS__)
+#define VDB_SHELL_FREED_MEMORY_IS_KEPT
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define VDB_SHELL_FREED_MEMORY_IS_KEPT
+#endif
+#endif
+
 class Estimate : public Command
 {
 protected:
@@ -49,7 +59,9 @@ TEST_F(Estimate, ItIsNearWhatABuildTakes)
     for (const json& stage : report.at("stages"))
         peak = std::max(peak, stage.at("peak_memory_bytes").get<double>());
     EXPECT_LT(guess.at("memory_bytes").get<double>(), 2 * peak);
+#if !defined(VDB_SHELL_FREED_MEMORY_IS_KEPT)
     EXPECT_GT(guess.at("memory_bytes").get<double>(), peak / 2);
+#endif
     const double disk = double(std::filesystem::file_size(folder / "s.vdb")) +
                         double(std::filesystem::file_size(folder / "s.vtu"));
     EXPECT_LT(guess.at("disk_bytes").get<double>(), 3 * disk);
