@@ -73,7 +73,8 @@ public:
         if (s.bounded)
             weight_ = std::min(weight_, std::max(schedule_.least_weight,
                                                  schedule_.most_weight_over_void * (1 - fill_)));
-        active_gain_ = relax_.active_gain * std::abs(volume6(s.a, s.mesh->faces));
+        solid6_ = std::abs(volume6(s.a, s.mesh->faces));
+        choose_active_gain();
         set_.gain = relax_.predicted_gain;
         set_.idle_rounds.assign(s.b.size(), 0);
         set_first_radii(s, fill_);
@@ -81,6 +82,8 @@ public:
 
     double fill() const { return fill_; }
     bool full() const { return s_.bounded && fill_ >= schedule_.enough_fill; }
+    /// Whether the shell is less full than wanted, so that rounds go on.
+    bool wants_more() const { return fill_ < relax_.wanted_fill; }
 
     /// One round: separating planes, sweeps, trust radii, diagonals, barrier weight. False if no
     /// other should follow.
@@ -104,7 +107,9 @@ public:
         ++report.rounds;
         const double gain = fill_of(s_) - fill_;
         fill_ += gain;
-        if (ends_after(gain, static_cast<double>(active)))
+        const bool widened = wants_more() && wins_little(gain) && widen();
+        choose_active_gain();
+        if (!widened && ends_after(gain, static_cast<double>(active)))
             return false;
         lower_weight(gain);
         return true;
@@ -115,6 +120,26 @@ private:
     /// While jams are being undone a vertex that has won nothing may have to make room all the
     /// same.
     bool by_gain() const { return active_gain_ > 0 && settled(); }
+
+    void choose_active_gain()
+    {
+        const double of_void = relax_.wanted_active_gain_of_void * (widened_ ? 0.5 : 1);
+        active_gain_ = solid6_ * (wants_more() ? of_void * (1 - fill_) / s_.mesh->vertices
+                                               : relax_.active_gain);
+    }
+
+    /// While the shell is less full than wanted.
+    bool wins_little(double gain) const { return gain <= relax_.wanted_gain_of_void * (1 - fill_); }
+
+    /// Once, when those that are active win little: all are active in the next round, and half as
+    /// much makes a vertex active after it. False when that was done before.
+    bool widen()
+    {
+        if (widened_)
+            return false;
+        set_.gain.clear();
+        return widened_ = true;
+    }
 
     std::vector<std::uint8_t> next_inactive() const
     {
@@ -171,9 +196,10 @@ private:
     {
         const bool coarse_done =
             weight_ < relax_.end_weight && gain <= relax_.end_gain_of_void * (1 - fill_);
-        const bool too_dear = gain <= relax_.least_gain_per_vertex * active;
+        const bool too_dear =
+            wants_more() ? wins_little(gain) : gain <= relax_.least_gain_per_vertex * active;
         const bool converged = weight_ <= schedule_.least_weight && gain < relax_.least_gain;
-        return coarse_done || too_dear || converged;
+        return too_dear || (!wants_more() && (coarse_done || converged));
     }
 
     /// Faster where a round neither wins nor undoes much.
@@ -191,6 +217,8 @@ private:
     double fill_;
     double mean_tet_ = 0;    ///< six times the mean volume of a tet, were the solid full
     double weight_ = 0;      ///< of the barrier, in mean tets
+    double solid6_ = 0;      ///< six times the solid's volume
+    bool widened_ = false;   ///< whether all vertices have been made active once more
     double active_gain_ = 0; ///< RelaxOptions::active_gain, as six times a volume
     ActiveSet set_;
     SeparatingPlanes planes_;
@@ -211,8 +239,11 @@ void relax(GrowState& s, const std::vector<double>& visibility, const GrowOption
     const Saved first{s.b, s.order, s.pinned};
     Relaxation relaxation(s, options, relax_options);
     const double first_fill = relaxation.fill();
-    for (int round = 0; round < relax_options.most_rounds && !relaxation.full(); ++round) {
-        progress.stop_if_interrupted(100.0 * round / relax_options.most_rounds);
+    const auto most_rounds = [&] {
+        return relaxation.wants_more() ? s.schedule.barrier.most_rounds : relax_options.most_rounds;
+    };
+    for (int round = 0; round < most_rounds() && !relaxation.full(); ++round) {
+        progress.stop_if_interrupted(100.0 * round / most_rounds());
         // Ever more seldom: a pin that cannot go now will hardly be able to in the next round.
         if (is_power_of_two_or_zero(round))
             report.released +=

@@ -61,6 +61,16 @@ double active_gain(const GrowState& s, StartedFrom from, const GrowOptions& opti
     return asks_for_more(options) ? 0 : active.gain_of_all / s.mesh->vertices;
 }
 
+void want_more(const GrowState& s, RelaxOptions& relax)
+{
+    // In an unbounded side there is no void to go by.
+    if (!s.bounded)
+        return;
+    relax.wanted_fill = s.schedule.multilevel.wanted_fill;
+    relax.wanted_gain_of_void = s.schedule.multilevel.wanted_gain_of_void;
+    relax.wanted_active_gain_of_void = s.schedule.active.wanted_gain_of_void;
+}
+
 } // namespace
 
 bool asks_for_more(const GrowOptions& options)
@@ -91,6 +101,8 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
     relax.least_gain = s.schedule.barrier.least_gain;
     relax.end_weight = schedule.end_weight;
     relax.end_gain_of_void = schedule.end_gain_of_void;
+    if (from == StartedFrom::prolonged)
+        want_more(s, relax);
     return relax;
 }
 
@@ -112,6 +124,8 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
     // Only where time is to be saved may a round that wins too little end it early on.
     if (saves_time)
         relax.least_gain_per_vertex = s.schedule.active.gain_share_to_go_on * relax.active_gain;
+    if (saves_time)
+        want_more(s, relax);
     relax.predicted_gain = std::move(predicted_gain);
     return relax;
 }

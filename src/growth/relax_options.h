@@ -34,6 +34,12 @@ struct RelaxOptions {
     /// What a vertex must have won in the round before for it and its neighbours to be active, once
     /// most jams are undone. 0: all are active.
     double active_gain = 0;
+    /// While the shell is less full than wanted_fill, rounds go on, whatever the numbers above and
+    /// least_gain_per_vertex say, until even with all vertices active one wins no more than
+    /// wanted_gain_of_void, a share of what is still empty. What makes a vertex active is then
+    /// wanted_active_gain_of_void, a share of what is still empty over the number of vertices. A
+    /// fill of 0 wants nothing.
+    double wanted_fill = 0, wanted_gain_of_void = 0, wanted_active_gain_of_void = 0;
     /// What each vertex may win in the first round, as six times a volume. Empty: all are active.
     std::vector<double> predicted_gain = {};
 };

@@ -92,6 +92,10 @@ struct MultilevelSchedule {
     /// A surface of so many triangles or more gets one round after a prolongation, one of n times
     /// fewer n^2.
     double one_round_triangles = 50000;
+    /// Share of the solid, and of what is still empty: while a prolonged shell is less full than
+    /// the first, rounds go on as long as one wins more than the second
+    /// (docs/measurements/scans.md).
+    double wanted_fill = 0.9855, wanted_gain_of_void = 0.02;
     /// Cost of all rounds on one coarse surface, where a round on the whole surface costs 1.
     double cost_share = 1.0 / 3;
     /// Share of the coarse surface's diagonal: the nearest point on it is found to within this.
@@ -136,9 +140,9 @@ struct GroupSchedule {
     /// Mean tets. Weight of the barrier.
     double barrier_weight = 0.02;
     /// Shares of what is empty, over the number of groups: what has to lie before a group for it to
-    /// be tried, and what a step of it has to win. Half the first: groups take a third longer, fill
-    /// 0 to .001 more on the scans (docs/measurements/scans.md).
-    double least_void = 2, least_gain = 0.05;
+    /// be tried, and what a step of it has to win. A quarter of the first: the whole command takes
+    /// up to an eighth longer for the same fill (docs/measurements/scans.md).
+    double least_void = 8, least_gain = 0.05;
     /// Count. Sweeps over all groups; after the first only those beside a change.
     int sweeps = 2;
     /// Share of the solid that has to be empty for groups to be moved at all.
@@ -220,6 +224,9 @@ struct ActiveSetSchedule {
     /// more than this in the round before: what it costs to try, on a surface of full_size vertices
     /// or more; less in proportion on a smaller one.
     double gain_per_vertex = 1e-6, full_size = 6500;
+    /// Share of what is still empty, over all vertices: the same while a shell is less full than
+    /// MultilevelSchedule::wanted_fill.
+    double wanted_gain_of_void = 0.25;
     /// Share of the solid over all vertices: the same from lines.
     double gain_of_all = 3e-4;
     /// The same for Method::thickest after a prolongation. A third of it: a tenth more time and
