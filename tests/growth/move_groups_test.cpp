@@ -31,6 +31,8 @@ struct Partial {
           connectivity(connect(mesh.points.size(), mesh.triangles)),
           s(make_state(connectivity, mesh.points, std::vector<double>(mesh.points.size(), cap)))
     {
+        // The void is spread evenly here, and by default only what stands before much of it moves.
+        s.schedule.groups.least_void = 1;
     }
     std::size_t move()
     {

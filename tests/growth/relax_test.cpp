@@ -29,11 +29,13 @@ struct HalfFull {
         for (std::size_t v = 0; v < s.b.size(); ++v)
             s.b[v] = rounded(0.5 * s.a[v]);
     }
-    void relax_with(const RelaxOptions& relax_options)
+    /// How many rounds there were.
+    int relax_with(const RelaxOptions& relax_options)
     {
         GrowReport report;
         relax(s, std::vector<double>(s.b.size(), 1.0), GrowOptions{}, relax_options,
               StageProgress(nullptr, "test"), report);
+        return int(report.rounds);
     }
 };
 
@@ -86,6 +88,42 @@ TEST(Relax, EndsWhenNoVertexIsToWin)
     relax.least_gain_per_vertex = 1e-6;
     sphere.relax_with(relax);
     EXPECT_EQ(sphere.s.b, before);
+}
+
+RelaxOptions wanting(double fill, std::vector<double> predicted_gain)
+{
+    RelaxOptions relax = by_gain(1, std::move(predicted_gain));
+    relax.wanted_fill = fill;
+    relax.wanted_gain_of_void = 0.02;
+    relax.wanted_active_gain_of_void = 0.25;
+    return relax;
+}
+
+TEST(Relax, RoundsGoOnUntilTheShellIsAsFullAsWantedAndNoLonger)
+{
+    HalfFull once, some, more;
+    EXPECT_EQ(once.relax_with(wanting(0.0, {})), 1);
+    const double wanted = 0.99, wanted_more = 0.997;
+    ASSERT_LT(fill_of(once.s), wanted);
+    const int rounds = some.relax_with(wanting(wanted, {}));
+    EXPECT_GE(fill_of(some.s), wanted);
+    EXPECT_GT(more.relax_with(wanting(wanted_more, {})), rounds);
+    EXPECT_GE(fill_of(more.s), wanted_more);
+    HalfFull before_the_last;
+    RelaxOptions fewer = wanting(0.0, {});
+    fewer.most_rounds = rounds - 1;
+    fewer.active_gain = 0;
+    before_the_last.relax_with(fewer);
+    EXPECT_LT(fill_of(before_the_last.s), wanted) << "the last round was needed";
+}
+
+TEST(Relax, WhereTheActiveOnesWinLittleAllAreActiveOnceMore)
+{
+    HalfFull sphere;
+    const double before = fill_of(sphere.s);
+    const std::vector<double> none(sphere.s.b.size(), 0.0);
+    EXPECT_GT(sphere.relax_with(wanting(0.95, none)), 1) << "in the first none was active";
+    EXPECT_GT(fill_of(sphere.s), before);
 }
 
 } // namespace
