@@ -13,6 +13,7 @@
 # with the second. `all` is every test.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
 export LSAN_OPTIONS="suppressions=$PWD/tests/lsan_suppressions.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
 
 run_tests() { # PRESET ROOM...
@@ -36,7 +37,6 @@ address)
     ;;
 thread)
     rooms=(core field step growth layers)
-    export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
     ;;
 readers)
     rooms=(options io)
@@ -46,13 +46,11 @@ readers)
     exec python3 tests/fuzz/run.py build/readers --seconds 10 --targets obj ply off stl obj_texture ply_texture
     ;;
 races)
-    export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
     cmake --preset races
     cmake --build --preset races --target races_test own_race
     exec ctest --preset races -R '^races\.' # one after the other, as each takes several threads
     ;;
 threads)
-    export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt halt_on_error=1 ${TSAN_OPTIONS:-}"
     [ -e build/threads/CMakeCache.txt ] || unity=-DVDB_SHELL_UNITY=ON # as in tests/run.sh
     cmake --preset threads ${unity:-}
     cmake --build --preset threads --target chosen_tests

@@ -74,7 +74,6 @@ public:
             weight_ = std::min(weight_, std::max(schedule_.least_weight,
                                                  schedule_.most_weight_over_void * (1 - fill_)));
         solid6_ = std::abs(volume6(s.a, s.mesh->faces));
-        choose_active_gain();
         set_.gain = relax_.predicted_gain;
         set_.idle_rounds.assign(s.b.size(), 0);
         set_first_radii(s, fill_);
@@ -97,7 +96,7 @@ public:
                            settled() ? TreeUpdate::refit : TreeUpdate::rebuild);
         sweeps(inactive);
         // What a vertex has won is what it is predicted to win in the next round.
-        if (active_gain_ > 0)
+        if (active_gain() > 0)
             measure_gain(s_, inactive, set_.gain);
         count_idle_rounds(s_, set_);
         adapt_radii(s_, inactive);
@@ -107,9 +106,7 @@ public:
         ++report.rounds;
         const double gain = fill_of(s_) - fill_;
         fill_ += gain;
-        const bool widened = wants_more() && wins_little(gain) && widen();
-        choose_active_gain();
-        if (!widened && ends_after(gain, static_cast<double>(active)))
+        if (wants_more() ? !goes_on(gain) : ends_after(gain, static_cast<double>(active)))
             return false;
         lower_weight(gain);
         return true;
@@ -119,22 +116,24 @@ private:
     bool settled() const { return weight_ < schedule_.settled_weight; }
     /// While jams are being undone a vertex that has won nothing may have to make room all the
     /// same.
-    bool by_gain() const { return active_gain_ > 0 && settled(); }
+    bool by_gain() const { return active_gain() > 0 && settled(); }
 
-    void choose_active_gain()
+    /// RelaxOptions::active_gain, or what takes its place, as six times a volume.
+    double active_gain() const
     {
+        if (!wants_more())
+            return solid6_ * relax_.active_gain;
         const double of_void = relax_.wanted_active_gain_of_void * (widened_ ? 0.5 : 1);
-        active_gain_ = solid6_ * (wants_more() ? of_void * (1 - fill_) / s_.mesh->vertices
-                                               : relax_.active_gain);
+        return solid6_ * (of_void * (1 - fill_) / s_.mesh->vertices);
     }
 
-    /// While the shell is less full than wanted.
-    bool wins_little(double gain) const { return gain <= relax_.wanted_gain_of_void * (1 - fill_); }
-
-    /// Once, when those that are active win little: all are active in the next round, and half as
-    /// much makes a vertex active after it. False when that was done before.
-    bool widen()
+    /// Whether another round follows while the shell is less full than wanted: unless this one won
+    /// little. The first that does is forgiven: all vertices are active in the next, and half as
+    /// much makes one active after it.
+    bool goes_on(double gain)
     {
+        if (gain > relax_.wanted_gain_of_void * (1 - fill_))
+            return true;
         if (widened_)
             return false;
         set_.gain.clear();
@@ -145,7 +144,7 @@ private:
     {
         std::vector<std::uint8_t> inactive = inactive_vertices(s_, set_);
         if (by_gain() && !set_.gain.empty())
-            leave_out_satisfied(s_, set_, active_gain_, inactive);
+            leave_out_satisfied(s_, set_, active_gain(), inactive);
         return inactive;
     }
 
@@ -157,7 +156,7 @@ private:
                 // The first sweep leaves most planes off the middle, with room on one side only.
                 recentre_planes(s_, planes_);
             if (i > 0 && by_gain())
-                leave_out_spent(s_, s_.schedule.active.gain_share_in_round * active_gain_,
+                leave_out_spent(s_, s_.schedule.active.gain_share_in_round * active_gain(),
                                 left_out);
             sweep(s_, planes_, left_out,
                   [&](int v, Vec3d& x) { return propose_move(v, bounds_.local(), x); });
@@ -196,10 +195,9 @@ private:
     {
         const bool coarse_done =
             weight_ < relax_.end_weight && gain <= relax_.end_gain_of_void * (1 - fill_);
-        const bool too_dear =
-            wants_more() ? wins_little(gain) : gain <= relax_.least_gain_per_vertex * active;
+        const bool too_dear = gain <= relax_.least_gain_per_vertex * active;
         const bool converged = weight_ <= schedule_.least_weight && gain < relax_.least_gain;
-        return too_dear || (!wants_more() && (coarse_done || converged));
+        return coarse_done || too_dear || converged;
     }
 
     /// Faster where a round neither wins nor undoes much.
@@ -215,11 +213,10 @@ private:
     const RelaxOptions& relax_;
     const BarrierSchedule& schedule_;
     double fill_;
-    double mean_tet_ = 0;    ///< six times the mean volume of a tet, were the solid full
-    double weight_ = 0;      ///< of the barrier, in mean tets
-    double solid6_ = 0;      ///< six times the solid's volume
-    bool widened_ = false;   ///< whether all vertices have been made active once more
-    double active_gain_ = 0; ///< RelaxOptions::active_gain, as six times a volume
+    double mean_tet_ = 0;  ///< six times the mean volume of a tet, were the solid full
+    double weight_ = 0;    ///< of the barrier, in mean tets
+    double solid6_ = 0;    ///< six times the solid's volume
+    bool widened_ = false; ///< whether all vertices have been made active once more
     ActiveSet set_;
     SeparatingPlanes planes_;
     tbb::enumerable_thread_specific<LinearBounds> bounds_;

@@ -2,7 +2,8 @@
 
 // Takes: the schedule, the user's options and what growth goes on from. Gives: the options of one
 // run of relax(). Nothing here touches the shell. After a prolongation most is done, and growth
-// goes on only as long as that pays, unless the options want more (docs/growth.md).
+// goes on only as long as that pays or the shell is less full than the schedule wants it, unless
+// the options want more (docs/growth.md).
 
 #include "growth/relax_options.h"
 
@@ -68,6 +69,7 @@ bool bounds_thickness(double cap)
     return cap > 0 && std::isfinite(cap);
 }
 
+/// Rounds go on until the shell is as full as the schedule wants it.
 void want_more(const GrowState& s, RelaxOptions& relax)
 {
     // In an unbounded side there is no void to go by, and where the user bounds the thickness most
@@ -130,10 +132,10 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
     relax.least_gain = least_gain(s, options);
     relax.active_gain = active_gain(s, from, options);
     // Only where time is to be saved may a round that wins too little end it early on.
-    if (saves_time)
+    if (saves_time) {
         relax.least_gain_per_vertex = s.schedule.active.gain_share_to_go_on * relax.active_gain;
-    if (saves_time)
         want_more(s, relax);
+    }
     relax.predicted_gain = std::move(predicted_gain);
     return relax;
 }
