@@ -9,6 +9,7 @@
 
 #include "vdb_shell/certify/complex_certificate.h"
 
+#include "core/sort_unique.h"
 #include "vdb_shell/shell/shared_points.h"
 
 #include "certify/certificate_findings.h"
@@ -168,8 +169,7 @@ void check_pieces(const FreeFaces& free, const TetMesh& mesh, const TetTree& tre
     std::vector<std::uint32_t> behind;
     for (const std::uint32_t f : first_faces_of_pieces(free))
         behind.push_back(free.tet[f]);
-    std::sort(behind.begin(), behind.end());
-    behind.erase(std::unique(behind.begin(), behind.end()), behind.end());
+    sort_unique(behind);
     std::vector<std::vector<std::uint32_t>> others(behind.size());
     for_each_index(
         behind.size(),

@@ -11,6 +11,7 @@
 
 #include "vdb_shell/certify/conformity.h"
 
+#include "core/sort_unique.h"
 #include "vdb_shell/shell/shared_points.h"
 
 #include "certify/tet_faces.h"
@@ -113,8 +114,7 @@ public:
     {
         Defect<std::uint32_t> defect;
         defect.count = owners_.size();
-        std::sort(owners_.begin(), owners_.end());
-        owners_.erase(std::unique(owners_.begin(), owners_.end()), owners_.end());
+        sort_unique(owners_);
         owners_.resize(std::min(owners_.size(), Defect<std::uint32_t>::kFirstShown));
         defect.first = owners_;
         return defect;

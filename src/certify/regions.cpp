@@ -16,6 +16,7 @@
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "mesh/exact_winding.h"
 
 #include <algorithm>
@@ -97,8 +98,7 @@ touching_components(const std::vector<std::uint32_t>& component_of,
         if (low != high)
             touching.push_back({low, high});
     }
-    std::sort(touching.begin(), touching.end());
-    touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+    sort_unique(touching);
     return touching;
 }
 

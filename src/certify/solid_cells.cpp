@@ -11,6 +11,7 @@
 
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 
 #include <algorithm>
 
@@ -65,8 +66,7 @@ void list_columns(const CellGrid& grid, const TriangleMesh& surface,
         std::vector<std::uint32_t>& columns = cells[t];
         for (std::uint32_t& cell : columns)
             cell = grid.column_of(cell);
-        std::sort(columns.begin(), columns.end());
-        columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+        sort_unique(columns);
     });
     for (const std::vector<std::uint32_t>& columns : cells)
         for (const std::uint32_t column : columns)

@@ -6,6 +6,7 @@
 #include "core/pair_bounds.h"
 #include "core/parallel.h"
 #include "core/polled_stop.h"
+#include "core/sort_unique.h"
 
 #include <algorithm>
 #include <array>
@@ -230,8 +231,7 @@ private:
             else
                 std::for_each(near_[p].begin(), near_[p].end(), add);
         // Many pieces of one item lie near those of another.
-        std::sort(others.begin(), others.end());
-        others.erase(std::unique(others.begin(), others.end()), others.end());
+        sort_unique(others);
         const auto rejected = [&](std::uint32_t other) {
             const auto [low, high] = std::minmax(whole_[own].item, whole_[other].item);
             return stop_.wanted() || whole_[own].surely_apart(whole_[other]) || !keep(low, high);

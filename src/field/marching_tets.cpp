@@ -8,6 +8,8 @@
 
 #include "field/marching_tets.h"
 
+#include "core/sort_unique.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -83,8 +85,7 @@ std::vector<Cube> crossed_cubes(const openvdb::FloatGrid& field)
                 bases.push_back(base);
         }
     }
-    std::sort(bases.begin(), bases.end());
-    bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
+    sort_unique(bases);
     std::vector<Cube> cubes;
     cubes.reserve(bases.size());
     for (const Coord& base : bases)
@@ -155,8 +156,7 @@ IndexSurface marching_tets(const openvdb::FloatGrid& field)
     edges.reserve(3 * cut.size());
     for (const EdgeTriangle& triangle : cut)
         edges.insert(edges.end(), triangle.begin(), triangle.end());
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_unique(edges);
 
     IndexSurface surface;
     const auto values = field.getConstAccessor();

@@ -10,6 +10,8 @@
 
 #include "mesh/boundary_loops.h"
 
+#include "core/sort_unique.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <tuple>
@@ -28,8 +30,7 @@ public:
     {
         for (const Edge& edge : edges)
             points_.insert(points_.end(), edge.begin(), edge.end());
-        std::sort(points_.begin(), points_.end());
-        points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+        sort_unique(points_);
         for (std::uint32_t e = 0; e < edges.size(); ++e) {
             const std::uint32_t a = number_of(edges[e][0]), b = number_of(edges[e][1]);
             ways_.push_back({a, b, e});

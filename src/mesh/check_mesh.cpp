@@ -9,6 +9,7 @@
 
 #include "vdb_shell/mesh/check_mesh.h"
 
+#include "core/sort_unique.h"
 #include "core/stage_progress.h"
 #include "mesh/components.h"
 #include "mesh/surface_defects.h"
@@ -37,8 +38,7 @@ crossing_components(const std::vector<TrianglePair>& pairs,
         if (low != high)
             crossing.push_back({low, high});
     }
-    std::sort(crossing.begin(), crossing.end());
-    crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+    sort_unique(crossing);
     return crossing;
 }
 

@@ -15,6 +15,7 @@
 #include "core/disjoint_sets.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "core/triangle_piece.h"
 #include "mesh/equal_points.h"
 
@@ -248,8 +249,7 @@ private:
             if (other != c && !std::binary_search(crossed.begin(), crossed.end(), other))
                 triangles.push_back(t);
         });
-        std::sort(triangles.begin(), triangles.end());
-        triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+        sort_unique(triangles);
         std::vector<Hit> hits;
         for (const std::uint32_t t : triangles) {
             const openvdb::Vec3I& corner = mesh_.triangles[t];

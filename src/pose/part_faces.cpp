@@ -9,6 +9,7 @@
 
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "core/star_sight.h"
 #include "pose/face_contacts.h"
 #include "pose/face_planes.h"
@@ -46,8 +47,7 @@ std::vector<std::uint32_t> free_points_of(const Parts& parts,
         for (int k = 0; k < 4; ++k)
             if (!on_skin(parts, parts.all[t][k]))
                 points.push_back(parts.all[t][k]);
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
+    sort_unique(points);
     return points;
 }
 

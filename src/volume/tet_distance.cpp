@@ -13,12 +13,12 @@
 
 #include "core/grid_instances.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "volume/nearest_in_leaf.h"
 #include "volume/tet_index_grid.h"
 
-#include <algorithm>
 #include <cassert>
 #include <memory>
 #include <string>
@@ -117,8 +117,7 @@ private:
             if (triangle != kNone && (list_.empty() || list_.back() != triangle))
                 list_.push_back(triangle);
         }
-        std::sort(list_.begin(), list_.end());
-        list_.erase(std::unique(list_.begin(), list_.end()), list_.end());
+        sort_unique(list_);
     }
 
     std::uint32_t candidate_of(const Coord& voxel, std::size_t tet)
