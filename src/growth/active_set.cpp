@@ -14,12 +14,17 @@
 namespace vdb_shell::growth
 {
 
-void leave_out_crowds(const GrowState& s, std::vector<std::uint8_t>& inactive)
+bool has_crowds(const GrowState& s)
 {
     FanWork work;
     for (int v = 0; v < s.mesh->vertices; ++v)
         work.add(std::size_t(star(*s.mesh, v).size()));
-    if (!work.too_much())
+    return work.too_much();
+}
+
+void leave_out_crowds(const GrowState& s, std::vector<std::uint8_t>& inactive)
+{
+    if (!has_crowds(s))
         return;
     for (int v = 0; v < s.mesh->vertices; ++v) {
         if (std::size_t(star(*s.mesh, v).size()) <= FanWork::kCrowd)

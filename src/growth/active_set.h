@@ -46,6 +46,9 @@ private:
     bool any_crowd_ = false;
 };
 
+/// Whether fans are too much work.
+bool has_crowds(const GrowState& s);
+
 /// Where fans are too much work, leaves out the vertices of crowds and those beside them: they keep
 /// their lines.
 void leave_out_crowds(const GrowState& s, std::vector<std::uint8_t>& inactive);

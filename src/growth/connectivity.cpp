@@ -91,9 +91,12 @@ void label_components(Connectivity& c)
 
 /// Greedy in index order: vertices of one class are three edges apart or more, so that the tests of
 /// one read nothing that another moves. Serial, because the colour of a vertex depends on all that
-/// came before it; linear in the number of pairs of vertices within two edges.
+/// came before it; linear in the number of pairs of vertices within two edges, but for pairs around
+/// a vertex of thousands. Those around such a one have a colour each, in ascending order.
 void colour_vertices(Connectivity& c)
 {
+    constexpr int kThousands = 1024;
+    std::vector<int> first_free(static_cast<std::size_t>(c.vertices)); // around a vertex
     std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1);
     // Stamped with the vertex instead of cleared for each: a colour is free unless its stamp is
     // that of the vertex in question.
@@ -104,14 +107,21 @@ void colour_vertices(Connectivity& c)
     };
     for (int v = 0; v < c.vertices; ++v) {
         // All vertices within two edges: what they take, v cannot have.
+        int first = 0;
         for (const int u : neighbours(c, v)) {
             take(u, v);
+            if (neighbours(c, u).size() > kThousands) {
+                first = std::max(first, first_free[u]);
+                continue;
+            }
             for (const int w : neighbours(c, u))
                 take(w, v);
         }
         const auto free =
-            std::find_if(taken_for.begin(), taken_for.end(), [&](int u) { return u != v; });
+            std::find_if(taken_for.begin() + first, taken_for.end(), [&](int u) { return u != v; });
         colour[v] = static_cast<int>(free - taken_for.begin());
+        for (const int u : neighbours(c, v))
+            first_free[u] = std::max(first_free[u], colour[v] + 1);
         if (free == taken_for.end()) {
             taken_for.push_back(-1);
             c.colour.emplace_back();

@@ -8,6 +8,8 @@
 #include "growth/initialise.h"
 
 #include "core/parallel.h"
+#include "core/triangle_piece.h"
+#include "growth/active_set.h"
 #include "growth/line_directions.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
@@ -62,6 +64,10 @@ std::vector<double> first_lengths(const GrowState& s, const Directions& directio
     return length;
 }
 
+// Of a length, where a ray ends in a vertex of thousands of triangles: one of them is as good as
+// another, and boxes of floats are 6e-8 wider than what they hold.
+constexpr double kNearEnough = 1 - 1e-6;
+
 std::ptrdiff_t count_pins(const GrowState& s)
 {
     return std::count(s.pinned.begin(), s.pinned.end(), 1);
@@ -82,14 +88,25 @@ Directions prepare_directions(const TriangleMesh& mesh, Directions directions,
 std::vector<double> half_rays(const GrowState& s, const Directions& directions)
 {
     std::vector<double> half(s.a.size(), 0);
+    // Where many long triangles meet in a vertex, a ray past it meets the boxes of all.
+    PartBoxes parts;
+    BoxTree tree_of_parts;
+    const bool by_parts = has_crowds(s);
+    if (by_parts) {
+        parts = part_boxes({s.a.begin(), s.a.end()}, s.mesh->faces);
+        tree_of_parts.build(std::move(parts.boxes));
+    }
     for_each_index(half.size(), [&](std::size_t i) {
         const int v = static_cast<int>(i);
         const Vec3d& d = directions.inward[v];
         // A ray that meets nothing, as many do outward, ends at the diagonal.
-        double best = s.diagonal;
-        s.outer_tree.for_each_on_ray(s.a[v], d, best, [&](int f) {
-            if (!s.mesh->incident_to(f, v))
-                best = std::min(best, ray_hit(s.a[v], d, outer_corners(s, f)));
+        double best = s.diagonal, limit = best;
+        (by_parts ? tree_of_parts : s.outer_tree).for_each_on_ray(s.a[v], d, limit, [&](int box) {
+            const int f = by_parts ? static_cast<int>(parts.triangle[std::size_t(box)]) : box;
+            if (s.mesh->incident_to(f, v))
+                return;
+            best = std::min(best, ray_hit(s.a[v], d, outer_corners(s, f)));
+            limit = best * (by_parts ? kNearEnough : 1);
         });
         half[v] = 0.5 * best;
     });

@@ -7,6 +7,8 @@
 #include "growth/violations.h"
 
 #include "core/parallel.h"
+#include "core/triangle_pairs.h"
+#include "growth/active_set.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 
@@ -53,6 +55,36 @@ public:
                   const std::vector<std::uint8_t>& changed, Marks& bad)
         : s_(s), tested_(tested), embedded_(embedded_fans(s, changed)), bad_(bad)
     {
+    }
+
+    /// The same marks for a surface with crowds, where the boxes of nearly all triangles around one
+    /// vertex overlap.
+    void mark_in_crowds() const
+    {
+        const std::size_t faces = tested_.size();
+        std::vector<Vec3s> points(s_.a.begin(), s_.a.end());
+        points.insert(points.end(), s_.b.begin(), s_.b.end());
+        // The outer triangles, then the inner ones.
+        std::vector<Vec3I> triangles = s_.mesh->faces;
+        for (int f = 0; f < s_.mesh->face_count(); ++f) {
+            const CornerIds id = inner_ids(s_, f);
+            triangles.emplace_back(id[0], id[1], id[2]);
+        }
+        const auto meet = [&](std::uint32_t i, std::uint32_t j) {
+            if (j < faces)
+                return false;
+            const int g = static_cast<int>(j - faces);
+            if (i < faces)
+                return tested_[g] != 0 && InnerTriangle(s_, g).meets_outer(static_cast<int>(i));
+            const int f = static_cast<int>(i - faces);
+            return (tested_[f] || tested_[g]) && !share_embedded_fan(f, g) &&
+                   InnerTriangle(s_, f).meets_inner(g);
+        };
+        for (const auto& [i, j] : overlapping_triangles(points, triangles, meet)) {
+            mark(bad_[j - faces]);
+            if (i >= faces)
+                mark(bad_[i - faces]);
+        }
     }
 
     /// Marks the faces of one range of groups of the inner tree that touch others.
@@ -119,6 +151,8 @@ void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed,
     std::vector<std::uint8_t> tested(changed.size());
     for_each_index(tested.size(), [&](std::size_t f) { tested[f] = changed[f] && !bad[f]; });
     const ContactSearch search(s, tested, changed, bad);
+    if (has_crowds(s))
+        return search.mark_in_crowds();
     for_each_range(
         s.inner_tree.groups(),
         [&](std::size_t begin, std::size_t end) { search.mark_groups(begin, end); }, 4);
