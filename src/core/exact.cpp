@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace vdb_shell::exact
@@ -317,6 +318,7 @@ bool longer_than(const openvdb::Vec3s& from, const openvdb::Vec3s& to, double le
     // that are nearly the same need more.
     constexpr double kSlack = 1e-14;
     const double measured = (openvdb::Vec3d(to) - openvdb::Vec3d(from)).length();
+    assert(std::isfinite(measured));
     if (measured > length)
         return true;
     if (measured < length * (1 - kSlack))

@@ -34,8 +34,8 @@ struct Symmetric {
     void add_identity(double w) { xx += w, yy += w, zz += w; }
 };
 
-/// Solves h x = g by Cholesky; false where h is not safely positive. Comparisons are written so
-/// that a NaN is refused like a negative pivot.
+/// Solves h x = g by Cholesky; false where h is not safely positive, or x not finite. Comparisons
+/// are written so that a NaN is refused like a negative pivot.
 inline bool solve_positive(const Symmetric& h, const openvdb::Vec3d& g, openvdb::Vec3d& x)
 {
     const double l00 = std::sqrt(h.xx);
@@ -53,7 +53,8 @@ inline bool solve_positive(const Symmetric& h, const openvdb::Vec3d& g, openvdb:
     x[2] = y2 / l22;
     x[1] = (y1 - l21 * x[2]) / l11;
     x[0] = (y0 - l10 * x[1] - l20 * x[2]) / l00;
-    return true;
+    // Surfaces of 1e18 units, or with triangles of 1e-20, leave the range of doubles on the way.
+    return x.isFinite();
 }
 
 } // namespace vdb_shell

@@ -21,6 +21,7 @@
 #include "growth/relax.h"
 #include "vdb_shell/options/option.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -95,17 +96,32 @@ std::vector<int> volume_signs(const std::vector<openvdb::Vec3s>& points,
     return signs;
 }
 
-/// Whether a component's inner surface has turned inside out. The tests of moves do not see that:
-/// where a component has few triangles, one move may take a vertex past all others, from one
-/// embedded surface to another, and with the three chosen tets positive on both sides.
-bool has_turned(const Connectivity& connectivity, const PrismShell& shell)
+/// By component, whether its inner surface has turned inside out. The tests of moves do not see
+/// that: where a component has few triangles, one move may take a vertex past all others, from one
+/// embedded surface to another, and with all tets positive on both sides.
+std::vector<std::uint8_t> turned_components(const Connectivity& connectivity,
+                                            const PrismShell& shell)
 {
     const std::vector<int> outer = volume_signs(shell.outer, connectivity),
                            inner = volume_signs(shell.inner, connectivity);
+    std::vector<std::uint8_t> turned(outer.size());
     for (std::size_t c = 0; c < outer.size(); ++c)
-        if (inner[c] * outer[c] < 0)
-            return true;
-    return false;
+        turned[c] = inner[c] * outer[c] < 0;
+    return turned;
+}
+
+/// Makes growth more careful; false where it cannot be.
+bool make_careful(GrowOptions& options)
+{
+    if (options.method == Method::thickest)
+        options.method = Method::certified;
+    else if (options.top_down)
+        options.top_down = false; // from a thin shell, which is on the right side
+    else if (options.free_moves)
+        options.free_moves = false; // along lines
+    else
+        return false;
+    return true;
 }
 
 } // namespace
@@ -141,13 +157,17 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
-    if (options.method == Method::thickest && has_turned(connectivity, result.shell)) {
-        GrowOptions twelve_tets = options;
-        twelve_tets.method = Method::certified;
-        return grow_shell_from(start, mesh, directions, stepped, cap, twelve_tets, split,
-                               interrupter);
-    }
-    return result;
+    const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
+    if (std::find(turned.begin(), turned.end(), 1) == turned.end())
+        return result;
+    GrowOptions careful = options;
+    std::vector<double> bound = cap;
+    // At last such a component has no shell, which always is valid.
+    if (!make_careful(careful))
+        for (std::size_t v = 0; v < bound.size(); ++v)
+            if (turned[std::size_t(connectivity.component[v])])
+                bound[v] = 0;
+    return grow_shell_from(start, mesh, directions, stepped, bound, careful, split, interrupter);
 }
 
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,

@@ -168,10 +168,12 @@ bool PillarsAround::change(int u, const Vec3d& arm)
 {
     Pillar& p = pillar(u);
     const Vec3d before = s_.b[u];
+    const double longest = (before - s_.a[u]).lengthSqr();
     const std::vector<int> faces = faces_at(s_, u);
     const auto fits = [&](const Vec3d& end) {
         s_.b[u] = end;
-        return end != s_.a[u] && within_cap(s_, u, end) &&
+        // A pillar of some roundings is rounded to what it was, and would be shortened for ever.
+        return end != s_.a[u] && (end - s_.a[u]).lengthSqr() < longest && within_cap(s_, u, end) &&
                std::all_of(faces.begin(), faces.end(), [&](int f) { return prism_valid(s_, f); });
     };
     const std::vector<Vec3d> ends = points_around(s_.a[u] + arm);

@@ -101,6 +101,8 @@ Vec3d better_place(const GrowState& s, int v, Scratch& bounds)
     const double most =
         schedule.longest_move * edge + schedule.longest_move_in_roundings * s.rounding;
     const double length = move.length();
+    if (!std::isfinite(length))
+        return here;
     if (length > most)
         move *= most / length;
     return capped(s, v, rounded(here + move));

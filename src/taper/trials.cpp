@@ -271,6 +271,8 @@ bool Trials::shorter_move(int n, double than)
     const Vec3d& here = s_.at(n);
     for (; share_ >= kLeastShare; share_ /= 2) {
         change_ = {n, n, growth::rounded(here + share_ * step_)};
+        if (!change_.at.isFinite()) // as a float
+            continue;
         // The step is less than a rounding, and shorter ones would be too.
         if (change_.at == here)
             return false;

@@ -52,6 +52,14 @@ private:
     std::string_view rest_;
 };
 
+/// Readers refuse what is larger.
+Vec3s within_limit(Vec3s p)
+{
+    for (int axis = 0; axis < 3; ++axis)
+        p[axis] = std::clamp(p[axis], -float(kLargestCoordinate), float(kLargestCoordinate));
+    return p;
+}
+
 TriangleMesh first_surface(Bytes& bytes)
 {
     switch (bytes.below(6)) {
@@ -152,7 +160,7 @@ void change_all(TriangleMesh& mesh, Bytes& bytes)
     // Braces: the order in which the bytes are taken is that of the compiler otherwise.
     const Vec3s by{bytes.coordinate(), bytes.coordinate(), bytes.coordinate()};
     for (Vec3s& p : mesh.points)
-        p = (p + by) * factor;
+        p = within_limit((p + by) * factor);
 }
 
 void change(TriangleMesh& mesh, Bytes& bytes)
@@ -211,7 +219,7 @@ void move_to_one_side(TriangleMesh& mesh)
             farthest = std::max(farthest, std::abs(p[axis]));
     const float by = farthest > 0 ? std::ldexp(1.0F, std::ilogb(farthest) + 3) : 0;
     for (Vec3s& p : mesh.points)
-        p += Vec3s(by);
+        p = within_limit(p + Vec3s(by));
 }
 
 /// No grid is large, and no loop long: time goes into many inputs.
