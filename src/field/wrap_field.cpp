@@ -14,19 +14,12 @@
 #include "core/stage_stop.h"
 #include "field/mesh_distances.h"
 #include "field/voxel_distances.h"
-#include "field/winding_field.h"
-#include "resample/triangle_pieces.h"
 
 #include <openvdb/tools/LevelSetUtil.h>
-#include <openvdb/tools/Morphology.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <map>
-#include <memory>
 
 namespace vdb_shell
 {
@@ -35,204 +28,14 @@ namespace
 
 using openvdb::Coord;
 using openvdb::Vec3d;
-using openvdb::Vec3s;
 
-// More than the half that the winding number reaches on the face of a single sheet, with room for
-// the error of the far dipoles. For closed surfaces any value between does, since it jumps from 0
-// to 1 there.
-constexpr double kInsideWinding = 0.6;
-// Lines can step into a solid that is deeper than this, and it can be meshed without help.
-constexpr double kSolidVoxels = 1.5;
-// At that depth the winding number has to be clear of doubt. Beside a triangle that is turned the
-// wrong way it is not, and a part without a thickness of its own would leak there.
-constexpr double kSureWinding = 0.75;
-// The distance from the surface at which the two sides of a piece are looked at.
-constexpr double kBesideVoxels = 0.3;
-constexpr double kPieceVoxels = 2.0;
 constexpr double kBandVoxels = 3.0;
 // Turns the fall of the winding number across a gap into a field about as steep as a distance.
 // Times 1 - kInsideWinding it is no less than the band, so closed solids reach their full depth.
 constexpr double kVoxelsPerTurn = 8.0;
-// What the winding number is summed up of is cut, so that few triangles are near to a point: long
-// ones would be near to most of the grid. Half as long, the faces of a tet mesh take a tenth longer
-// and 8,000 needles a tenth less time, and there are three times as many triangles.
-constexpr double kSummedVoxels = 8.0;
 constexpr std::size_t kVoxelsAtOnce = 4096;
-// From the voxel that the middle of a piece is in to all that are nearer to it than kSolidVoxels.
-constexpr int kReachVoxels = 2;
-
 // Voxels. Any depth will do in a void that was filled; 0 would be a surface.
 constexpr float kLeastFilledDepth = 0.1F;
-
-enum class Part : char { boundary, sheet, interior };
-
-/// By how much a winding number is short of the inside, in turns; negative in the solid. The
-/// absolute value lets a component be inside out.
-double short_of_inside(float turns)
-{
-    return kInsideWinding - std::abs(double(turns));
-}
-
-Vec3d middle_of(const TriangleCorners& t)
-{
-    return (t[0] + t[1] + t[2]) / 3.0;
-}
-
-/// A piece's middle and unit normal; without area it has none, and no sides to look at.
-struct Stance {
-    Vec3d centre, normal;
-    bool has_sides;
-    /// 1 or -1 where just one side is inside the solid: which one, along the normal.
-    int inner_side = 0;
-};
-
-Stance stance_of(const TriangleCorners& piece)
-{
-    Stance stance{middle_of(piece), (piece[1] - piece[0]).cross(piece[2] - piece[0]), true};
-    stance.has_sides = stance.normal.normalize();
-    return stance;
-}
-
-/// What each piece is: first from just above and below it, then, where only one side is inside,
-/// from the depth at which a solid is one.
-std::vector<Part> parts_of(const std::vector<TriangleCorners>& pieces, const WindingNumber& winding)
-{
-    std::vector<Stance> stances(pieces.size());
-    std::vector<Vec3d> points;
-    points.reserve(2 * pieces.size());
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        stances[i] = stance_of(pieces[i]);
-        points.push_back(stances[i].centre + kBesideVoxels * stances[i].normal);
-        points.push_back(stances[i].centre - kBesideVoxels * stances[i].normal);
-    }
-    const std::vector<float> beside = turns_at(winding, points);
-    std::vector<Part> parts(pieces.size());
-    points.clear();
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        Stance& stance = stances[i];
-        const bool above = short_of_inside(beside[2 * i]) < 0;
-        const bool below = short_of_inside(beside[2 * i + 1]) < 0;
-        parts[i] = above && below && stance.has_sides ? Part::interior : Part::sheet;
-        if (above == below || !stance.has_sides)
-            continue; // without area it leaves a trace as a sheet
-        stance.inner_side = above ? 1 : -1;
-        points.push_back(stance.centre + stance.inner_side * kSolidVoxels * stance.normal);
-    }
-    const std::vector<float> deep = turns_at(winding, points);
-    auto turns = deep.begin();
-    for (std::size_t i = 0; i < pieces.size(); ++i)
-        if (stances[i].inner_side != 0 && short_of_inside(*turns++) < kInsideWinding - kSureWinding)
-            parts[i] = Part::boundary;
-    return parts;
-}
-
-/// Pieces with edges of no more than so many voxels.
-template <typename Visit>
-void for_each_cut(const std::vector<TriangleCorners>& triangles, double voxels, const Visit& visit)
-{
-    for (const TriangleCorners& t : triangles)
-        for_each_piece(t[0], t[1], t[2], voxels,
-                       [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-                           visit(TriangleCorners{a, b, c});
-                       });
-}
-
-std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles, double voxels)
-{
-    std::vector<TriangleCorners> pieces;
-    for_each_cut(triangles, voxels, [&](const TriangleCorners& piece) { pieces.push_back(piece); });
-    return pieces;
-}
-
-/// The voxels around pieces where the winding number says inside, and those where it says outside,
-/// each with all voxels that a piece might reach from the one that its middle is in. Where all
-/// voxels around a piece are on one side, the grid cannot show another. A soup may have many times
-/// more pieces than there are voxels, and nearly all are of this kind.
-struct KnownSides {
-    openvdb::MaskTree::Ptr inside, outside;
-};
-
-std::vector<Coord> active_voxels(const openvdb::MaskTree& tree)
-{
-    std::vector<Coord> voxels;
-    voxels.reserve(tree.activeVoxelCount());
-    for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
-        for (auto value = leaf->cbeginValueOn(); value; ++value)
-            voxels.push_back(value.getCoord());
-    return voxels;
-}
-
-void dilate(openvdb::MaskTree& tree)
-{
-    openvdb::tools::dilateActiveValues(tree, kReachVoxels, openvdb::tools::NN_FACE_EDGE_VERTEX,
-                                       openvdb::tools::IGNORE_TILES);
-}
-
-/// No trees where there are more such voxels than points to look at beside the pieces.
-KnownSides sides_around(const std::vector<TriangleCorners>& triangles, WindingGrid& winding)
-{
-    openvdb::MaskTree around;
-    openvdb::tree::ValueAccessor<openvdb::MaskTree> mark(around);
-    std::size_t pieces = 0;
-    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
-        mark.setValueOn(Coord::round(middle_of(piece)));
-        ++pieces;
-    });
-    dilate(around);
-    if (around.activeVoxelCount() > 2 * pieces)
-        return {};
-    const std::vector<Coord> voxels = active_voxels(around);
-    const std::vector<float> turns = winding.at(voxels);
-    KnownSides sides{std::make_shared<openvdb::MaskTree>(), std::make_shared<openvdb::MaskTree>()};
-    openvdb::tree::ValueAccessor<openvdb::MaskTree> inside(*sides.inside), outside(*sides.outside);
-    for (std::size_t i = 0; i < voxels.size(); ++i)
-        (short_of_inside(turns[i]) < 0 ? inside : outside).setValueOn(voxels[i]);
-    dilate(*sides.inside);
-    dilate(*sides.outside);
-    return sides;
-}
-
-/// Pieces to ask for, and which of them answers for each.
-struct Alike {
-    std::vector<TriangleCorners> asked;
-    std::vector<std::uint32_t> answer;
-};
-
-/// A piece's voxel, and its normal's direction as one of those to a cube's faces, edges and
-/// corners. None without area.
-using Kind = std::array<int, 6>;
-
-Kind kind_of(const TriangleCorners& piece)
-{
-    const Stance stance = stance_of(piece);
-    const Coord voxel = Coord::round(stance.centre);
-    Kind kind{voxel[0], voxel[1], voxel[2], 0, 0, 0};
-    if (stance.has_sides)
-        for (int axis = 0; axis < 3; ++axis)
-            kind[std::size_t(3 + axis)] = int(std::lround(1.2 * stance.normal[axis]));
-    return kind;
-}
-
-/// The grid shows one surface in a voxel, so pieces that have their middles in one and are turned
-/// alike get one answer. It bounds the pieces to ask for by the voxels.
-Alike alike_in_a_voxel(const std::vector<TriangleCorners>& pieces)
-{
-    Alike alike;
-    std::map<Kind, std::uint32_t> known;
-    for (const TriangleCorners& piece : pieces) {
-        const auto next = static_cast<std::uint32_t>(alike.asked.size());
-        const auto [at, is_new] = known.try_emplace(kind_of(piece), next);
-        if (is_new)
-            alike.asked.push_back(piece);
-        alike.answer.push_back(at->second);
-    }
-    return alike;
-}
-
-double area_of(const TriangleCorners& t)
-{
-    return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).length();
-}
 
 openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pieces, double band)
 {
@@ -334,90 +137,6 @@ std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
 }
 
 } // namespace
-
-std::vector<float> WindingGrid::at(const std::vector<Coord>& voxels)
-{
-    auto turns = turns_.getAccessor();
-    std::vector<Coord> missing;
-    std::vector<Vec3d> points;
-    for (const Coord& voxel : voxels)
-        if (!turns.isValueOn(voxel)) {
-            missing.push_back(voxel);
-            points.push_back(voxel.asVec3d());
-        }
-    const std::vector<float> computed = turns_at(number_, points);
-    for (std::size_t i = 0; i < missing.size(); ++i)
-        turns.setValue(missing[i], computed[i]);
-    std::vector<float> values;
-    values.reserve(voxels.size());
-    for (const Coord& voxel : voxels)
-        values.push_back(turns.getValue(voxel));
-    return values;
-}
-
-std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles)
-{
-    return cut_up(triangles, kSummedVoxels);
-}
-
-WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
-{
-    const std::vector<TriangleCorners>& triangles = winding.number().triangles();
-    const KnownSides sides = sides_around(triangles, winding);
-    progress.stop_if_interrupted(10);
-    WrapPieces pieces;
-    // Pieces inside the solid are left out of the field: the distance to them would bring values
-    // near zero into the solid.
-    const auto put = [&](const TriangleCorners& piece, Part part) {
-        const double area = area_of(piece);
-        if (part == Part::interior) {
-            pieces.interior_area += area;
-            return;
-        }
-        const bool sheet = part == Part::sheet;
-        (sheet ? pieces.sheet : pieces.boundary).push_back(piece);
-        (sheet ? pieces.sheet_area : pieces.boundary_area) += area;
-    };
-    // A large triangle may bound the solid in one part and stick out of it in another.
-    std::vector<TriangleCorners> open, cut;
-    for (const TriangleCorners& triangle : triangles) {
-        cut.clear();
-        const bool known = sides.inside != nullptr;
-        bool outside_only = known;
-        for_each_cut({triangle}, kPieceVoxels, [&](const TriangleCorners& piece) {
-            cut.push_back(piece);
-            outside_only = outside_only && !sides.inside->isValueOn(Coord::round(middle_of(piece)));
-        });
-        if (outside_only) {
-            put(triangle, Part::sheet);
-            continue;
-        }
-        for (const TriangleCorners& piece : cut) {
-            const Coord voxel = Coord::round(middle_of(piece));
-            if (known && !sides.inside->isValueOn(voxel))
-                put(piece, Part::sheet);
-            else if (known && !sides.outside->isValueOn(voxel) && area_of(piece) > 0)
-                put(piece, Part::interior);
-            else
-                open.push_back(piece);
-        }
-    }
-    const Alike alike = alike_in_a_voxel(open);
-    const std::vector<Part> parts = parts_of(alike.asked, winding.number());
-    for (std::size_t i = 0; i < open.size(); ++i)
-        put(open[i], parts[alike.answer[i]]);
-    progress.stop_if_interrupted(20);
-    return pieces;
-}
-
-WrapPieces all_sheets(const std::vector<TriangleCorners>& triangles)
-{
-    WrapPieces pieces;
-    pieces.sheet = triangles;
-    for (const TriangleCorners& triangle : triangles)
-        pieces.sheet_area += area_of(triangle);
-    return pieces;
-}
 
 openvdb::FloatGrid::Ptr wrap_field(const WrapPieces& pieces, WindingGrid& winding,
                                    double sheet_voxels, const Vec3d& half_size,

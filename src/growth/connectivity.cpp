@@ -132,6 +132,14 @@ void colour_vertices(Connectivity& c)
 
 } // namespace
 
+std::vector<int> faces_at(const Connectivity& c, int v)
+{
+    std::vector<int> faces;
+    for (const FaceCorner& at : star(c, v))
+        faces.push_back(at.face);
+    return faces;
+}
+
 Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
 {
     Connectivity c;

@@ -58,6 +58,8 @@ inline Slice<FaceCorner> star(const Connectivity& c, int v)
 {
     return {c.incident.data() + c.first[v], c.incident.data() + c.first[v + 1]};
 }
+/// The faces around a vertex, ascending.
+std::vector<int> faces_at(const Connectivity& c, int v);
 inline Slice<int> neighbours(const Connectivity& c, int v)
 {
     return {c.neighbour.data() + c.neighbour_first[v],

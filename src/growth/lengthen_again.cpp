@@ -47,7 +47,7 @@ void put(GrowState& s, int v, const Vec3d& x, const std::vector<int>& faces)
 bool put_back(GrowState& s, int v, const Vec3d& before)
 {
     const Vec3d here = s.b[v];
-    const std::vector<int> faces = faces_at(s, v);
+    const std::vector<int> faces = faces_at(*s.mesh, v);
     double share = 1;
     for (int i = 0; i < s.schedule.mend.tries_back; ++i, share *= 0.5) {
         const Vec3d x = capped(s, v, here + share * (before - here));

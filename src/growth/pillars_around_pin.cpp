@@ -68,7 +68,7 @@ View best_view(const GrowState& s, int v)
 
 PillarsAround::PillarsAround(GrowState& s, int v, const std::vector<double>& visibility,
                              Shortening shortening)
-    : s_(s), pin_(v), visibility_(visibility), shortening_(shortening), faces_(faces_at(s, v))
+    : s_(s), pin_(v), visibility_(visibility), shortening_(shortening), faces_(faces_at(*s.mesh, v))
 {
 }
 
@@ -169,7 +169,7 @@ bool PillarsAround::change(int u, const Vec3d& arm)
     Pillar& p = pillar(u);
     const Vec3d before = s_.b[u];
     const double longest = (before - s_.a[u]).lengthSqr();
-    const std::vector<int> faces = faces_at(s_, u);
+    const std::vector<int> faces = faces_at(*s_.mesh, u);
     const auto fits = [&](const Vec3d& end) {
         s_.b[u] = end;
         // A pillar of some roundings is rounded to what it was, and would be shortened for ever.

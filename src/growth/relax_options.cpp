@@ -78,7 +78,7 @@ void want_more(const GrowState& s, RelaxOptions& relax)
         return;
     relax.wanted_fill = s.schedule.multilevel.wanted_fill;
     relax.wanted_gain_of_void = s.schedule.multilevel.wanted_gain_of_void;
-    relax.wanted_active_gain_of_void = s.schedule.active.wanted_gain_of_void;
+    relax.wanted_active_gain_of_void = s.schedule.active.gain_of_void;
 }
 
 } // namespace

@@ -176,14 +176,6 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
     return {bad.begin(), bad.end()};
 }
 
-std::vector<int> faces_at(const GrowState& s, int v)
-{
-    std::vector<int> faces;
-    for (const FaceCorner& at : star(*s.mesh, v))
-        faces.push_back(at.face);
-    return faces;
-}
-
 bool faces_valid(const GrowState& s, const std::vector<int>& faces)
 {
     // Contact tests are the dearer ones.

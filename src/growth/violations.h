@@ -18,9 +18,6 @@ namespace vdb_shell::growth
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
                                           bool first);
 
-/// The faces around a vertex.
-std::vector<int> faces_at(const GrowState& s, int v);
-
 /// Whether none of these would be a violation. Precondition: the inner tree's boxes hold the inner
 /// triangles.
 bool faces_valid(const GrowState& s, const std::vector<int>& faces);

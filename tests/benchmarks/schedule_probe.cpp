@@ -149,7 +149,7 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, period),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_per_vertex),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, full_size),
-    VDB_SHELL_NUMBER(active, ActiveSetSchedule, wanted_gain_of_void),
+    VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_of_void),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_of_all),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_of_all_thickest),
     VDB_SHELL_NUMBER(active, ActiveSetSchedule, gain_share_to_go_on),

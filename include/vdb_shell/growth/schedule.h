@@ -226,7 +226,7 @@ struct ActiveSetSchedule {
     double gain_per_vertex = 1e-6, full_size = 6500;
     /// Share of what is still empty, over all vertices: the same while a shell is less full than
     /// MultilevelSchedule::wanted_fill.
-    double wanted_gain_of_void = 0.25;
+    double gain_of_void = 0.25;
     /// Share of the solid over all vertices: the same from lines.
     double gain_of_all = 3e-4;
     /// The same for Method::thickest after a prolongation. A third of it: a tenth more time and
