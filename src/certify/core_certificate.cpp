@@ -10,12 +10,12 @@
 #include "vdb_shell/certify/core_certificate.h"
 
 #include "certify/certificate_findings.h"
-#include "certify/exact_volume.h"
 #include "certify/free_faces.h"
 #include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "mesh/exact_volume.h"
 
 #include <algorithm>
 #include <cassert>

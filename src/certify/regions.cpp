@@ -12,11 +12,11 @@
 #include "certify/regions.h"
 
 #include "certify/certificate_findings.h"
-#include "certify/exact_volume.h"
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/sort_unique.h"
+#include "mesh/exact_volume.h"
 #include "mesh/exact_winding.h"
 
 #include <algorithm>

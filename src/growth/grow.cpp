@@ -10,6 +10,7 @@
 
 #include "vdb_shell/growth/grow.h"
 
+#include "core/parallel.h"
 #include "core/stage_progress.h"
 #include "growth/improve.h"
 #include "growth/initialise.h"
@@ -19,11 +20,11 @@
 #include "growth/pins.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
+#include "mesh/exact_volume.h"
 #include "vdb_shell/options/option.h"
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <utility>
 
 namespace vdb_shell
@@ -67,46 +68,22 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& d
     return started;
 }
 
-/// The signs of the volumes that the surface's components enclose; 0 where rounding may decide.
-std::vector<int> volume_signs(const std::vector<openvdb::Vec3s>& points,
-                              const Connectivity& connectivity)
-{
-    struct Sum {
-        openvdb::Vec3d origin{0.0}; ///< a point nearby, so that terms are small
-        double value = 0, size = 0;
-    };
-    std::vector<Sum> sums(static_cast<std::size_t>(connectivity.components));
-    for (std::size_t v = 0; v < points.size(); ++v)
-        sums[static_cast<std::size_t>(connectivity.component[v])].origin =
-            openvdb::Vec3d(points[v]);
-    for (const openvdb::Vec3I& c : connectivity.faces) {
-        Sum& sum = sums[static_cast<std::size_t>(connectivity.component[c[0]])];
-        const auto at = [&](int k) { return openvdb::Vec3d(points[c[k]]) - sum.origin; };
-        const double term = at(0).dot(at(1).cross(at(2)));
-        sum.value += term;
-        sum.size += std::abs(term);
-    }
-    std::vector<int> signs;
-    signs.reserve(sums.size());
-    // The error is below 1e-15 of the size for each of up to some thousand terms that do not
-    // cancel.
-    constexpr double kError = 1e-11;
-    for (const Sum& sum : sums)
-        signs.push_back(std::abs(sum.value) <= kError * sum.size ? 0 : sum.value > 0 ? 1 : -1);
-    return signs;
-}
-
 /// By component, whether its inner surface has turned inside out. The tests of moves do not see
 /// that: where a component has few triangles, one move may take a vertex past all others, from one
 /// embedded surface to another, and with all tets positive on both sides.
 std::vector<std::uint8_t> turned_components(const Connectivity& connectivity,
                                             const PrismShell& shell)
 {
-    const std::vector<int> outer = volume_signs(shell.outer, connectivity),
-                           inner = volume_signs(shell.inner, connectivity);
-    std::vector<std::uint8_t> turned(outer.size());
-    for (std::size_t c = 0; c < outer.size(); ++c)
-        turned[c] = inner[c] * outer[c] < 0;
+    std::vector<std::vector<std::uint32_t>> faces(std::size_t(connectivity.components));
+    for (std::uint32_t f = 0; f < connectivity.faces.size(); ++f)
+        faces[std::size_t(connectivity.component[connectivity.faces[f][0]])].push_back(f);
+    std::vector<std::uint8_t> turned(faces.size());
+    for_each_index(turned.size(), [&](std::size_t c) {
+        const auto sign = [&](const std::vector<openvdb::Vec3s>& points) {
+            return exact::volume_sign(points, connectivity.faces, faces[c]);
+        };
+        turned[c] = sign(shell.outer) * sign(shell.inner) < 0;
+    });
     return turned;
 }
 

@@ -18,6 +18,7 @@
 #include "core/sort_unique.h"
 #include "core/triangle_piece.h"
 #include "mesh/equal_points.h"
+#include "mesh/exact_volume.h"
 
 #include <algorithm>
 #include <limits>
@@ -339,10 +340,11 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
         count,
         [&](std::size_t c) {
             const int depth = components[c].nesting_depth = nesting.depth(std::uint32_t(c));
-            const bool outer = depth % 2 == 0;
-            const double volume = components[c].volume;
+            // Exact: of a needle, the volume in doubles may have any sign.
             components[c].inside_out =
-                found.closed[c] != 0 && found.balanced[c] != 0 && (outer ? volume < 0 : volume > 0);
+                found.closed[c] != 0 && found.balanced[c] != 0 &&
+                exact::volume_sign(mesh.points, mesh.triangles, pieces[c].triangles) ==
+                    (depth % 2 == 0 ? -1 : 1);
         },
         1);
     return components;

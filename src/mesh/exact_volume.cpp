@@ -2,15 +2,14 @@
 
 // Takes: triangles that close up. Gives: the sign of the volume that they enclose, always the right
 // one. Doubles with a bound on their error decide it unless the volume is about as small as that
-// bound; exact rationals decide the rest, at many times the cost. No triangle has to be embedded or
-// sound: the sum over the cones is the volume for any closed list. Doubles alone would not do,
-// because condition 4 of docs/theory.md, "The whole shell", is one of those that the proof rests
-// on.
+// bound; whole numbers of any size decide the rest, at many times the cost. No triangle has to be
+// embedded or sound: the sum over the cones is the volume for any closed list. Doubles alone would
+// not do, because condition 4 of docs/theory.md, "The whole shell", is one of those that the proof
+// rests on.
 
-#include "certify/exact_volume.h"
+#include "mesh/exact_volume.h"
 
 #include <CGAL/Exact_integer.h>
-#include <CGAL/Exact_rational.h>
 
 #include <algorithm>
 #include <array>
@@ -22,23 +21,18 @@ namespace vdb_shell::exact
 namespace
 {
 
+using openvdb::Vec3d;
 using openvdb::Vec3I;
 using openvdb::Vec3s;
 
-/// Six volumes of the cone from `apex` over a triangle, in the number type `Number`.
-template <typename Number>
-Number cone(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s& c)
+/// Six volumes of the cone from `apex` over a triangle.
+double cone(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s& c)
 {
-    std::array<std::array<Number, 3>, 3> m;
-    const std::array<const Vec3s*, 3> corner{&a, &b, &c};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-            // In rationals the difference is exact; in doubles it is rounded once, as coordinates
-            // of very different size need more digits than a double has.
-            m[i][k] = Number(double((*corner[i])[int(k)])) - Number(double(apex[int(k)]));
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) +
-           m[0][1] * (m[1][2] * m[2][0] - m[1][0] * m[2][2]) +
-           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+    // Differences are rounded once, as coordinates of very different size need more digits than a
+    // double has.
+    const Vec3d to_a = Vec3d(a) - Vec3d(apex), to_b = Vec3d(b) - Vec3d(apex),
+                to_c = Vec3d(c) - Vec3d(apex);
+    return to_a.dot(to_b.cross(to_c));
 }
 
 /// An upper bound, up to its own rounding, on the sum of the absolute products in cone(): there are
@@ -56,15 +50,20 @@ double cone_bound(const Vec3s& apex, const Vec3s& a, const Vec3s& b, const Vec3s
     return product;
 }
 
-/// The exponent of a power of two of which all coordinates are multiples.
+/// The exponent of a power of two, at most 1, of which the coordinates are multiples.
+int lowest_bit(const Vec3s& point)
+{
+    int lowest = 0;
+    for (int k = 0; k < 3; ++k)
+        if (point[k] != 0)
+            lowest = std::min(lowest, std::ilogb(point[k]) - std::numeric_limits<float>::digits);
+    return lowest;
+}
 int lowest_bit(const std::vector<Vec3s>& points)
 {
     int lowest = 0;
     for (const Vec3s& point : points)
-        for (int k = 0; k < 3; ++k)
-            if (point[k] != 0)
-                lowest =
-                    std::min(lowest, std::ilogb(point[k]) - std::numeric_limits<float>::digits);
+        lowest = std::min(lowest, lowest_bit(point));
     return lowest;
 }
 
@@ -94,26 +93,31 @@ int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& tria
     // Any apex gives the same volume for a closed surface. One of the surface's own corners keeps
     // the cones small, and the bound with them, far from the origin.
     const Vec3s& apex = points[triangles[chosen.front()][0]];
-    auto sum_over = [&](auto& sum, const auto& term) {
-        for (const std::uint32_t t : chosen) {
-            const Vec3I& v = triangles[t];
-            sum += term(apex, points[v[0]], points[v[1]], points[v[2]]);
-        }
-    };
-    // A term takes part in fewer than n + 8 roundings, each of at most 2^-53 of it, and the factor
-    // of two is for the roundings of the bound itself. Differences of float32 values are nought or
-    // at least 2^-149, so no product of three underflows; the absolute term is a guard that no such
-    // sum depends on.
-    double six_volumes = 0, bound = 0;
-    sum_over(six_volumes, cone<double>);
-    sum_over(bound, cone_bound);
-    const double error = bound * (double(chosen.size()) + 8) * std::ldexp(1.0, -52) + 1e-280;
+    // A term has fewer than eight roundings, each of at most 2^-53 of its bound, and every sum one
+    // more of its own size; the factor of two is for the roundings of the bounds themselves.
+    // Differences of float32 values are nought or at least 2^-149, so no product of three
+    // underflows; the absolute term is a guard that no such sum depends on.
+    double six_volumes = 0, bound = 0, of_sums = 0;
+    for (const std::uint32_t t : chosen) {
+        const Vec3I& v = triangles[t];
+        six_volumes += cone(apex, points[v[0]], points[v[1]], points[v[2]]);
+        bound += cone_bound(apex, points[v[0]], points[v[1]], points[v[2]]);
+        of_sums += std::abs(six_volumes);
+    }
+    const double error = (8 * bound + of_sums) * std::ldexp(1.0, -52) + 1e-280;
     if (six_volumes > error)
         return 1;
     if (six_volumes < -error)
         return -1;
-    CGAL::Exact_rational sum(0);
-    sum_over(sum, cone<CGAL::Exact_rational>);
+    int lowest = 0;
+    for (const std::uint32_t t : chosen)
+        for (int k = 0; k < 3; ++k)
+            lowest = std::min(lowest, lowest_bit(points[triangles[t][k]]));
+    CGAL::Exact_integer sum(0);
+    for (const std::uint32_t t : chosen) {
+        const Vec3I& v = triangles[t];
+        sum += whole_cone(apex, points[v[0]], points[v[1]], points[v[2]], -lowest);
+    }
     return sum > 0 ? 1 : sum < 0 ? -1 : 0;
 }
 
