@@ -18,8 +18,11 @@
 #include "vdb_shell/options/option.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -65,6 +68,35 @@ std::vector<TriangleCorners> in_voxels(const TriangleMesh& mesh, const Vec3d& ce
     for (const openvdb::Vec3I& t : mesh.triangles)
         triangles.push_back({to_voxels(t[0]), to_voxels(t[1]), to_voxels(t[2])});
     return triangles;
+}
+
+/// Leaves one of those that are the same and turned the same way. A winding number would count each
+/// copy, and see a solid far around thousands of them.
+void drop_repeats(std::vector<TriangleCorners>& triangles)
+{
+    using Key = std::array<double, 9>;
+    const auto key_of = [](const TriangleCorners& t) {
+        const auto first = std::size_t(std::min_element(t.begin(), t.end()) - t.begin());
+        Key key{};
+        for (std::size_t k = 0; k < 3; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                key[3 * k + std::size_t(axis)] = t[(first + k) % 3][axis];
+        return key;
+    };
+    std::vector<std::pair<Key, std::uint32_t>> keys;
+    keys.reserve(triangles.size());
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+        keys.emplace_back(key_of(triangles[i]), i);
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        if (i == 0 || keys[i].first != keys[i - 1].first)
+            kept.push_back(keys[i].second);
+    std::sort(kept.begin(), kept.end());
+    std::size_t end = 0;
+    for (const std::uint32_t i : kept)
+        triangles[end++] = triangles[i];
+    triangles.resize(end);
 }
 
 void set_shares(WrapReport& report, const WrapPieces& pieces)
@@ -146,9 +178,10 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     WrapResult result;
     const double voxel = result.report.voxel_size = voxel_size_for(bounds, options);
 
-    const auto field =
-        field_of(in_voxels(mesh, centre, voxel), 0.5 / voxel * (bounds.high - bounds.low), options,
-                 result.report, progress);
+    std::vector<TriangleCorners> triangles = in_voxels(mesh, centre, voxel);
+    drop_repeats(triangles);
+    const auto field = field_of(triangles, 0.5 / voxel * (bounds.high - bounds.low), options,
+                                result.report, progress);
     const auto to_world = [&](const Vec3d& index) { return centre + voxel * index; };
     result.mesh = contour_mapped(*field, to_world, {options.adaptivity, !options.keep_voids},
                                  result.report.contour, interrupter);

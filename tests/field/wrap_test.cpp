@@ -273,28 +273,51 @@ TEST(Wrap, CoordinatesBeyondFloat32AreRefusedByName)
 
 TEST(Wrap, OfManySheetsInOnePlaceIsThatOfOne)
 {
-    // Three sheets that cross, and each a thousand times, turned by turns. Their distances are
-    // taken voxel by voxel then.
+    // Three sheets that cross, and each a thousand times, turned by turns, a little off each other,
+    // as copies would be dropped. Their distances are taken voxel by voxel then.
     TriangleMesh few;
     few.points = {Vec3s(-1, -1, 0.1F), Vec3s(1, -1, 0),    Vec3s(0, 1, 0),
                   Vec3s(0, -1, -1),    Vec3s(0.2F, 1, -1), Vec3s(0, 0, 1),
                   Vec3s(-1, 0, -1),    Vec3s(1, 0.1F, -1), Vec3s(0, 0, 1)};
     few.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
-    const auto repeated = [&](int times) {
-        TriangleMesh mesh{few.points, {}};
-        for (int i = 0; i < times; ++i)
-            for (const openvdb::Vec3I& t : few.triangles)
-                mesh.triangles.push_back(i % 2 == 0 ? t : openvdb::Vec3I(t[0], t[2], t[1]));
+    constexpr int kLast = 499;
+    const auto repeated = [&](int step) {
+        TriangleMesh mesh;
+        for (int i = 0; i <= kLast; i += step)
+            for (const bool turned : {false, true}) {
+                const auto first = std::uint32_t(mesh.points.size());
+                for (const Vec3s& p : few.points)
+                    mesh.points.push_back(p + Vec3s(1e-6F * float(i)));
+                for (const openvdb::Vec3I& t : few.triangles)
+                    mesh.triangles.push_back(openvdb::Vec3I(first) +
+                                             (turned ? openvdb::Vec3I(t[0], t[2], t[1]) : t));
+            }
         return mesh;
     };
     constexpr double kVoxel = 0.25;
-    const WrapResult one = sound_wrap(repeated(2), with_voxel(kVoxel)),
-                     all = sound_wrap(repeated(1000), with_voxel(kVoxel));
+    const WrapResult one = sound_wrap(repeated(kLast), with_voxel(kVoxel)),
+                     all = sound_wrap(repeated(1), with_voxel(kVoxel));
     EXPECT_NEAR(volume_of(all.mesh), volume_of(one.mesh), 1e-3 * volume_of(one.mesh));
     // Winding numbers of a thousand sheets are rounded more.
     EXPECT_LT(surface_distance(all.mesh, one.mesh, kVoxel).max, 0.1 * kVoxel);
     EXPECT_NEAR(all.report.input_to_wrap.max, one.report.input_to_wrap.max, 0.5 * kVoxel);
     EXPECT_NEAR(all.report.input_to_wrap.mean, one.report.input_to_wrap.mean, 0.5 * kVoxel);
+}
+
+TEST(Wrap, OfATriangleAndItsCopiesIsThatOfOne)
+{
+    const TriangleMesh once = test::box(Vec3d(-1), Vec3d(1));
+    TriangleMesh often = once;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        // Named from any of its corners.
+        const openvdb::Vec3I t = once.triangles[0];
+        often.triangles.emplace_back(t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]);
+    }
+    WrapOptions options;
+    options.resolution = 16;
+    const TriangleMesh one = wrap_mesh(once, options).mesh, many = wrap_mesh(often, options).mesh;
+    EXPECT_EQ(many.points, one.points);
+    EXPECT_EQ(many.triangles, one.triangles);
 }
 
 TEST(Wrap, IsTheSameForAnyNumberOfThreads)
