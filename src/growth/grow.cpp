@@ -21,6 +21,7 @@
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "mesh/exact_volume.h"
+#include "mesh/surface_defects.h"
 #include "vdb_shell/options/option.h"
 
 #include <algorithm>
@@ -87,18 +88,28 @@ std::vector<std::uint8_t> turned_components(const Connectivity& connectivity,
     return turned;
 }
 
-/// Makes growth more careful; false where it cannot be.
-bool make_careful(GrowOptions& options)
+/// What to try instead of a shell some of whose components have turned; false where nothing is
+/// left.
+bool take_more_care(const Connectivity& connectivity, const std::vector<std::uint8_t>& turned,
+                    GrowOptions& options, std::vector<double>& cap)
 {
-    if (options.method == Method::thickest)
+    if (options.method == Method::thickest) {
         options.method = Method::certified;
-    else if (options.top_down)
-        options.top_down = false; // from a thin shell, which is on the right side
-    else if (options.free_moves)
-        options.free_moves = false; // along lines
-    else
-        return false;
-    return true;
+        return true;
+    }
+    if (options.top_down || options.free_moves) {
+        // From a thin shell, which is on the right side; then along lines only.
+        (options.top_down ? options.top_down : options.free_moves) = false;
+        return true;
+    }
+    // Such a component has no shell then, which always is valid.
+    bool any = false;
+    for (std::size_t v = 0; v < cap.size(); ++v)
+        if (turned[std::size_t(connectivity.component[v])] && cap[v] > 0) {
+            cap[v] = 0;
+            any = true;
+        }
+    return any;
 }
 
 } // namespace
@@ -135,15 +146,15 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
     const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
-    if (std::find(turned.begin(), turned.end(), 1) == turned.end())
+    // A component that crosses itself encloses as much of either sign as it likes.
+    if (std::find(turned.begin(), turned.end(), 1) == turned.end() ||
+        (options.method != Method::thickest &&
+         !find_self_intersections(mesh, {}, interrupter).empty()))
         return result;
     GrowOptions careful = options;
     std::vector<double> bound = cap;
-    // At last such a component has no shell, which always is valid.
-    if (!make_careful(careful))
-        for (std::size_t v = 0; v < bound.size(); ++v)
-            if (turned[std::size_t(connectivity.component[v])])
-                bound[v] = 0;
+    if (!take_more_care(connectivity, turned, careful, bound))
+        return result;
     return grow_shell_from(start, mesh, directions, stepped, bound, careful, split, interrupter);
 }
 
