@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+
+// Takes: triangles, and voxels to be told of. Gives: the winding number at each. A wrap asks for
+// the same voxels more than once, and a number takes microseconds.
+
 #include "field/winding_grid.h"
 
 #include "field/winding_field.h"

@@ -14,6 +14,7 @@
 #include "field/contour_mapped.h"
 #include "field/value_range.h"
 #include "field/wrap_field.h"
+#include "mesh/equal_points.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 
@@ -56,6 +57,33 @@ double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
     return voxel;
 }
 
+/// One of those that are the same and turned the same way. A winding number would count each copy,
+/// and see a solid far around thousands of them.
+std::vector<openvdb::Vec3I> without_repeats(const TriangleMesh& mesh)
+{
+    const std::vector<std::uint32_t> point = first_equal_point(mesh.points);
+    std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const openvdb::Vec3I& t = mesh.triangles[i];
+        std::array<std::uint32_t, 3> corners{point[t[0]], point[t[1]], point[t[2]]};
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()),
+                    corners.end());
+        triangles.emplace_back(corners, i);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end(),
+                                [](const auto& s, const auto& t) { return s.first == t.first; }),
+                    triangles.end());
+    std::sort(triangles.begin(), triangles.end(),
+              [](const auto& s, const auto& t) { return s.second < t.second; });
+    std::vector<openvdb::Vec3I> kept;
+    kept.reserve(triangles.size());
+    for (const auto& [corners, i] : triangles)
+        kept.push_back(mesh.triangles[i]);
+    return kept;
+}
+
 /// Triangles in voxels about the middle of the box, so that the numbers are small wherever the mesh
 /// stands.
 std::vector<TriangleCorners> in_voxels(const TriangleMesh& mesh, const Vec3d& centre, double voxel)
@@ -65,38 +93,9 @@ std::vector<TriangleCorners> in_voxels(const TriangleMesh& mesh, const Vec3d& ce
     const auto to_voxels = [&](std::uint32_t v) {
         return (Vec3d(mesh.points[v]) - centre) / voxel;
     };
-    for (const openvdb::Vec3I& t : mesh.triangles)
+    for (const openvdb::Vec3I& t : without_repeats(mesh))
         triangles.push_back({to_voxels(t[0]), to_voxels(t[1]), to_voxels(t[2])});
     return triangles;
-}
-
-/// Leaves one of those that are the same and turned the same way. A winding number would count each
-/// copy, and see a solid far around thousands of them.
-void drop_repeats(std::vector<TriangleCorners>& triangles)
-{
-    using Key = std::array<double, 9>;
-    const auto key_of = [](const TriangleCorners& t) {
-        const auto first = std::size_t(std::min_element(t.begin(), t.end()) - t.begin());
-        Key key{};
-        for (std::size_t k = 0; k < 3; ++k)
-            for (int axis = 0; axis < 3; ++axis)
-                key[3 * k + std::size_t(axis)] = t[(first + k) % 3][axis];
-        return key;
-    };
-    std::vector<std::pair<Key, std::uint32_t>> keys;
-    keys.reserve(triangles.size());
-    for (std::uint32_t i = 0; i < triangles.size(); ++i)
-        keys.emplace_back(key_of(triangles[i]), i);
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        if (i == 0 || keys[i].first != keys[i - 1].first)
-            kept.push_back(keys[i].second);
-    std::sort(kept.begin(), kept.end());
-    std::size_t end = 0;
-    for (const std::uint32_t i : kept)
-        triangles[end++] = triangles[i];
-    triangles.resize(end);
 }
 
 void set_shares(WrapReport& report, const WrapPieces& pieces)
@@ -178,10 +177,9 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     WrapResult result;
     const double voxel = result.report.voxel_size = voxel_size_for(bounds, options);
 
-    std::vector<TriangleCorners> triangles = in_voxels(mesh, centre, voxel);
-    drop_repeats(triangles);
-    const auto field = field_of(triangles, 0.5 / voxel * (bounds.high - bounds.low), options,
-                                result.report, progress);
+    const auto field =
+        field_of(in_voxels(mesh, centre, voxel), 0.5 / voxel * (bounds.high - bounds.low), options,
+                 result.report, progress);
     const auto to_world = [&](const Vec3d& index) { return centre + voxel * index; };
     result.mesh = contour_mapped(*field, to_world, {options.adaptivity, !options.keep_voids},
                                  result.report.contour, interrupter);
