@@ -266,8 +266,7 @@ Vec3d barrier_minimum(LinearBounds& bounds, const Ball& ball, const Vec3d& gradi
     Vec3d x;
     VDB_SHELL_KERNEL(newton_minimum)
     (first, first + bounds.blocks().size(), scaled, gradient / (weight * scale), x);
-    const Vec3d minimum = bounds.here() + x / scale;
-    return minimum.isFinite() ? minimum : bounds.here();
+    return bounds.here() + x / scale;
 }
 
 } // namespace vdb_shell::growth
