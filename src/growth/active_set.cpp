@@ -14,17 +14,9 @@
 namespace vdb_shell::growth
 {
 
-bool has_crowds(const GrowState& s)
-{
-    FanWork work;
-    for (int v = 0; v < s.mesh->vertices; ++v)
-        work.add(std::size_t(star(*s.mesh, v).size()));
-    return work.too_much();
-}
-
 void leave_out_crowds(const GrowState& s, std::vector<std::uint8_t>& inactive)
 {
-    if (!has_crowds(s))
+    if (!s.mesh->has_crowds)
         return;
     for (int v = 0; v < s.mesh->vertices; ++v) {
         if (std::size_t(star(*s.mesh, v).size()) <= FanWork::kCrowd)

@@ -5,7 +5,6 @@
 
 #include "growth/grow_state.h"
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -19,35 +18,6 @@ struct ActiveSet {
     std::vector<double> gain;
     std::vector<int> idle_rounds; ///< running, in which it hardly moved
 };
-
-/// What the fans of a surface cost: a move asks about those of the vertex and of its neighbours, so
-/// a round takes the sum of the squares of their sizes.
-class FanWork
-{
-public:
-    /// Triangles around a vertex. Middles of caps in models of machine parts have some hundred.
-    static constexpr std::size_t kCrowd = 1024;
-
-    void add(std::size_t triangles)
-    {
-        squares_ += double(triangles) * double(triangles);
-        corners_ += double(triangles);
-        any_crowd_ |= triangles > kCrowd;
-    }
-    /// A good surface has 6 for each corner.
-    bool too_much() const
-    {
-        constexpr double kMost = 100;
-        return any_crowd_ && squares_ > kMost * corners_;
-    }
-
-private:
-    double squares_ = 0, corners_ = 0;
-    bool any_crowd_ = false;
-};
-
-/// Whether fans are too much work.
-bool has_crowds(const GrowState& s);
 
 /// Where fans are too much work, leaves out the vertices of crowds and those beside them: they keep
 /// their lines.

@@ -95,7 +95,6 @@ void label_components(Connectivity& c)
 /// a vertex of thousands. Those around such a one have a colour each, in ascending order.
 void colour_vertices(Connectivity& c)
 {
-    constexpr int kThousands = 1024;
     std::vector<int> first_free(static_cast<std::size_t>(c.vertices)); // around a vertex
     std::vector<int> colour(static_cast<std::size_t>(c.vertices), -1);
     // Stamped with the vertex instead of cleared for each: a colour is free unless its stamp is
@@ -110,7 +109,7 @@ void colour_vertices(Connectivity& c)
         int first = 0;
         for (const int u : neighbours(c, v)) {
             take(u, v);
-            if (neighbours(c, u).size() > kThousands) {
+            if (std::size_t(neighbours(c, u).size()) > FanWork::kCrowd) {
                 first = std::max(first, first_free[u]);
                 continue;
             }
@@ -147,6 +146,10 @@ Connectivity connect(std::size_t vertices, const std::vector<Vec3I>& faces)
     c.faces = faces;
     build_incidence(c);
     build_neighbours(c);
+    FanWork work;
+    for (int v = 0; v < c.vertices; ++v)
+        work.add(std::size_t(star(c, v).size()));
+    c.has_crowds = work.too_much();
     // Both only read the neighbours, and each writes members that the other does not touch.
     run_together([&] { label_components(c); }, [&] { colour_vertices(c); });
     return c;

@@ -14,6 +14,32 @@ namespace vdb_shell::growth
 
 using openvdb::Vec3I;
 
+/// What the fans of a surface cost: a move asks about those of the vertex and of its neighbours, so
+/// a round takes the sum of the squares of their sizes.
+class FanWork
+{
+public:
+    /// Triangles around a vertex. Middles of caps in models of machine parts have some hundred.
+    static constexpr std::size_t kCrowd = 1024;
+
+    void add(std::size_t triangles)
+    {
+        squares_ += double(triangles) * double(triangles);
+        corners_ += double(triangles);
+        any_crowd_ |= triangles > kCrowd;
+    }
+    /// A good surface has 6 for each corner.
+    bool too_much() const
+    {
+        constexpr double kMost = 100;
+        return any_crowd_ && squares_ > kMost * corners_;
+    }
+
+private:
+    double squares_ = 0, corners_ = 0;
+    bool any_crowd_ = false;
+};
+
 /// A corner of a face: `local` is 0, 1 or 2.
 struct FaceCorner {
     int face, local;
@@ -30,6 +56,7 @@ struct Connectivity {
     std::vector<int> neighbour_first, neighbour; ///< vertex -> adjacent vertices, ascending
     std::vector<int> component;                  ///< by vertex
     int components = 0;
+    bool has_crowds = false;              ///< fans are too much work (FanWork)
     std::vector<std::vector<int>> colour; ///< classes of vertices with no common neighbour
 
     int face_count() const { return static_cast<int>(faces.size()); }

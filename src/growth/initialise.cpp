@@ -9,7 +9,6 @@
 
 #include "core/parallel.h"
 #include "core/triangle_piece.h"
-#include "growth/active_set.h"
 #include "growth/line_directions.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
@@ -91,7 +90,7 @@ std::vector<double> half_rays(const GrowState& s, const Directions& directions)
     // Where many long triangles meet in a vertex, a ray past it meets the boxes of all.
     PartBoxes parts;
     BoxTree tree_of_parts;
-    const bool by_parts = has_crowds(s);
+    const bool by_parts = s.mesh->has_crowds;
     if (by_parts) {
         parts = part_boxes({s.a.begin(), s.a.end()}, s.mesh->faces);
         tree_of_parts.build(std::move(parts.boxes));

@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "core/triangle_pairs.h"
-#include "growth/active_set.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 
@@ -151,7 +150,7 @@ void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed,
     std::vector<std::uint8_t> tested(changed.size());
     for_each_index(tested.size(), [&](std::size_t f) { tested[f] = changed[f] && !bad[f]; });
     const ContactSearch search(s, tested, changed, bad);
-    if (has_crowds(s))
+    if (s.mesh->has_crowds)
         return search.mark_in_crowds();
     for_each_range(
         s.inner_tree.groups(),
