@@ -28,7 +28,7 @@ def arguments_of(name, job):
         return [job.command, "--threads", job.threads, "build", "-q", str(job.mesh), "-o", "ours.vdb", "--resolution",
                 job.resolution, "--report", "ours.json", *job.options], ["ours.vdb", "ours.json"]
     if name == DEEP:
-        return [job.command, "build", "-q", str(job.mesh), "--method", "raw", "--samples", "0", "--field", "dense",
+        return [job.command, "build", "-q", str(job.mesh), "--no-free-moves", "--samples", "0", "--field", "dense",
                 "--resolution", job.resolution, "--report", "deep.json"], ["deep.json"]
     if name == LEVEL_SET:
         return ["vdb_tool", "-read", str(job.mesh), "-mesh2ls", f"dim={job.resolution}", "-write",

@@ -82,6 +82,10 @@ void BoxTree::build(std::vector<FloatBox> boxes)
             boxes_[i] = boxes[static_cast<std::size_t>(items[i].box)];
         },
         1024);
+    // Of tens of millions of boxes these, and room for nodes that are not needed, take gigabytes.
+    boxes = {};
+    items = {};
+    nodes_.reserve(count_nodes(0, static_cast<int>(count)));
     add_node(0, static_cast<int>(count));
     fit_nodes();
 }
@@ -91,6 +95,30 @@ void BoxTree::build(std::vector<FloatBox> boxes)
 int BoxTree::middle_of(int begin, int end)
 {
     return begin + (end - begin) / 2;
+}
+
+/// Calls visit(begin, end) for what becomes a child of the node over a range of more than kLeaf
+/// boxes. The ranges are those that split() makes, or else boxes that lie far apart would come into
+/// one node. A half that is small enough for a leaf becomes a child as it is.
+template <class Visit> void BoxTree::for_each_child(int begin, int end, const Visit& visit)
+{
+    const int middle = middle_of(begin, end);
+    for (const auto& [from, to] : {std::pair(begin, middle), std::pair(middle, end)}) {
+        if (to - from <= kLeaf) {
+            visit(from, to);
+            continue;
+        }
+        visit(from, middle_of(from, to));
+        visit(middle_of(from, to), to);
+    }
+}
+
+std::size_t BoxTree::count_nodes(int begin, int end)
+{
+    std::size_t nodes = 1;
+    if (end - begin > kLeaf)
+        for_each_child(begin, end, [&](int from, int to) { nodes += count_nodes(from, to); });
+    return nodes;
 }
 
 void BoxTree::split(std::vector<Item>& items, int begin, int end)
@@ -128,8 +156,6 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
 
 int BoxTree::add_node(int begin, int end)
 {
-    // Nodes are named by number throughout: the vector moves its nodes when a child is added, and a
-    // reference would then point to freed memory.
     const auto id = nodes_.size();
     nodes_.push_back({FourBoxes::none(), {}, 0, end - begin <= kLeaf});
     unsigned lane = 0;
@@ -139,23 +165,10 @@ int BoxTree::add_node(int begin, int end)
         nodes_[id].children = lane;
         return static_cast<int>(id);
     }
-    const auto add = [&](int from, int to) {
-        // This has to be a statement of its own: adding the child may move the node whose entry is
-        // set next.
+    for_each_child(begin, end, [&](int from, int to) {
         const int child = add_node(from, to);
         nodes_[id].child[lane++] = child;
-    };
-    const int middle = middle_of(begin, end);
-    // The ranges are those that split() made, by the same rule, or else boxes that lie far apart
-    // would come into one node. A half that is small enough for a leaf becomes a child as it is.
-    for (const auto& [from, to] : {std::pair(begin, middle), std::pair(middle, end)}) {
-        if (to - from <= kLeaf) {
-            add(from, to);
-            continue;
-        }
-        add(from, middle_of(from, to));
-        add(middle_of(from, to), to);
-    }
+    });
     nodes_[id].children = lane;
     return static_cast<int>(id);
 }

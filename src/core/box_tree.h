@@ -241,6 +241,8 @@ private:
 
     static int middle_of(int begin, int end);
     static void split(std::vector<Item>& items, int begin, int end);
+    template <class Visit> static void for_each_child(int begin, int end, const Visit& visit);
+    static std::size_t count_nodes(int begin, int end);
     int add_node(int begin, int end);
     void fit_nodes();
 

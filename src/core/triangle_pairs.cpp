@@ -158,15 +158,19 @@ private:
     {
         return any_crowd_ && BoxTree::have_common(marks_of(s), marks_of(t));
     }
-    /// Pairs that share no crowded corner.
-    void look_at_groups()
+    std::vector<FloatBox> boxes_of_asked() const
     {
         std::vector<FloatBox> boxes = triangle_boxes(points_, triangles_);
         for (std::size_t i = 0; i < asked_.size(); ++i)
             boxes[i] = boxes[asked_[i]];
         boxes.resize(asked_.size());
+        return boxes;
+    }
+    /// Pairs that share no crowded corner.
+    void look_at_groups()
+    {
         BoxTree tree;
-        tree.build(boxes);
+        tree.build(boxes_of_asked());
         std::vector<char> crowded(asked_.size());
         const std::size_t groups = tree.groups();
         const std::size_t parts = (groups + kTriangleGroupsInPart - 1) / kTriangleGroupsInPart;
@@ -182,7 +186,7 @@ private:
                         tree.for_each_of(group, [&](int i) { crowded[std::size_t(i)] = 1; });
             },
             1);
-        look_at_crowded(boxes, crowded);
+        look_at_crowded(crowded);
     }
 
     bool look_at_group(const BoxTree& tree, std::size_t group, BoxTree::Near& near,
@@ -202,8 +206,11 @@ private:
 
     /// The pairs of triangles of groups that were not looked at: with the other triangles, of which
     /// they missed the larger ones, and among themselves.
-    void look_at_crowded(const std::vector<FloatBox>& boxes, const std::vector<char>& crowded)
+    void look_at_crowded(const std::vector<char>& crowded)
     {
+        if (std::find(crowded.begin(), crowded.end(), 1) == crowded.end())
+            return;
+        const std::vector<FloatBox> boxes = boxes_of_asked();
         std::vector<std::uint32_t> places, others;
         std::vector<FloatBox> of_others;
         std::vector<TrianglePiece> pieces;
@@ -217,8 +224,6 @@ private:
             others.push_back(t);
             of_others.push_back(boxes[i]);
         }
-        if (pieces.empty())
-            return;
         BoxTree tree;
         tree.build(of_others);
         std::vector<std::vector<Pair>> found(places.size() + 1);
