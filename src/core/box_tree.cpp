@@ -165,10 +165,8 @@ int BoxTree::add_node(int begin, int end)
         nodes_[id].children = lane;
         return static_cast<int>(id);
     }
-    for_each_child(begin, end, [&](int from, int to) {
-        const int child = add_node(from, to);
-        nodes_[id].child[lane++] = child;
-    });
+    for_each_child(begin, end,
+                   [&](int from, int to) { nodes_[id].child[lane++] = add_node(from, to); });
     nodes_[id].children = lane;
     return static_cast<int>(id);
 }

@@ -225,7 +225,7 @@ private:
             of_others.push_back(boxes[i]);
         }
         BoxTree tree;
-        tree.build(of_others);
+        tree.build(std::move(of_others));
         std::vector<std::vector<Pair>> found(places.size() + 1);
         for_each_index(places.size(), [&](std::size_t p) {
             const std::uint32_t s = asked_[places[p]];

@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -57,30 +58,20 @@ double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
     return voxel;
 }
 
-/// One of those that are the same and turned the same way. A winding number would count each copy,
-/// and see a solid far around thousands of them.
+/// The first of those that are the same and turned the same way. A winding number would count each
+/// copy, and see a solid far around thousands of them.
 std::vector<openvdb::Vec3I> without_repeats(const TriangleMesh& mesh)
 {
     const std::vector<std::uint32_t> point = first_equal_point(mesh.points);
-    std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> triangles;
-    triangles.reserve(mesh.triangles.size());
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const openvdb::Vec3I& t = mesh.triangles[i];
+    std::set<std::array<std::uint32_t, 3>> known;
+    std::vector<openvdb::Vec3I> kept;
+    for (const openvdb::Vec3I& t : mesh.triangles) {
         std::array<std::uint32_t, 3> corners{point[t[0]], point[t[1]], point[t[2]]};
         std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()),
                     corners.end());
-        triangles.emplace_back(corners, i);
+        if (known.insert(corners).second)
+            kept.push_back(t);
     }
-    std::sort(triangles.begin(), triangles.end());
-    triangles.erase(std::unique(triangles.begin(), triangles.end(),
-                                [](const auto& s, const auto& t) { return s.first == t.first; }),
-                    triangles.end());
-    std::sort(triangles.begin(), triangles.end(),
-              [](const auto& s, const auto& t) { return s.second < t.second; });
-    std::vector<openvdb::Vec3I> kept;
-    kept.reserve(triangles.size());
-    for (const auto& [corners, i] : triangles)
-        kept.push_back(mesh.triangles[i]);
     return kept;
 }
 

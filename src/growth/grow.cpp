@@ -88,28 +88,33 @@ std::vector<std::uint8_t> turned_components(const Connectivity& connectivity,
     return turned;
 }
 
+/// Such components have no shell then, which always is valid. False if they had none before.
+bool pin_components(const Connectivity& connectivity, const std::vector<std::uint8_t>& which,
+                    std::vector<double>& cap)
+{
+    bool any = false;
+    for (std::size_t v = 0; v < cap.size(); ++v)
+        if (which[std::size_t(connectivity.component[v])] && cap[v] > 0) {
+            cap[v] = 0;
+            any = true;
+        }
+    return any;
+}
+
 /// What to try instead of a shell some of whose components have turned; false where nothing is
 /// left.
 bool take_more_care(const Connectivity& connectivity, const std::vector<std::uint8_t>& turned,
                     GrowOptions& options, std::vector<double>& cap)
 {
-    if (options.method == Method::thickest) {
+    if (options.method == Method::thickest)
         options.method = Method::certified;
-        return true;
-    }
-    if (options.top_down || options.free_moves) {
-        // From a thin shell, which is on the right side; then along lines only.
-        (options.top_down ? options.top_down : options.free_moves) = false;
-        return true;
-    }
-    // Such a component has no shell then, which always is valid.
-    bool any = false;
-    for (std::size_t v = 0; v < cap.size(); ++v)
-        if (turned[std::size_t(connectivity.component[v])] && cap[v] > 0) {
-            cap[v] = 0;
-            any = true;
-        }
-    return any;
+    else if (options.top_down)
+        options.top_down = false; // from a thin shell, which is on the right side
+    else if (options.free_moves)
+        options.free_moves = false; // along lines
+    else
+        return pin_components(connectivity, turned, cap);
+    return true;
 }
 
 } // namespace
