@@ -46,6 +46,9 @@ struct ShellOptions {
     /// Where the shell lies. Outward lines without any thickness of the user's get
     /// default_outward_thickness.
     Side side = Side::inward;
+    /// A surface of which no shell can be made is repaired, and wrapped where that is not enough; a
+    /// usable one is taken as it is. With `repair`, what a repair gives is.
+    bool mend = false;
     /// Unset: the surface is taken as it is, or refused. Allowed self-intersections keep crossing
     /// fills too.
     std::optional<RepairOptions> repair;
@@ -118,7 +121,7 @@ struct ShellResult {
     ShellReport report;
 };
 
-/// The whole job on a mesh in memory: wrap or repair when asked, check, decimate, remesh and
+/// The whole job on a mesh in memory: wrap, repair or mend when asked, check, decimate, remesh and
 /// subdivide when asked, level set, smooth, directions, line stepping, limits, growth (Method::raw:
 /// prisms straight from the lengths), scale, layers, taper when asked, tets, certificate, overlaps
 /// (where it does not certify the whole), figures. For an outward shell the stages from directions

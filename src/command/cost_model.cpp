@@ -117,6 +117,7 @@ std::vector<std::string> not_counted(const BuildArguments& a)
     };
     add(s.side != Side::inward, "--side");
     add(s.grow.method != Method::certified, "--method");
+    add(s.mend, "--mend");
     add(s.repair.has_value(), "--repair");
     add(s.wrap.wanted, "--wrap");
     add(s.remesh.wanted(), "--remesh");

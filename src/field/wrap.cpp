@@ -132,28 +132,33 @@ OptionList describe(WrapOptions& o)
                 "Build the shell of a new closed surface around the triangles, whatever they are"),
          option("voxel_size", o.voxel_size, "--wrap-voxel-size",
                 "Edge length of a voxel of the wrap, world units")
-             .needing("--wrap")
+             .needing("--wrap or --mend")
              .in(Unit::world_length)
              .within(above(0)),
          option("resolution", o.resolution, "--wrap-resolution",
                 "Voxels of the wrap along the longest side of the bounding box")
-             .needing("--wrap")
+             .needing("--wrap or --mend")
              .in(Unit::voxels)
              .within(at_least(1).at_most(kMostVoxelsAlong))
              .excluding("--wrap-voxel-size"),
          option("adaptivity", o.adaptivity, "--wrap-adaptivity",
                 "How far simplification may move the wrap, voxels")
-             .needing("--wrap")
+             .needing("--wrap or --mend")
              .in(Unit::voxels)
              .within(at_least(0).at_most(kMostWrapVoxels)),
          option("sheet_voxels", o.sheet_voxels, "--wrap-sheet",
                 "Half the thickness given to sheets and loose triangles, voxels")
-             .needing("--wrap")
+             .needing("--wrap or --mend")
              .in(Unit::voxels)
              .within(at_least(kThinnestSheet).at_most(kMostWrapVoxels)),
          option("keep_voids", o.keep_voids, "--wrap-keep-voids",
                 "Keep enclosed voids and what stands in them")
-             .needing("--wrap")});
+             .needing("--wrap or --mend")});
+}
+
+double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options)
+{
+    return voxel_size_for(bounds_of(mesh.points), options);
 }
 
 WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Interrupter* interrupter)

@@ -92,6 +92,10 @@ std::string inspection_text(const std::string& name, const ReadReport& read,
     for (const Finding& finding : findings)
         put(out, finding);
     out << (usable(inspection) ? "  usable as it is\n" : "  NOT usable as it is\n");
+    // Faults of coordinates and voxels no mending removes.
+    if (!why_not_usable(check, {}).empty())
+        out << "              -> build --mend repairs or wraps it, with as little change as will "
+               "do\n";
     return out.str();
 }
 

@@ -27,22 +27,35 @@ std::string shown(const std::array<std::uint32_t, 2>& pair)
     return "(" + std::to_string(pair[0]) + ", " + std::to_string(pair[1]) + ")";
 }
 
-template <typename Element>
-void add_finding(std::string& findings, const Defect<Element>& defect, const char* one,
-                 const char* many)
+/// "3 boundary edges: (0, 1), (1, 2), (2, 0); 1 triangle of zero area: 5", or without the indices.
+class Findings
 {
-    if (defect.count == 0)
-        return;
-    findings += (findings.empty() ? "" : "; ") + std::string(defect.at_least ? "at least " : "") +
-                std::to_string(defect.count) + " " + (defect.count == 1 ? one : many) + ": ";
-    for (std::size_t i = 0; i < defect.first.size(); ++i)
-        findings += (i == 0 ? "" : ", ") + shown(defect.first[i]);
-    if (defect.count > defect.first.size())
-        findings += ", ...";
-}
+public:
+    explicit Findings(bool with_indices) : with_indices_(with_indices) {}
 
-/// In the form of the other defects, so that the message names them alike.
-/// The inside-out components by index.
+    void add(const std::string& finding) { text_ += (text_.empty() ? "" : "; ") + finding; }
+    template <typename Element>
+    void add(const Defect<Element>& defect, const char* one, const char* many)
+    {
+        if (defect.count == 0)
+            return;
+        add(std::string(defect.at_least ? "at least " : "") + std::to_string(defect.count) + " " +
+            (defect.count == 1 ? one : many));
+        if (!with_indices_)
+            return;
+        for (std::size_t i = 0; i < defect.first.size(); ++i)
+            text_ += (i == 0 ? ": " : ", ") + shown(defect.first[i]);
+        if (defect.count > defect.first.size())
+            text_ += ", ...";
+    }
+    const std::string& text() const { return text_; }
+
+private:
+    bool with_indices_;
+    std::string text_;
+};
+
+/// The inside-out components by index, in the form of the other defects.
 Defect<std::uint32_t> inside_out(const MeshCheck& check)
 {
     Defect<std::uint32_t> defect;
@@ -53,6 +66,52 @@ Defect<std::uint32_t> inside_out(const MeshCheck& check)
             defect.first.push_back(c);
     }
     return defect;
+}
+
+void add_what_no_option_accepts(Findings& findings, const MeshCheck& check)
+{
+    if (check.triangles == 0)
+        findings.add("it has no triangles");
+    findings.add(check.boundary_edges, "boundary edge (the surface is open)",
+                 "boundary edges (the surface is open)");
+    findings.add(check.non_manifold_edges, "edge of three or more triangles",
+                 "edges of three or more triangles");
+    findings.add(check.inconsistent_edges, "edge between triangles of opposite orientation",
+                 "edges between triangles of opposite orientation");
+    findings.add(check.non_manifold_vertices, "vertex whose triangles do not form one fan",
+                 "vertices whose triangles do not form one fan");
+    findings.add(check.degenerate_triangles, "triangle of zero area", "triangles of zero area");
+    findings.add(check.duplicate_triangles, "triangle that repeats an earlier one",
+                 "triangles that repeat an earlier one");
+}
+
+std::string findings_of(const MeshCheck& check, const CheckOptions& options, bool with_indices)
+{
+    Findings findings(with_indices);
+    add_what_no_option_accepts(findings, check);
+    if (!options.turn_inside_out)
+        findings.add(inside_out(check), "component is inside out", "components are inside out");
+    if (!options.allow_self_intersections)
+        findings.add(check.self_intersections, "pair of triangles that cross or touch",
+                     "pairs of triangles that cross or touch");
+    return findings.text();
+}
+
+/// Precondition: the surface is not usable.
+std::string advice(const MeshCheck& check, const CheckOptions& options)
+{
+    Findings beyond(false);
+    add_what_no_option_accepts(beyond, check);
+    if (!beyond.text().empty())
+        return "inspect names all of it, --mend does what is needed (--repair or --wrap)";
+    std::string help;
+    if (!options.turn_inside_out && check.inside_out_components() > 0)
+        help = "--turn-outward turns what is inside out";
+    if (!options.allow_self_intersections && check.self_intersections.count > 0)
+        help += (help.empty() ? "" : "; ") +
+                std::string("--mend cuts a few crossings out or makes a new surface (--wrap), "
+                            "--allow-self-intersections accepts one that crosses itself");
+    return help;
 }
 
 } // namespace
@@ -69,48 +128,18 @@ OptionList describe(CheckOptions& o)
                 "Turn closed components that are inside out instead of refusing them")});
 }
 
+std::string why_not_usable(const MeshCheck& check, const CheckOptions& options)
+{
+    return findings_of(check, options, false);
+}
+
 void require_usable(const MeshCheck& check, const CheckOptions& options, const std::string& name)
 {
-    std::string findings;
-    if (check.triangles == 0)
-        findings = "it has no triangles";
-    add_finding(findings, check.boundary_edges, "boundary edge (the surface is open)",
-                "boundary edges (the surface is open)");
-    add_finding(findings, check.non_manifold_edges, "edge of three or more triangles",
-                "edges of three or more triangles");
-    add_finding(findings, check.inconsistent_edges,
-                "edge between triangles of opposite orientation",
-                "edges between triangles of opposite orientation");
-    add_finding(findings, check.non_manifold_vertices, "vertex whose triangles do not form one fan",
-                "vertices whose triangles do not form one fan");
-    add_finding(findings, check.degenerate_triangles, "triangle of zero area",
-                "triangles of zero area");
-    add_finding(findings, check.duplicate_triangles, "triangle that repeats an earlier one",
-                "triangles that repeat an earlier one");
-    // Everything up to here is accepted by no option.
-    const bool beyond_help = !findings.empty();
-    std::string help;
-    if (!options.turn_inside_out) {
-        add_finding(findings, inside_out(check), "component is inside out",
-                    "components are inside out");
-        if (check.inside_out_components() > 0)
-            help = "--turn-outward turns what is inside out";
-    }
-    if (!options.allow_self_intersections) {
-        add_finding(findings, check.self_intersections, "pair of triangles that cross or touch",
-                    "pairs of triangles that cross or touch");
-        if (check.self_intersections.count > 0)
-            help += (help.empty() ? "" : "; ") +
-                    std::string(
-                        "--wrap makes a new surface, --allow-self-intersections accepts one that "
-                        "crosses itself");
-    }
+    const std::string findings = findings_of(check, options, true);
     if (findings.empty())
         return;
-    if (beyond_help)
-        help = "inspect names all of it, --repair mends most of it, --wrap makes a new surface";
-    throw GeometryError(name + ": no shell can be made of this surface: " + findings +
-                        (help.empty() ? "" : " - " + help));
+    throw GeometryError(name + ": no shell can be made of this surface: " + findings + " - " +
+                        advice(check, options));
 }
 
 } // namespace vdb_shell

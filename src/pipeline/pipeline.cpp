@@ -10,11 +10,11 @@
 #include "vdb_shell/pipeline.h"
 
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/repair/split_fans.h"
 
 #include "core/grid_instances.h"
 #include "pipeline/core_stages.h"
 #include "pipeline/figures.h"
+#include "pipeline/prepare_surface.h"
 #include "pipeline/resample.h"
 #include "pipeline/sides.h"
 #include "pipeline/taper_to_bounds.h"
@@ -28,29 +28,6 @@ namespace vdb_shell
 {
 namespace
 {
-
-/// Copies of vertices make sense only where nothing else stands in the way: at an edge of three or
-/// more triangles the fans are no fans of one surface. They count as contacts of the surface with
-/// itself, so self-intersections have to be allowed.
-bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
-{
-    return options.allow_self_intersections && check.non_manifold_vertices.count > 0 &&
-           check.non_manifold_edges.count == 0;
-}
-
-/// Looks at r.surface and splits its fans where that is allowed. After a repair the check has been
-/// made already, of the surface that the repair gives.
-void look_at_surface(ShellResult& r, const CheckOptions& options, Interrupter* interrupter)
-{
-    r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface, interrupter);
-    if (!may_split_fans(r.report.mesh, options))
-        return;
-    FanSplit split = split_fans(std::move(r.surface));
-    r.surface = std::move(split.mesh);
-    r.report.split_vertices = split.vertices;
-    r.report.vertex_copies = split.copies;
-    r.report.mesh = check_mesh(r.surface, interrupter);
-}
 
 void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* interrupter)
 {
@@ -109,35 +86,6 @@ void fill_when_asked(ShellResult& r, const ShellOptions& options, StageClock& cl
     });
 }
 
-/// Puts the surface to work with into r.surface: repaired if the options say so, checked and found
-/// usable, and resampled.
-void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
-                     StageClock& clock, Interrupter* interrupter)
-{
-    const std::string& name = r.report.source;
-    r.surface = mesh;
-    if (options.repair) {
-        RepairOptions repair = *options.repair;
-        // Whoever allows the surface to cross itself is better served by a closed surface with a
-        // crossing patch than by one that is refused for its hole.
-        repair.keep_crossing_fills |= options.check.allow_self_intersections;
-        clock.run("repair", [&] {
-            RepairResult repaired = repair_mesh(mesh, repair, interrupter);
-            r.surface = std::move(repaired.mesh);
-            r.report.repair = std::move(repaired.report);
-        });
-    }
-    clock.run("check", [&] {
-        look_at_surface(r, options.check, interrupter);
-        require_usable(r.report.mesh, options.check,
-                       r.report.repair ? name + " after --repair" : name);
-        // After the check, whose findings say which components are inside out.
-        r.surface = turn_outward(std::move(r.surface), r.report.mesh);
-    });
-    resample_surface(r, options, clock, interrupter);
-    require_enough_tets(r.surface, options.wanted);
-}
-
 /// Makes the level set that the lines step through; a given one is taken where it is fit for that.
 /// In every other case the report says why not, for the lengths then come from another field than
 /// the user's own.
@@ -179,6 +127,8 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
 {
     StageClock clock(r.report.stages);
     prepare_surface(r, mesh, options, clock, interrupter);
+    resample_surface(r, options, clock, interrupter);
+    require_enough_tets(r.surface, options.wanted);
     join_with_cores(r, cores, options, clock, interrupter);
     GrowStart start;
     clock.run("coarsen", [&] { start = start_of_growth(options, r.surface, interrupter); });
@@ -223,16 +173,7 @@ ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
     require_program(options.core_fill);
     ShellResult r;
     r.report.source = name;
-    if (!options.wrap.wanted) {
-        build_from_surface(r, mesh, options, nullptr, thickness_grid, cores, interrupter);
-        return r;
-    }
-    WrapResult wrap;
-    StageClock(r.report.stages).run("wrap", [&] {
-        wrap = wrap_mesh(mesh, options.wrap, interrupter);
-    });
-    r.report.wrap = wrap.report;
-    build_from_surface(r, wrap.mesh, options, nullptr, thickness_grid, cores, interrupter);
+    build_from_surface(r, mesh, options, nullptr, thickness_grid, cores, interrupter);
     return r;
 }
 

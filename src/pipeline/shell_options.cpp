@@ -86,6 +86,10 @@ OptionSections describe(ShellOptions& o)
 {
     return {{"", in_group("Lines", {option("side", o.side, "--side",
                                            "Side of the surface that the shell lies on")})},
+            {"", in_group("Surface", {option("mend", o.mend, "--mend",
+                                             "Repair a surface that no shell can be made of, or "
+                                             "wrap it where that is not enough; a usable one is "
+                                             "taken as it is")})},
             repair_section(o),
             {"wrap", describe(o.wrap)},
             {"contour", describe(o.contour)},
@@ -129,6 +133,8 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
                             "triangles (--remesh-to)");
     if (options.wrap.wanted && options.repair)
         throw InvalidOption("wrap and repair: one or the other; a wrap needs no repaired surface");
+    if (options.wrap.wanted && options.mend)
+        throw InvalidOption("wrap and mend: one or the other; a wrap needs no mending");
     require_taper_possible(options);
     require_wishes_possible(options);
     require_core_fill_possible(options);

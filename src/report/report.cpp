@@ -301,6 +301,16 @@ ordered_json certificate_json(const StackCertificate& certificate)
     return json;
 }
 
+ordered_json mend_json(const std::vector<MendAttempt>& attempts)
+{
+    ordered_json json = ordered_json::array();
+    for (const MendAttempt& attempt : attempts)
+        json.push_back({{"tried", name_in_table(attempt.tried)},
+                        {"refusal", attempt.refusal.empty() ? ordered_json()
+                                                            : ordered_json(attempt.refusal)}});
+    return json;
+}
+
 /// In the order in which stages ran. Memory is the most that the process had held by the end of
 /// each.
 ordered_json costs_json(const std::vector<StageCost>& stages)
@@ -315,7 +325,7 @@ ordered_json costs_json(const std::vector<StageCost>& stages)
 
 /// Of the whole report: raised when a key comes, goes or changes its meaning
 /// (docs/schema/report.schema.json).
-constexpr int kSchema = 2;
+constexpr int kSchema = 3;
 
 /// What was read and what became of it before lines were stepped.
 void add_surface(ordered_json& json, const ShellReport& report)
@@ -323,6 +333,7 @@ void add_surface(ordered_json& json, const ShellReport& report)
     json["schema"] = kSchema;
     json["source"] = report.source;
     json["read"] = report.read ? read_json(*report.read) : ordered_json();
+    json["mend"] = report.mend.empty() ? ordered_json() : mend_json(report.mend);
     // The repair report has a JSON form of its own, for a repair without a shell. Its text is
     // parsed here instead of being built a second time, so the two cannot differ.
     json["repair"] =
@@ -381,6 +392,15 @@ void add_checks(ordered_json& json, const ShellReport& report)
 }
 
 } // namespace
+
+const NameTable<Mending>& names(Mending)
+{
+    static const NameTable<Mending> table{{"as-it-is", Mending::none},
+                                          {"repair", Mending::repair},
+                                          {"cut-crossings", Mending::cut_crossings},
+                                          {"wrap", Mending::wrap}};
+    return table;
+}
 
 std::string report_json(const ShellReport& report, bool with_costs)
 {

@@ -80,6 +80,15 @@ void wrap_lines(std::ostringstream& out, const WrapReport& wrap)
              distance(wrap.wrap_to_input));
 }
 
+/// What was tried, and why it was not enough.
+void mend_lines(std::ostringstream& out, const std::vector<MendAttempt>& attempts)
+{
+    for (const MendAttempt& attempt : attempts)
+        line(out, &attempt == &attempts.front() ? "mend" : "",
+             name_in_table(attempt.tried) + ": " +
+                 (attempt.refusal.empty() ? "taken" : attempt.refusal));
+}
+
 void read_lines(std::ostringstream& out, const ReadReport& read)
 {
     line(out, "read",
@@ -100,6 +109,7 @@ void surface_lines(std::ostringstream& out, const ShellReport& report)
     line(out, "source", report.source);
     if (report.read)
         read_lines(out, *report.read);
+    mend_lines(out, report.mend);
     if (report.repair)
         // The repair has lines of its own, the same that the command prints for a repair alone.
         out << "repair\n" << repair_text(*report.repair);

@@ -13,8 +13,8 @@
 #include <fstream>
 #include <sstream>
 
-// Coordinates of any size and place, and surfaces of any kind: what inspect, build, --repair and
-// --wrap make of them.
+// Coordinates of any size and place, and surfaces of any kind: what inspect, build, --repair,
+// --wrap and --mend make of them.
 
 namespace vdb_shell::test
 {
@@ -220,7 +220,7 @@ struct Expected {
     int plain, repaired;
 };
 
-TEST_F(AnyMesh, EveryKindOfSurfaceIsBuiltOrRefusedByNameAndWrapped)
+TEST_F(AnyMesh, EveryKindOfSurfaceIsBuiltOrRefusedByNameWrappedAndMended)
 {
     const TriangleMesh nested = joined(icosphere(1.0, 2), reversed(icosphere(0.5, 2)));
     const std::vector<Expected> kinds{
@@ -252,6 +252,12 @@ TEST_F(AnyMesh, EveryKindOfSurfaceIsBuiltOrRefusedByNameAndWrapped)
         expect("", kind.plain);
         expect("--repair", kind.repaired);
         expect("--wrap --wrap-resolution 24", ExitCode::success);
+        expect("--mend --wrap-resolution 24", ExitCode::success);
+        // As little as makes it usable.
+        EXPECT_EQ(report("r.json")["mend"].back()["tried"], sound ? "as-it-is"
+                                                            : kind.repaired == ExitCode::success
+                                                                ? "repair"
+                                                                : "wrap");
     }
 }
 

@@ -51,7 +51,7 @@ def reports(command, samples, folder):
     box = samples / "box.obj"
     for number, (surface, *options) in enumerate([
             [box, *BOTH_SIDES],
-            [folder / "open.obj", "--repair"],
+            [folder / "open.obj", "--mend"],
             [samples / "torus.obj", "--wrap", "--wrap-resolution", "32"],
             [samples / "sphere.obj", "--decimate-to", "200", "--refine-rounds", "1"],
             [box, "--subdivide", "1", "--want-amips", "3.01"],

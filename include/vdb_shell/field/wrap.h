@@ -46,6 +46,10 @@ struct WrapResult {
     WrapReport report;
 };
 
+/// Edge length of a voxel of the mesh's wrap, world units. Throws as wrap_mesh. Precondition: the
+/// mesh has points.
+double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options);
+
 /// A new surface around anything that has triangles: closed, manifold, embedded (contour.h says
 /// why) and oriented outward. The solid is where the winding number of the triangles, in either
 /// sense, is over 0.6, together with all points within `sheet_voxels` of triangles that bound no

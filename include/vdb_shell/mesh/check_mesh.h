@@ -82,6 +82,10 @@ OptionList describe(CheckOptions& options);
 /// interrupter may be null; throws Cancelled.
 MeshCheck check_mesh(const TriangleMesh& mesh, Interrupter* interrupter = nullptr);
 
+/// Why no shell can be made of the mesh under `options`: how many defects of each kind. Empty if
+/// one can be tried.
+std::string why_not_usable(const MeshCheck& check, const CheckOptions& options);
+
 /// Throws GeometryError with counts and first offenders by index when the mesh cannot be worked
 /// with under `options`; `name` (the file) opens the message, which ends in the option that helps,
 /// if any.

@@ -17,6 +17,7 @@
 #include "vdb_shell/layers/scale_thickness.h"
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/obstacles/core_feet.h"
+#include "vdb_shell/options/name_table.h"
 #include "vdb_shell/pose/pose_shell.h"
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/resample/decimate.h"
@@ -42,6 +43,21 @@ struct StageCost {
     std::string stage;
     double seconds = 0;
     std::uint64_t peak_memory_bytes = 0;
+};
+
+/// What --mend tries, from the least change to the most; the first that gives a usable surface is
+/// taken (docs/stages/repair.md).
+enum class Mending : std::uint8_t {
+    none,          ///< the surface as it is
+    repair,        ///< repair_mesh
+    cut_crossings, ///< the same with RepairOptions::cut_crossings
+    wrap           ///< wrap_mesh
+};
+const NameTable<Mending>& names(Mending);
+
+struct MendAttempt {
+    Mending tried = Mending::none;
+    std::string refusal; ///< why no shell can be made of what it gave; empty: it was taken
 };
 
 struct FieldReport {
@@ -85,7 +101,8 @@ struct OutsideReport {
 struct ShellReport {
     std::string source; ///< file name of the surface, without its folder
     std::optional<ReadReport> read;
-    std::optional<RepairReport> repair; ///< absent when it was not asked for
+    std::vector<MendAttempt> mend;      ///< empty when it was not asked for
+    std::optional<RepairReport> repair; ///< absent when there was none
     std::optional<WrapReport> wrap;
     std::optional<ContourReport> contour; ///< of a level set that was given
     MeshCheck mesh;                       ///< of the surface that was worked with

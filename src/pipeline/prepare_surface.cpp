@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: the input. Leaves in the result: a surface that a shell can be made of, or throws. To mend
+// means to change as little as makes it usable, so the attempts go from the least change to the
+// most: a repair, which keeps all that is sound; cuts through crossings, as long as they take away
+// nothing that the wrap would keep, and part nothing; and the wrap, of which something always
+// comes, but which keeps no triangle.
+
+#include "pipeline/prepare_surface.h"
+
+#include "vdb_shell/repair/split_fans.h"
+#include "vdb_shell/resample/surface_distance.h"
+
+#include "report/text_lines.h"
+
+#include <utility>
+
+namespace vdb_shell
+{
+namespace
+{
+
+/// Copies of vertices make sense only where nothing else stands in the way: at an edge of three or
+/// more triangles the fans are no fans of one surface. They count as contacts of the surface with
+/// itself, so self-intersections have to be allowed.
+bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
+{
+    return options.allow_self_intersections && check.non_manifold_vertices.count > 0 &&
+           check.non_manifold_edges.count == 0;
+}
+
+/// Looks at r.surface and splits its fans where that is allowed. After a repair the check has been
+/// made already, of the surface that the repair gives.
+void look_at_surface(ShellResult& r, const CheckOptions& options, Interrupter* interrupter)
+{
+    r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface, interrupter);
+    if (!may_split_fans(r.report.mesh, options))
+        return;
+    FanSplit split = split_fans(std::move(r.surface));
+    r.surface = std::move(split.mesh);
+    r.report.split_vertices = split.vertices;
+    r.report.vertex_copies = split.copies;
+    r.report.mesh = check_mesh(r.surface, interrupter);
+}
+
+void wrap(ShellResult& r, const TriangleMesh& mesh, const WrapOptions& options,
+          Interrupter* interrupter)
+{
+    WrapResult wrapped = wrap_mesh(mesh, options, interrupter);
+    r.surface = std::move(wrapped.mesh);
+    r.report.wrap = wrapped.report;
+    r.report.repair.reset();
+}
+
+void repair(ShellResult& r, const TriangleMesh& mesh, RepairOptions repair,
+            const CheckOptions& check, Interrupter* interrupter)
+{
+    // Whoever allows the surface to cross itself is better served by a closed surface with a
+    // crossing patch than by one that is refused for its hole.
+    repair.keep_crossing_fills |= check.allow_self_intersections;
+    RepairResult repaired = repair_mesh(mesh, repair, interrupter);
+    r.surface = std::move(repaired.mesh);
+    r.report.repair = std::move(repaired.report);
+}
+
+/// Cuts help against crossings alone. Where more are there than were counted, a wrap is sooner
+/// done.
+bool may_cut(const MeshCheck& check)
+{
+    CheckOptions crossings_allowed;
+    crossings_allowed.allow_self_intersections = true;
+    return !check.self_intersections.at_least && why_not_usable(check, crossings_allowed).empty();
+}
+
+/// Why the surface that cuts have left is not the input's any more; empty if it is. A body that is
+/// stuck into another one is cut in pieces, which have to be one solid; and what a voxel of the
+/// wrap can show is not to be lost.
+std::string what_cuts_have_spoiled(const ShellResult& r, const TriangleMesh& mesh,
+                                   std::size_t components, const WrapOptions& options,
+                                   Interrupter* interrupter)
+{
+    if (r.surface.triangles.empty())
+        return "the cuts leave nothing";
+    if (r.report.mesh.components.size() > components)
+        return "the cuts part it into " + number(r.report.mesh.components.size(), 12) +
+               " components instead of " + number(components, 12);
+    const double voxel = wrap_voxel_size(mesh, options);
+    const double lost = surface_distance(mesh, r.surface, voxel, interrupter).max;
+    if (lost > voxel)
+        return "the cuts take away what lies " + number(lost) +
+               " from the rest, more than a voxel of a wrap, " + number(voxel);
+    return {};
+}
+
+/// Precondition: r.surface has been looked at.
+void mend(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
+          Interrupter* interrupter)
+{
+    const auto take = [&](Mending tried, const std::string& spoiled = {}) {
+        const std::string refusal = why_not_usable(r.report.mesh, options.check);
+        r.report.mend.push_back({tried, refusal.empty() ? spoiled : refusal});
+        return r.report.mend.back().refusal.empty();
+    };
+    const auto try_repair = [&](const RepairOptions& how) {
+        repair(r, mesh, how, options.check, interrupter);
+        look_at_surface(r, options.check, interrupter);
+    };
+    if (take(options.repair ? Mending::repair : Mending::none) || mesh.triangles.empty())
+        return;
+    RepairOptions how = options.repair.value_or(RepairOptions{});
+    if (!options.repair) {
+        try_repair(how);
+        if (take(Mending::repair))
+            return;
+    }
+    if (!how.cut_crossings && may_cut(r.report.mesh)) {
+        const std::size_t components = r.report.mesh.components.size();
+        how.cut_crossings = true;
+        try_repair(how);
+        if (take(Mending::cut_crossings,
+                 what_cuts_have_spoiled(r, mesh, components, options.wrap, interrupter)))
+            return;
+    }
+    wrap(r, mesh, options.wrap, interrupter);
+    look_at_surface(r, options.check, interrupter);
+    take(Mending::wrap);
+}
+
+} // namespace
+
+void prepare_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
+                     StageClock& clock, Interrupter* interrupter)
+{
+    const std::string& name = r.report.source;
+    if (options.wrap.wanted)
+        clock.run("wrap", [&] { wrap(r, mesh, options.wrap, interrupter); });
+    else if (options.repair)
+        clock.run("repair", [&] { repair(r, mesh, *options.repair, options.check, interrupter); });
+    else
+        r.surface = mesh;
+    clock.run("check", [&] { look_at_surface(r, options.check, interrupter); });
+    if (options.mend)
+        clock.run("mend", [&] { mend(r, mesh, options, interrupter); });
+    require_usable(r.report.mesh, options.check, r.report.repair ? name + " after --repair" : name);
+    // After the check, whose findings say which components are inside out.
+    r.surface = turn_outward(std::move(r.surface), r.report.mesh);
+}
+
+} // namespace vdb_shell

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/prepare_surface.h"
+
+#include "support/faulty_shapes.h"
+#include "support/shapes.h"
+#include "vdb_shell/core/error.h"
+#include "vdb_shell/mesh/check_mesh.h"
+
+#include <gmock/gmock-matchers.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace
+{
+
+using namespace vdb_shell;
+using openvdb::Vec3d;
+using openvdb::Vec3s;
+using ::testing::HasSubstr;
+using Tried = std::vector<Mending>;
+
+ShellResult mended(const TriangleMesh& mesh, ShellOptions options = {})
+{
+    options.mend = true;
+    ShellResult result;
+    StageClock clock(result.report.stages);
+    prepare_surface(result, mesh, options, clock, nullptr);
+    // Whatever it took: what is left is usable, by a check of its own.
+    EXPECT_EQ(why_not_usable(check_mesh(result.surface), options.check), "");
+    return result;
+}
+
+/// All attempts; the last of them was taken.
+Tried tried(const ShellResult& result)
+{
+    Tried attempts;
+    for (const MendAttempt& attempt : result.report.mend) {
+        attempts.push_back(attempt.tried);
+        EXPECT_EQ(attempt.refusal.empty(), &attempt == &result.report.mend.back());
+    }
+    return attempts;
+}
+
+/// A sphere with one vertex pulled under its neighbours, so that a few triangles cross.
+TriangleMesh dented_sphere()
+{
+    TriangleMesh mesh = test::icosphere(1.0, 4);
+    const openvdb::Vec3I t = mesh.triangles.front();
+    mesh.points[t[0]] += 2.5F * (mesh.points[t[1]] - mesh.points[t[0]]);
+    EXPECT_GT(check_mesh(mesh).self_intersections.count, 0U);
+    return mesh;
+}
+
+TEST(PrepareSurface, MendingLeavesAUsableSurfaceBitForBit)
+{
+    const TriangleMesh mesh = test::joined(test::icosphere(1.0, 2), test::box(Vec3d(2), Vec3d(3)));
+    const ShellResult result = mended(mesh);
+    EXPECT_EQ(tried(result), Tried{Mending::none});
+    EXPECT_EQ(result.surface.points, mesh.points);
+    EXPECT_EQ(result.surface.triangles, mesh.triangles);
+    EXPECT_FALSE(result.report.repair || result.report.wrap);
+}
+
+TEST(PrepareSurface, MendingClosesAHoleAndKeepsEveryTriangle)
+{
+    const TriangleMesh open =
+        test::without(test::icosphere(1.0, 3), [](const Vec3s& p) { return p[2] > 0.9F; });
+    const ShellResult result = mended(open);
+    EXPECT_EQ(tried(result), (Tried{Mending::none, Mending::repair}));
+    EXPECT_THAT(result.report.mend.front().refusal, HasSubstr("boundary edges"));
+    ASSERT_TRUE(result.report.repair.has_value());
+    EXPECT_EQ(result.report.repair->kept_triangles, open.triangles.size());
+    EXPECT_FALSE(result.report.wrap.has_value());
+}
+
+TEST(PrepareSurface, MendingCutsAwayWhatAWrapCouldNotShow)
+{
+    const TriangleMesh mesh = dented_sphere();
+    const ShellResult result = mended(mesh);
+    EXPECT_EQ(tried(result), (Tried{Mending::none, Mending::repair, Mending::cut_crossings}));
+    ASSERT_TRUE(result.report.repair.has_value());
+    EXPECT_GT(result.report.repair->kept_triangles, mesh.triangles.size() * 9 / 10);
+}
+
+TEST(PrepareSurface, MendingCutsNothingThatAWrapWouldShow)
+{
+    ShellOptions options;
+    options.wrap.voxel_size = 0.0625;
+    // One vertex is drawn out through the other side: a spike that cuts would take away.
+    TriangleMesh mesh = test::icosphere(1.0, 4);
+    mesh.points[0] *= -1.5F;
+    const ShellResult result = mended(mesh, options);
+    EXPECT_EQ(tried(result),
+              (Tried{Mending::none, Mending::repair, Mending::cut_crossings, Mending::wrap}));
+    EXPECT_THAT(result.report.mend[2].refusal, HasSubstr("more than a voxel"));
+    EXPECT_FALSE(result.report.repair.has_value());
+    ASSERT_TRUE(result.report.wrap.has_value());
+    EXPECT_EQ(result.report.wrap->voxel_size, 0.0625);
+}
+
+TEST(PrepareSurface, MendingMakesOneSolidOfBodiesThatAreStuckIntoEachOther)
+{
+    ShellOptions options;
+    options.wrap.voxel_size = 0.05;
+    const double apart = 1.0;
+    const TriangleMesh two = test::joined(test::icosphere(1.0, 4),
+                                          test::translated(test::icosphere(1.0, 4), {apart, 0, 0}));
+    const ShellResult result = mended(two, options);
+    EXPECT_EQ(tried(result).back(), Mending::wrap);
+    EXPECT_EQ(result.report.mesh.components.size(), 1U);
+    // Two balls less their lens, which are two caps of height 1 - apart / 2; the wrap is within a
+    // voxel of them.
+    const double height = 1 - apart / 2, cap = M_PI * height * height * (3 - height) / 3;
+    const double area = 8 * M_PI - 2 * 2 * M_PI * height;
+    EXPECT_NEAR(result.report.mesh.volume, 8 * M_PI / 3 - 2 * cap, 0.05 * area);
+}
+
+TEST(PrepareSurface, MendingWrapsWhatHasNoInside)
+{
+    ShellOptions options;
+    options.wrap.resolution = 24;
+    for (const TriangleMesh& mesh : {test::moebius_strip(24, 3), test::klein_bottle(24, 12)})
+        EXPECT_EQ(tried(mended(mesh, options)).back(), Mending::wrap);
+}
+
+TEST(PrepareSurface, ARepairThatWasAskedForComesFirst)
+{
+    ShellOptions options;
+    options.repair.emplace();
+    const ShellResult result = mended(test::icosphere(1.0, 2), options);
+    EXPECT_EQ(tried(result), Tried{Mending::repair});
+    EXPECT_TRUE(result.report.repair.has_value());
+}
+
+TEST(PrepareSurface, OfNothingNothingIsMended)
+{
+    EXPECT_THROW(mended(TriangleMesh{}), GeometryError);
+}
+
+TEST(PrepareSurface, WithoutMendingAFaultySurfaceIsRefused)
+{
+    ShellResult result;
+    StageClock clock(result.report.stages);
+    EXPECT_THROW(prepare_surface(result, dented_sphere(), {}, clock, nullptr), GeometryError);
+    EXPECT_TRUE(result.report.mend.empty());
+}
+
+} // namespace
