@@ -17,6 +17,7 @@
 #include "command/file_plan.h"
 #include "command/signals.h"
 
+#include "core/freed_memory.h"
 #include "report/stage_clock.h"
 #include "vdb_shell/write/remesh_map.h"
 
@@ -128,6 +129,8 @@ ShellFile to_file(ShellResult& result, const ShellOptions& options, const Output
         file.surface = result.level_set;
         // Voxels take memory and time, and no other format has a place for them.
         file.depth = shell_depth_grid(file.tets, result.report.field.voxel_size, interrupter);
+        // The lists of tets by column are as large as all else together.
+        give_back_freed_memory();
     }
     return file;
 }

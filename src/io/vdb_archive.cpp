@@ -22,7 +22,8 @@
 #include <fstream>
 #include <mutex>
 #include <optional>
-#include <sstream>
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,35 @@ using openvdb::io::StreamMetadata;
 using Leaf = FloatTree::LeafNodeType;
 using Leaves = openvdb::tree::LeafManager<const FloatTree>;
 
+/// What is written to it, in a string that can be taken: std::ostringstream gives copies only, and
+/// the grids of points of a million triangles have a hundred megabytes each.
+class Bytes : public std::streambuf
+{
+public:
+    std::string take() { return std::exchange(bytes_, {}); }
+
+private:
+    int_type overflow(int_type c) override
+    {
+        if (!traits_type::eq_int_type(c, traits_type::eof()))
+            bytes_.push_back(traits_type::to_char_type(c));
+        return traits_type::not_eof(c);
+    }
+    std::streamsize xsputn(const char* data, std::streamsize size) override
+    {
+        bytes_.append(data, std::size_t(size));
+        return size;
+    }
+    /// Where the next byte goes; nothing can be written over.
+    pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override
+    {
+        return by == 0 && from != std::ios_base::beg ? pos_type(off_type(bytes_.size()))
+                                                     : pos_type(off_type(-1));
+    }
+
+    std::string bytes_;
+};
+
 /// A stream in memory that OpenVDB finds its settings on.
 struct Stream {
     explicit Stream(const StreamMetadata& wanted)
@@ -48,7 +78,8 @@ struct Stream {
     {
         openvdb::io::setStreamMetadataPtr(out, settings);
     }
-    std::ostringstream out;
+    Bytes bytes;
+    std::ostream out{&bytes};
     StreamMetadata::Ptr settings;
 };
 
@@ -107,7 +138,7 @@ std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
         write_leaf(stream.out, leaves.leaf(i), settings);
     }
     starts.push_back(std::size_t(stream.out.tellp()));
-    std::string bytes = stream.out.str();
+    std::string bytes = stream.bytes.take();
     for (std::size_t i = begin; i < end; ++i) {
         const std::size_t start = starts[i - begin], next = starts[i - begin + 1];
         const auto flag = std::int8_t(bytes[start + sizeof(Leaf::NodeMaskType)]);
@@ -177,7 +208,7 @@ public:
             // Writing the topology notes the background, which the buffers need.
             Stream topology(*head.settings);
             grid.writeTopology(topology.out);
-            bytes.topology = topology.out.str();
+            bytes.topology = topology.bytes.take();
             DelayedLoadMetadata sizes;
             bytes.buffers =
                 float_buffers(static_cast<const FloatGrid&>(grid), *topology.settings, sizes);
@@ -185,11 +216,9 @@ public:
         } else {
             Stream all(*head.settings);
             grid.writeTopology(all.out);
-            const auto size = std::size_t(all.out.tellp());
+            bytes.topology = all.bytes.take();
             grid.writeBuffers(all.out);
-            bytes.topology = all.out.str();
-            bytes.buffers.push_back(bytes.topology.substr(size));
-            bytes.topology.resize(size);
+            bytes.buffers.push_back(all.bytes.take());
         }
         described->addStatsMetadata();
         described->insertMeta(GridBase::META_FILE_COMPRESSION,
@@ -197,7 +226,7 @@ public:
                                   openvdb::io::compressionToString(head.settings->compression())));
         described->writeMeta(head.out);
         grid.writeTransform(head.out);
-        bytes.head = head.out.str();
+        bytes.head = head.bytes.take();
         return bytes;
     }
 };

@@ -3,6 +3,8 @@
 
 #include "vdb_shell/report/report.h"
 
+#include "core/freed_memory.h"
+
 #include <sys/resource.h>
 
 #include <chrono>
@@ -11,7 +13,7 @@
 namespace vdb_shell
 {
 
-/// Runs stages and notes what each of them cost.
+/// Runs stages, notes what each of them cost, and gives back what it freed.
 class StageClock
 {
 public:
@@ -23,6 +25,7 @@ public:
         std::forward<Stage>(stage)();
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         costs_.push_back({name, seconds.count(), peak_memory_bytes()});
+        give_back_freed_memory();
     }
 
 private:

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdlib> // has __GLIBC__
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace vdb_shell
+{
+
+/// Gives freed memory back to the system where there is much of it, for between stages. The C
+/// library keeps what threads free in small pieces, each for the thread that had it, so that the
+/// next stage takes as much again: for ten million triangles 2.5 GiB.
+inline void give_back_freed_memory()
+{
+#ifdef __GLIBC__
+    // The system clears what is used again, a tenth of a second a gigabyte: nothing beside the work
+    // that frees as much, but a good part of a small job.
+    constexpr std::size_t kMuch = std::size_t(256) << 20;
+    if (::mallinfo2().fordblks > kMuch)
+        ::malloc_trim(0);
+#endif
+}
+
+} // namespace vdb_shell
