@@ -29,13 +29,11 @@ Vec3d unit_normal(const Corners& c)
 void take_snapshot_of_outer(const GrowState& s, FaceSnapshot& faces)
 {
     const std::size_t count = s.mesh->faces.size();
-    faces.outer.resize(count);
     faces.outer_normal.resize(count);
     for_each_index(
         count,
         [&](std::size_t f) {
-            faces.outer[f] = outer_corners(s, static_cast<int>(f));
-            faces.outer_normal[f] = unit_normal(faces.outer[f]);
+            faces.outer_normal[f] = unit_normal(outer_corners(s, static_cast<int>(f)));
         },
         kFacesAtOnce);
 }
@@ -54,10 +52,10 @@ void take_snapshot_of_inner(const GrowState& s, const std::vector<std::uint8_t>&
         radius = std::max(radius, s.trust_radius[v]);
         faces.inactive[f] = 0;
     }
-    faces.corner[f] = inner_corners(s, f);
-    faces.normal[f] = unit_normal(faces.corner[f]);
+    const Corners corners = inner_corners(s, f);
+    faces.normal[f] = unit_normal(corners);
     faces.trust_radius[f] = radius;
-    faces.box[f] = float_box_of(faces.corner[f], radius);
+    faces.box[f] = float_box_of(corners, radius);
 }
 
 } // namespace
@@ -67,9 +65,8 @@ void take_snapshot(GrowState& s, const std::vector<std::uint8_t>& inactive, Face
     const std::size_t count = s.mesh->faces.size();
     // From here on, until the next snapshot, radii are counted from these places.
     s.trust_centre = s.b;
-    if (faces.outer.empty())
+    if (faces.outer_normal.empty())
         take_snapshot_of_outer(s, faces);
-    faces.corner.resize(count);
     faces.normal.resize(count);
     faces.trust_radius.resize(count);
     faces.box.resize(count);

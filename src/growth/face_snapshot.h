@@ -9,8 +9,9 @@ namespace vdb_shell::growth
 {
 
 /// By face. Kept from one round to the next: outer triangles never move, and the memory is there.
+/// Without the corners, which are read from the vertices: these are half as many as faces, and stay
+/// in the processor's cache.
 struct FaceSnapshot {
-    std::vector<Corners> corner, outer;
     std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
     std::vector<double> trust_radius;        ///< the longest of the active corners'
     std::vector<FloatBox> box;               ///< of the inner triangle, wider by trust_radius

@@ -80,6 +80,7 @@ double rounding_of_values(const GrowState& s)
 /// Pairs that wait until there are as many as are computed at once.
 struct Waiting {
     std::size_t count = 0;
+    std::array<std::array<Corners, 2>, kSlabsAtOnce> corners; ///< what the queries point to
     std::array<SlabQuery, kSlabsAtOnce> query;
     std::array<Pair, kSlabsAtOnce> pair;
 };
@@ -103,13 +104,13 @@ public:
             if (g == f || (g < f && moves(g)) || s_.mesh->share_a_corner(f, g))
                 return;
             const double enough = faces_.trust_radius[f] + faces_.trust_radius[g];
-            add({&faces_.corner[f], &faces_.corner[g], enough}, faces_.normal[g], {f, g}, waiting,
-                out);
+            add(inner_corners(s_, f), inner_corners(s_, g), faces_.normal[g], enough, {f, g},
+                waiting, out);
         });
         s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, moves, [&](int f, int g) {
             if (!share_a_pin(s_, f, g))
-                add({&faces_.corner[f], &faces_.outer[g], faces_.trust_radius[f]},
-                    faces_.outer_normal[g], {f, -1}, waiting, out);
+                add(inner_corners(s_, f), outer_corners(s_, g), faces_.outer_normal[g],
+                    faces_.trust_radius[f], {f, -1}, waiting, out);
         });
     }
 
@@ -127,16 +128,16 @@ public:
 
 private:
     /// Most pairs are left out here: there is room enough across the plane of one of the two.
-    void add(const SlabQuery& query, const Vec3d& normal_of_second, const Pair& pair,
-             Waiting& waiting, Chunk& out) const
+    void add(const Corners& first, const Corners& second, const Vec3d& normal_of_second,
+             double enough, const Pair& pair, Waiting& waiting, Chunk& out) const
     {
         // Far above the relative error of the distances to the plane, in doubles.
         constexpr double kAboveRounding = 1 + 1e-9;
-        const double enough = kAboveRounding * query.enough;
-        if (beyond(faces_.normal[pair.f], (*query.first)[0], *query.second, enough) ||
-            beyond(normal_of_second, (*query.second)[0], *query.first, enough))
+        if (beyond(faces_.normal[pair.f], first[0], second, kAboveRounding * enough) ||
+            beyond(normal_of_second, second[0], first, kAboveRounding * enough))
             return;
-        waiting.query[waiting.count] = query;
+        std::array<Corners, 2>& corners = waiting.corners[waiting.count] = {first, second};
+        waiting.query[waiting.count] = {&corners[0], &corners[1], enough};
         waiting.pair[waiting.count] = pair;
         if (++waiting.count == kSlabsAtOnce)
             list_waiting(waiting, out);
