@@ -16,9 +16,10 @@ namespace vdb_shell
 inline void give_back_freed_memory()
 {
 #ifdef __GLIBC__
-    // The system clears what is used again, a tenth of a second a gigabyte: nothing beside the work
-    // that frees as much, but a good part of a small job.
-    constexpr std::size_t kMuch = std::size_t(256) << 20;
+    // The system clears what is used again. With a quarter of this bound a shell of a million
+    // triangles took 2 % longer (0.7 s of the system's time, on a virtual machine), for a tenth
+    // less memory that nobody lacks.
+    constexpr std::size_t kMuch = std::size_t(1) << 30;
     if (::mallinfo2().fordblks > kMuch)
         ::malloc_trim(0);
 #endif
