@@ -29,7 +29,9 @@ def name_of(data):
 
     words = []
     at_origin = take() < 27
-    words.append(("certified", "thickest")[take() % 2])
+    how = take()
+    words.append(("certified", "thickest")[how % 2])
+    words += ["mend"] * (how % 8 == 6)
     side = take() % 8
     words += {7: ["both"], 6: ["outward"]}.get(side, [])
     bits = take()

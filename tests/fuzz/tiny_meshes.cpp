@@ -229,7 +229,10 @@ ShellOptions some_options(std::uint32_t resolution, Bytes& bytes)
     o.level_set.resolution = 8 + int(resolution % 9);
     o.coverage.samples = 0;
     o.grow.free_rounds = 4;
-    o.grow.method = bytes.below(2) ? Method::thickest : Method::certified;
+    const std::uint32_t how = bytes.next();
+    o.grow.method = how % 2 ? Method::thickest : Method::certified;
+    o.mend = how % 8 == 6;
+    o.wrap.resolution = o.level_set.resolution;
     const std::uint32_t side = bytes.below(8);
     o.side = side == 7 ? Side::both : side == 6 ? Side::outward : Side::inward;
     const std::uint32_t bits = bytes.next();
