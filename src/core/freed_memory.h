@@ -12,7 +12,8 @@ namespace vdb_shell
 
 /// Gives freed memory back to the system where there is much of it, for between stages. The C
 /// library keeps what threads free in small pieces, each for the thread that had it, so that the
-/// next stage takes as much again: for ten million triangles 2.5 GiB.
+/// next stage takes as much again. Without this and two smaller savings ten million triangles took
+/// 13.1 GiB instead of 11.4.
 inline void give_back_freed_memory()
 {
 #ifdef __GLIBC__
