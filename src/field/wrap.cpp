@@ -41,6 +41,8 @@ constexpr double kMostWrapVoxels = 1e3;
 // of them.
 constexpr double kMostVoxelsAlong = 4096.0;
 constexpr double kDistanceSpacingVoxels = 1.0;
+/// The flags under which there may be a wrap.
+constexpr const char* kWraps = "--wrap or --mend";
 
 double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
 {
@@ -132,28 +134,28 @@ OptionList describe(WrapOptions& o)
                 "Build the shell of a new closed surface around the triangles, whatever they are"),
          option("voxel_size", o.voxel_size, "--wrap-voxel-size",
                 "Edge length of a voxel of the wrap, world units")
-             .needing("--wrap or --mend")
+             .needing(kWraps)
              .in(Unit::world_length)
              .within(above(0)),
          option("resolution", o.resolution, "--wrap-resolution",
                 "Voxels of the wrap along the longest side of the bounding box")
-             .needing("--wrap or --mend")
+             .needing(kWraps)
              .in(Unit::voxels)
              .within(at_least(1).at_most(kMostVoxelsAlong))
              .excluding("--wrap-voxel-size"),
          option("adaptivity", o.adaptivity, "--wrap-adaptivity",
                 "How far simplification may move the wrap, voxels")
-             .needing("--wrap or --mend")
+             .needing(kWraps)
              .in(Unit::voxels)
              .within(at_least(0).at_most(kMostWrapVoxels)),
          option("sheet_voxels", o.sheet_voxels, "--wrap-sheet",
                 "Half the thickness given to sheets and loose triangles, voxels")
-             .needing("--wrap or --mend")
+             .needing(kWraps)
              .in(Unit::voxels)
              .within(at_least(kThinnestSheet).at_most(kMostWrapVoxels)),
          option("keep_voids", o.keep_voids, "--wrap-keep-voids",
                 "Keep enclosed voids and what stands in them")
-             .needing("--wrap or --mend")});
+             .needing(kWraps)});
 }
 
 double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options)

@@ -9,8 +9,8 @@ namespace vdb_shell::growth
 {
 
 /// By face. Kept from one round to the next: outer triangles never move, and the memory is there.
-/// Without the corners, which are read from the vertices: these are half as many as faces, and stay
-/// in the processor's cache.
+/// Without the corners, which are read from the vertices: that takes no longer (four scans of
+/// 20,000 to 100,000 triangles), and these are half as many as faces.
 struct FaceSnapshot {
     std::vector<Vec3d> normal, outer_normal; ///< unit length, or zero where there is none
     std::vector<double> trust_radius;        ///< the longest of the active corners'

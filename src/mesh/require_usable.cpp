@@ -68,8 +68,9 @@ Defect<std::uint32_t> inside_out(const MeshCheck& check)
     return defect;
 }
 
-void add_what_no_option_accepts(Findings& findings, const MeshCheck& check)
+std::string findings_of(const MeshCheck& check, const CheckOptions& options, bool with_indices)
 {
+    Findings findings(with_indices);
     if (check.triangles == 0)
         findings.add("it has no triangles");
     findings.add(check.boundary_edges, "boundary edge (the surface is open)",
@@ -83,12 +84,6 @@ void add_what_no_option_accepts(Findings& findings, const MeshCheck& check)
     findings.add(check.degenerate_triangles, "triangle of zero area", "triangles of zero area");
     findings.add(check.duplicate_triangles, "triangle that repeats an earlier one",
                  "triangles that repeat an earlier one");
-}
-
-std::string findings_of(const MeshCheck& check, const CheckOptions& options, bool with_indices)
-{
-    Findings findings(with_indices);
-    add_what_no_option_accepts(findings, check);
     if (!options.turn_inside_out)
         findings.add(inside_out(check), "component is inside out", "components are inside out");
     if (!options.allow_self_intersections)
@@ -100,9 +95,8 @@ std::string findings_of(const MeshCheck& check, const CheckOptions& options, boo
 /// Precondition: the surface is not usable.
 std::string advice(const MeshCheck& check, const CheckOptions& options)
 {
-    Findings beyond(false);
-    add_what_no_option_accepts(beyond, check);
-    if (!beyond.text().empty())
+    const CheckOptions all_accepted{true, true};
+    if (!why_not_usable(check, all_accepted).empty())
         return "inspect names all of it, --mend does what is needed (--repair or --wrap)";
     std::string help;
     if (!options.turn_inside_out && check.inside_out_components() > 0)

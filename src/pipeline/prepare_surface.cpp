@@ -2,9 +2,9 @@
 
 // Takes: the input. Leaves in the result: a surface that a shell can be made of, or throws. To mend
 // means to change as little as makes it usable, so the attempts go from the least change to the
-// most: a repair, which keeps all that is sound; cuts through crossings, as long as they take away
-// nothing that the wrap would keep, and part nothing; and the wrap, of which something always
-// comes, but which keeps no triangle.
+// most: a repair, which keeps all that is sound; cuts through crossings, as long as nothing goes
+// that is farther from the rest than a voxel of the wrap, and nothing is parted; and the wrap, of
+// which something always comes, but which keeps no triangle.
 
 #include "pipeline/prepare_surface.h"
 
@@ -33,6 +33,9 @@ bool may_split_fans(const MeshCheck& check, const CheckOptions& options)
 /// made already, of the surface that the repair gives.
 void look_at_surface(ShellResult& r, const CheckOptions& options, Interrupter* interrupter)
 {
+    // Those of an attempt to mend that came to nothing.
+    r.report.split_vertices = {};
+    r.report.vertex_copies = 0;
     r.report.mesh = r.report.repair ? r.report.repair->after : check_mesh(r.surface, interrupter);
     if (!may_split_fans(r.report.mesh, options))
         return;
@@ -74,13 +77,11 @@ bool may_cut(const MeshCheck& check)
 
 /// Why the surface that cuts have left is not the input's any more; empty if it is. A body that is
 /// stuck into another one is cut in pieces, which have to be one solid; and what a voxel of the
-/// wrap can show is not to be lost.
+/// wrap can show is not to be lost. Precondition: it is usable.
 std::string what_cuts_have_spoiled(const ShellResult& r, const TriangleMesh& mesh,
                                    std::size_t components, const WrapOptions& options,
                                    Interrupter* interrupter)
 {
-    if (r.surface.triangles.empty())
-        return "the cuts leave nothing";
     if (r.report.mesh.components.size() > components)
         return "the cuts part it into " + number(r.report.mesh.components.size(), 12) +
                " components instead of " + number(components, 12);
@@ -96,34 +97,36 @@ std::string what_cuts_have_spoiled(const ShellResult& r, const TriangleMesh& mes
 void mend(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
           Interrupter* interrupter)
 {
-    const auto take = [&](Mending tried, const std::string& spoiled = {}) {
-        const std::string refusal = why_not_usable(r.report.mesh, options.check);
-        r.report.mend.push_back({tried, refusal.empty() ? spoiled : refusal});
-        return r.report.mend.back().refusal.empty();
+    const auto refusal = [&] { return why_not_usable(r.report.mesh, options.check); };
+    const auto take = [&](Mending tried, const std::string& refused) {
+        r.report.mend.push_back({tried, refused});
+        return refused.empty();
     };
     const auto try_repair = [&](const RepairOptions& how) {
         repair(r, mesh, how, options.check, interrupter);
         look_at_surface(r, options.check, interrupter);
     };
-    if (take(options.repair ? Mending::repair : Mending::none) || mesh.triangles.empty())
+    if (take(options.repair ? Mending::repair : Mending::none, refusal()) || mesh.triangles.empty())
         return;
     RepairOptions how = options.repair.value_or(RepairOptions{});
     if (!options.repair) {
         try_repair(how);
-        if (take(Mending::repair))
+        if (take(Mending::repair, refusal()))
             return;
     }
     if (!how.cut_crossings && may_cut(r.report.mesh)) {
         const std::size_t components = r.report.mesh.components.size();
         how.cut_crossings = true;
         try_repair(how);
-        if (take(Mending::cut_crossings,
-                 what_cuts_have_spoiled(r, mesh, components, options.wrap, interrupter)))
+        std::string refused = refusal();
+        if (refused.empty())
+            refused = what_cuts_have_spoiled(r, mesh, components, options.wrap, interrupter);
+        if (take(Mending::cut_crossings, refused))
             return;
     }
     wrap(r, mesh, options.wrap, interrupter);
     look_at_surface(r, options.check, interrupter);
-    take(Mending::wrap);
+    take(Mending::wrap, refusal());
 }
 
 } // namespace

@@ -75,6 +75,19 @@ TEST(PrepareSurface, MendingClosesAHoleAndKeepsEveryTriangle)
     EXPECT_FALSE(result.report.wrap.has_value());
 }
 
+TEST(PrepareSurface, CopiesOfAnAttemptThatWasNotTakenAreNotReported)
+{
+    ShellOptions options;
+    options.check.allow_self_intersections = true;
+    // Two spheres in a point, one of them open: its fans are copied, and the hole refused.
+    TriangleMesh mesh = test::touching_spheres(2, 0);
+    mesh.triangles.pop_back();
+    const ShellResult result = mended(mesh, options);
+    EXPECT_EQ(tried(result), (Tried{Mending::none, Mending::repair}));
+    EXPECT_EQ(result.report.vertex_copies, 0U);
+    EXPECT_EQ(result.report.split_vertices.count, 0U);
+}
+
 TEST(PrepareSurface, MendingCutsAwayWhatAWrapCouldNotShow)
 {
     const TriangleMesh mesh = dented_sphere();
