@@ -41,26 +41,31 @@ void to_pixels(CutDrawing& drawing, const PictureFrame& frame)
 
 const NameTable<Axis>& names(Axis)
 {
-    static const NameTable<Axis> table{
-        {"x", Axis::x}, {"y", Axis::y}, {"z", Axis::z}, {"view", Axis::view}};
+    static const NameTable<Axis> table{{"x", Axis::x},
+                                       {"y", Axis::y},
+                                       {"z", Axis::z},
+                                       {"widest", Axis::widest},
+                                       {"view", Axis::view}};
     return table;
 }
 
 OptionList describe(CrossSectionOptions& o)
 {
     return in_group(
-        "Output", {option("axis", o.axis, "--section-axis", "Normal of the picture's cutting plane")
-                       .needing("--output .png"),
-                   option("position", o.position, "--section-position",
-                          "Place of the cutting plane, as a share of the bounding box")
-                       .needing("--output .png")
-                       .in(Unit::share)
-                       .within(at_least(0).at_most(1)),
-                   option("width_pixels", o.width_pixels, "--picture-width",
-                          "Pixels along the picture's longer side")
-                       .needing("--output .png")
-                       .in(Unit::pixels)
-                       .within(at_least(kSmallestWidth).at_most(kLargestWidth))});
+        "Output",
+        {option("axis", o.axis, "--section-axis",
+                "Normal of the picture's cutting plane; widest: x, y or z, where most is cut")
+             .needing("--output .png"),
+         option("position", o.position, "--section-position",
+                "Place of the cutting plane, as a share of the bounding box")
+             .needing("--output .png")
+             .in(Unit::share)
+             .within(at_least(0).at_most(1)),
+         option("width_pixels", o.width_pixels, "--picture-width",
+                "Pixels along the picture's longer side")
+             .needing("--output .png")
+             .in(Unit::pixels)
+             .within(at_least(kSmallestWidth).at_most(kLargestWidth))});
 }
 
 Image draw_cross_section(const PrismShell& shell, const TetMesh& tets,
@@ -104,7 +109,10 @@ void write_cross_section(const std::filesystem::path& path, const PrismShell& sh
         throw InvalidOption("cross-section: a section is across x, y or z");
     const SectionFrame frame = section_frame(shell);
     require_writable(path);
-    write_png(path, draw_cross_section(shell, tets, options, frame), with);
+    write_png(
+        path,
+        draw_cross_section(shell, tets, with_axis(options, shell.outer, shell.triangles), frame),
+        with);
 }
 
 } // namespace vdb_shell

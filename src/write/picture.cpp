@@ -12,6 +12,7 @@
 
 #include "write/image.h"
 #include "write/picture_scene.h"
+#include "write/plane_cut.h"
 #include "write/section_image.h"
 #include "write/shaded_picture.h"
 
@@ -54,14 +55,19 @@ struct Window {
     }
 };
 
+/// The outer surface, of a posed shell that at rest: what is chosen by it is the same in every
+/// frame of a sequence.
+const std::vector<Vec3s>& lasting_surface(const ShellFile& file)
+{
+    return file.rest.posed() ? file.rest.surface[0] : file.stack.surface(0);
+}
+
 /// A window that stays in place from frame to frame where there may be others, else a tight one.
 Window window_of(const ShellFile& file, const ViewOptions& view)
 {
     const ViewAxes axes = view_axes(view);
     const bool posed = file.rest.posed();
-    // The frame of all poses is that of the shell at rest, which is the same in every frame of a
-    // sequence.
-    const std::vector<Vec3s>& outer = posed ? file.rest.surface[0] : file.stack.surface(0);
+    const std::vector<Vec3s>& outer = lasting_surface(file);
     Window window;
     if (posed || view.turntable > 0) {
         const Ball ball = ball_of(outer);
@@ -78,6 +84,12 @@ Window window_of(const ShellFile& file, const ViewOptions& view)
         window.add({seen.x(), seen.y()});
     }
     return window;
+}
+
+PictureOptions with_axis_for(PictureOptions options, const ShellFile& file)
+{
+    options.section = with_axis(options.section, lasting_surface(file), file.stack.triangles());
+    return options;
 }
 
 Image draw(const ShellFile& file, const PictureOptions& options, const SectionFrame& section,
@@ -136,13 +148,16 @@ void write_picture(const fs::path& path, const ShellFile& file, const PictureOpt
     require_sensible(options);
     const SectionFrame section = section_frame(hull_of(file.stack));
     require_writable(path);
-    write_png(path, draw(file, options, section, window_of(file, options.view)), with);
+    write_png(path,
+              draw(file, with_axis_for(options, file), section, window_of(file, options.view)),
+              with);
 }
 
 void write_picture_pair(const fs::path& path, const ShellFile& left, const ShellFile& right,
-                        const PictureOptions& options, OutputSet* with)
+                        const PictureOptions& wanted, OutputSet* with)
 {
-    require_sensible(options);
+    require_sensible(wanted);
+    const PictureOptions options = with_axis_for(wanted, left);
     SectionFrame section = section_frame(hull_of(left.stack));
     section.all = joined(section.all, section_frame(hull_of(right.stack)).all);
     Window window = window_of(left, options.view);

@@ -169,4 +169,40 @@ std::vector<CutSegment> cut_surface(const std::vector<Vec3s>& points,
     return segments;
 }
 
+double section_area(const std::vector<Vec3s>& points, const std::vector<openvdb::Vec3I>& triangles,
+                    const CutPlane& plane)
+{
+    const std::vector<CutSegment> segments = cut_surface(points, triangles, plane);
+    double twice = 0;
+    for (const CutSegment& segment : segments) {
+        // From a corner of the section: about the origin, digits would be lost far from it.
+        const Vec2d from = segment.from - segments[0].from, to = segment.to - segments[0].from;
+        // Clockwise about the solid.
+        twice += from.y() * to.x() - from.x() * to.y();
+    }
+    return twice / 2;
+}
+
+CrossSectionOptions with_axis(CrossSectionOptions options, const std::vector<Vec3s>& points,
+                              const std::vector<openvdb::Vec3I>& triangles)
+{
+    if (options.axis != Axis::widest)
+        return options;
+    // Areas that are equal but for rounding are equal: a cube is cut across z.
+    constexpr double kMore = 1 + 1e-6;
+    const Bounds box = bounds_of(points);
+    CrossSectionOptions widest = options;
+    widest.axis = Axis::z;
+    double most = section_area(points, triangles, cut_plane(widest, box));
+    for (const Axis axis : {Axis::y, Axis::x}) {
+        options.axis = axis;
+        const double area = section_area(points, triangles, cut_plane(options, box));
+        if (area > kMore * most) {
+            widest = options;
+            most = area;
+        }
+    }
+    return widest;
+}
+
 } // namespace vdb_shell

@@ -18,6 +18,7 @@ struct CutPlane {
     int normal = 2, right = 0, up = 1;
     double offset = 0; ///< coordinate along the normal
 };
+/// Precondition: the axis is x, y or z.
 CutPlane cut_plane(const CrossSectionOptions& options, const Bounds& bounds);
 
 /// A tet's convex section: three or four corners, in order around it.
@@ -28,7 +29,8 @@ struct CutPolygon {
 };
 
 struct CutSegment {
-    openvdb::Vec2d from, to; ///< the solid lies to the left
+    openvdb::Vec2d from,
+        to; ///< the solid lies to the right (in pixels, rows from the top, to the left)
 };
 
 inline constexpr std::uint8_t kTintCount = 6;
@@ -46,5 +48,13 @@ std::vector<CutPolygon> cut_tets(const TetMesh& tets, const std::vector<std::uin
 std::vector<CutSegment> cut_surface(const std::vector<openvdb::Vec3s>& points,
                                     const std::vector<openvdb::Vec3I>& triangles,
                                     const CutPlane& plane);
+
+/// Area of the part of the plane that lies in the solid below a closed surface.
+double section_area(const std::vector<openvdb::Vec3s>& points,
+                    const std::vector<openvdb::Vec3I>& triangles, const CutPlane& plane);
+/// The same options with x, y or z instead of Axis::widest; of equal areas z, then y.
+CrossSectionOptions with_axis(CrossSectionOptions options,
+                              const std::vector<openvdb::Vec3s>& points,
+                              const std::vector<openvdb::Vec3I>& triangles);
 
 } // namespace vdb_shell

@@ -18,7 +18,7 @@ struct SectionFrame {
 SectionFrame section_frame(const PrismShell& shell);
 Bounds joined(const Bounds& a, const Bounds& b);
 
-/// What write_cross_section draws. Precondition: the axis is not Axis::view.
+/// What write_cross_section draws. Precondition: the axis is x, y or z.
 Image draw_cross_section(const PrismShell& shell, const TetMesh& tets,
                          const CrossSectionOptions& options, const SectionFrame& shown);
 

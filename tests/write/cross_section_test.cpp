@@ -7,6 +7,8 @@
 #include "write/hand_made.h"
 #include "write/read_png.h"
 
+#include "write/plane_cut.h"
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -58,6 +60,55 @@ TEST(CrossSection, KeepsTheProportionsOfTheBox)
     options.axis = Axis::x; // y to the right, z up
     write_cross_section(folder / "cut.png", made.shell, made.tets, options);
     EXPECT_EQ(read_png(folder / "cut.png").width, 400);
+}
+
+TEST(CrossSection, AreaIsThatOfTheSolid)
+{
+    const openvdb::Vec3d far{4096, -2048, 1024};
+    const auto area = [](const TriangleMesh& mesh, Axis axis, double position) {
+        CrossSectionOptions options{axis, position};
+        return section_area(mesh.points, mesh.triangles,
+                            cut_plane(options, bounds_of(mesh.points)));
+    };
+    const TriangleMesh box = test::translated(test::box({0, 0, 0}, {4, 2, 1}), far);
+    EXPECT_EQ(area(box, Axis::x, 0.5), 2.0);
+    EXPECT_EQ(area(box, Axis::y, 0.25), 4.0);
+    EXPECT_EQ(area(box, Axis::z, 0.75), 8.0);
+    // A void is no part of the solid, and a plane beside it cuts all of the box.
+    const TriangleMesh hollow = test::joined(test::box({0, 0, 0}, {4, 4, 4}),
+                                             test::reversed(test::box({1, 1, 1}, {3, 3, 3})));
+    for (const Axis axis : {Axis::x, Axis::y, Axis::z}) {
+        EXPECT_EQ(area(hollow, axis, 0.5), 12.0);
+        EXPECT_EQ(area(hollow, axis, 0.125), 16.0);
+    }
+}
+
+TEST(CrossSection, WidestIsTheAxisAcrossWhichMostOfTheSolidIsCut)
+{
+    const auto widest = [](const TriangleMesh& mesh, double position) {
+        return with_axis({Axis::widest, position}, mesh.points, mesh.triangles).axis;
+    };
+    EXPECT_EQ(widest(test::box({0, 0, 0}, {1, 2, 4}), 0.5), Axis::x);
+    EXPECT_EQ(widest(test::box({0, 0, 0}, {2, 1, 4}), 0.5), Axis::y);
+    EXPECT_EQ(widest(test::box({0, 0, 0}, {4, 2, 1}), 0.5), Axis::z);
+    EXPECT_EQ(widest(test::box({0, 0, 0}, {1, 1, 1}), 0.5), Axis::z);
+    // A plate above a thin rod: between the two a plane across z cuts the rod alone.
+    const TriangleMesh lamp = test::joined(test::box({-4, -3, 9}, {4, 3, 10}),
+                                           test::box({-0.125, -0.125, 0}, {0.125, 0.125, 8.5}));
+    EXPECT_EQ(widest(lamp, 0.5), Axis::y);
+    EXPECT_EQ(widest(lamp, 0.95), Axis::z);
+    // What somebody asks for stays.
+    const TriangleMesh box = test::box({0, 0, 0}, {4, 2, 1});
+    EXPECT_EQ(with_axis({Axis::x, 0.5}, box.points, box.triangles).axis, Axis::x);
+    EXPECT_EQ(with_axis({Axis::view, 0.5}, box.points, box.triangles).axis, Axis::view);
+
+    const TemporaryFolder folder;
+    const HandMade made = hand_made_shell(test::gridded_box({0, 0, 0}, {1, 4, 2}, 2), 0.5);
+    CrossSectionOptions options;
+    write_cross_section(folder / "widest.png", made.shell, made.tets, options);
+    options.axis = Axis::x;
+    write_cross_section(folder / "x.png", made.shell, made.tets, options);
+    EXPECT_EQ(test::read_bytes(folder / "widest.png"), test::read_bytes(folder / "x.png"));
 }
 
 TEST(CrossSection, OverlapIsRedAndNothingElseIs)

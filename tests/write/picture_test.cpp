@@ -198,6 +198,23 @@ TEST(Picture, PosedFramesAreSeenFromOnePlace)
     EXPECT_NEAR(double(covered(after)) / double(covered(before)), 0.25, 0.02);
 }
 
+TEST(Picture, PosedFramesAreCutAcrossOneAxis)
+{
+    ShellFile file = file_of(gridded_box({0, 0, 0}, {1, 4, 2}, 4), 0.5);
+    file.rest.surface = {file.stack.surface(0), file.stack.surface(1)};
+    // At rest most of it is cut across x, in this pose across y.
+    for (auto* points :
+         {&file.stack.layers[0].outer, &file.stack.layers[0].inner, &file.tets.points})
+        for (openvdb::Vec3s& p : *points)
+            p[1] *= 0.0625f;
+    PictureOptions options = in_front(PictureKind::section, 200);
+    const Picture posed = drawn(file, options);
+    options.section.axis = Axis::x;
+    EXPECT_EQ(posed.rgb, drawn(file, options).rgb);
+    options.section.axis = Axis::y;
+    EXPECT_NE(posed.rgb, drawn(file, options).rgb);
+}
+
 TEST(Picture, APairHasOneScale)
 {
     const TemporaryFolder folder;

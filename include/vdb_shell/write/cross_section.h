@@ -14,14 +14,15 @@ enum class Axis {
     x,
     y,
     z,
-    view ///< towards the viewer: of a picture in space alone
+    widest, ///< the one of the three across which the plane cuts most of the solid
+    view    ///< towards the viewer: of a picture in space alone
 };
 const NameTable<Axis>& names(Axis);
 
 struct CrossSectionOptions {
-    Axis axis = Axis::z;     ///< normal of the cutting plane
-    double position = 0.5;   ///< share of the bounding box along the axis
-    int width_pixels = 1024; ///< of the longer side of the picture
+    Axis axis = Axis::widest; ///< normal of the cutting plane
+    double position = 0.5;    ///< share of the bounding box along the axis
+    int width_pixels = 1024;  ///< of the longer side of the picture
 };
 OptionList describe(CrossSectionOptions& options);
 
