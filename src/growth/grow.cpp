@@ -69,6 +69,15 @@ Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& d
     return started;
 }
 
+/// What the user calls enough, in place of the schedule's numbers for it.
+GrowthSchedule schedule_of(const GrowOptions& options)
+{
+    GrowthSchedule schedule = options.schedule;
+    if (options.enough_fill)
+        schedule.barrier.enough_fill = schedule.multilevel.wanted_fill = *options.enough_fill;
+    return schedule;
+}
+
 /// By component, whether its inner surface has turned inside out. The tests of moves do not see
 /// that: where a component has few triangles, one move may take a vertex past all others, from one
 /// embedded surface to another, and with all tets positive on both sides.
@@ -121,12 +130,14 @@ bool take_more_care(const Connectivity& connectivity, const std::vector<std::uin
 
 GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
                            const Directions& directions, const LineLengths& stepped,
-                           const std::vector<double>& cap, const GrowOptions& options,
+                           const std::vector<double>& cap, const GrowOptions& wanted,
                            const SplitOptions& split, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "grow");
-    require_in_range(options, "growth");
-    assert(options.method != Method::raw);
+    require_in_range(wanted, "growth");
+    assert(wanted.method != Method::raw);
+    GrowOptions options = wanted;
+    options.schedule = schedule_of(wanted);
     assert(directions.inward.size() == mesh.points.size());
     assert(stepped.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);

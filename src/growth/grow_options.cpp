@@ -55,6 +55,12 @@ OptionList describe(GrowOptions& o)
              .needing("--method certified thickest")
              .in(Unit::count)
              .within(at_least(0)),
+         option("enough_fill", o.enough_fill, "--enough-fill",
+                "End growth at this fill, 0 to 1, and go on for it while rounds win something "
+                "[0.998; after a coarser surface go on for 0.9855]")
+             .needing("--method certified thickest")
+             .in(Unit::share)
+             .within(above(0).at_most(1)),
          option("min_quality", o.min_quality, "--min-quality",
                 "Mean ratio that tets should reach, at a cost in thickness; 0 asks for none")
              .needing("--method certified thickest")

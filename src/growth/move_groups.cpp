@@ -209,7 +209,7 @@ std::size_t move_groups(GrowState& s, const std::vector<GroupShare>& shares,
 {
     const GroupSchedule& schedule = s.schedule.groups;
     const double empty = 1 - fill_of(s);
-    if (empty < schedule.least_void_of_solid)
+    if (empty < schedule.least_void_of_solid || 1 - empty >= s.schedule.barrier.enough_fill)
         return 0;
     std::vector<Group> groups = groups_of(shares);
     const double void6 = empty * std::abs(volume6(s.a, s.mesh->faces));

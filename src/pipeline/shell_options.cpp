@@ -65,9 +65,12 @@ void require_wishes_possible(const ShellOptions& options)
     if (options.wanted.any() && options.grow.method == Method::raw)
         throw InvalidOption("want: bounds (--want-...) are not for the raw method, whose tets may "
                             "be inverted (--method)");
-    if (options.wanted.fill && options.side == Side::outward)
-        throw InvalidOption("want: fill (--want-fill) is a share of the solid, and a shell outside "
-                            "(--side) has no solid to fill");
+    const char* fill = options.wanted.fill        ? "want: fill (--want-fill)"
+                       : options.grow.enough_fill ? "grow: enough_fill (--enough-fill)"
+                                                  : nullptr;
+    if (fill && options.side == Side::outward)
+        throw InvalidOption(std::string(fill) + " is a share of the solid, and a shell outside "
+                                                "(--side) has no solid to fill");
 }
 
 /// What is filled lies inside of a certified shell that itself lies inside of the surface.

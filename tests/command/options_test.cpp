@@ -345,6 +345,9 @@ TEST_F(Options, ContradictoryWishesAreRefusedByNameAndLeaveTheOutputAlone)
     refused("--for thickness --taper-tet-cost 4", {"--taper-tet-cost", "--taper"});
     refused("--want-amips 5 --method raw", {"--want", "--method"});
     refused("--want-fill 0.9 --side outward", {"--want-fill", "--side"});
+    refused("--enough-fill 0.9 --side outward", {"--enough-fill", "--side"});
+    refused("--enough-fill 0.9 --method raw", {"--enough-fill", "--method"});
+    refused("--enough-fill 0", {"--enough-fill"});
     refused("--want-dihedral 1.24", {"--want-dihedral"});
     refused("--want-tets 11", {"--want-tets", "12 triangles"});
 }

@@ -386,6 +386,32 @@ TEST(Grow, CoarseningStopsWhenAsked)
     EXPECT_THROW(coarse_levels(mesh, GrowOptions{}, &soon), Cancelled);
 }
 
+TEST(Grow, EndsWhereThereIsEnough)
+{
+    const Case c = case_of(bumpy_sphere());
+    for (const Method method : {Method::certified, Method::thickest}) {
+        GrowOptions options = test::by_method(method);
+        const GrowResult all = grown(c, options);
+        options.enough_fill = 0.8;
+        const GrowResult enough = grown(c, options);
+        EXPECT_GE(fill_of(enough.shell), 0.8);
+        EXPECT_LT(fill_of(enough.shell), fill_of(all.shell));
+        EXPECT_LT(enough.report.rounds, all.report.rounds);
+        expect_sound(enough, method);
+        expect_embedded(enough.shell);
+    }
+}
+
+TEST(Grow, RefusesToFillNothingOrMoreThanTheSolid)
+{
+    GrowOptions options;
+    for (const double enough : {0.0, -0.5, 1.0001, std::nan("")}) {
+        options.enough_fill = enough;
+        EXPECT_THROW(grown(case_of(test::box(Vec3d(0), Vec3d(1))), options), InvalidOption)
+            << enough;
+    }
+}
+
 TEST(Grow, RefusesNegativeRounds)
 {
     GrowOptions options;

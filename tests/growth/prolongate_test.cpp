@@ -201,6 +201,41 @@ TEST(Prolongate, IsThickerWhenRoundsAreAskedFor)
     EXPECT_EQ(test::grown(mesh, options).report.rounds, 3U);
 }
 
+TEST_P(GrownFromCoarse, EndsWhereThereIsEnough)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    GrowOptions options;
+    options.method = GetParam();
+    options.coarse_from = 500;
+    const double by_itself = fill_of(test::grown(mesh, options).shell);
+    double last = 0;
+    for (const double enough : {0.85, 0.95, 0.99}) {
+        options.enough_fill = enough;
+        const GrowResult result = test::grown(mesh, options);
+        const double fill = fill_of(result.shell);
+        EXPECT_GE(fill, enough);
+        EXPECT_GT(fill, last);
+        last = fill;
+        test::expect_certified(one_layer(result.shell, result.split), GetParam() == Method::thickest
+                                                                          ? PrismTest::chosen_tets
+                                                                          : PrismTest::twelve_tets);
+    }
+    options.enough_fill = 0.85;
+    EXPECT_LT(fill_of(test::grown(mesh, options).shell), by_itself);
+}
+
+TEST(Prolongate, GoesOnForAsMuchAsIsAskedFor)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(4);
+    GrowOptions options;
+    options.coarse_from = 500;
+    const GrowResult brief = test::grown(mesh, options);
+    options.enough_fill = 1;
+    const GrowResult more = test::grown(mesh, options);
+    EXPECT_GT(fill_of(more.shell), fill_of(brief.shell));
+    EXPECT_GT(more.report.rounds, brief.report.rounds);
+}
+
 TEST(Prolongate, IsMostlyDoneBeforeTheFirstRoundOnTheWhole)
 {
     const TriangleMesh mesh = test::bumpy_sphere(6);

@@ -50,6 +50,11 @@ struct GrowOptions {
     /// when one wins little for what it costs, and ask only vertices that can win. Given, growth
     /// takes its time: thicker (docs/measurements/benchmarks.md).
     std::optional<int> free_rounds;
+    /// Share of the solid. Growth ends once it has filled so much, and goes on for it as long as
+    /// rounds win something; coarser surfaces are filled as far. Unset: .998 ends it, and after a
+    /// start on coarser surfaces rounds go on for .9855 under Method::certified. Without meaning
+    /// for a side that has no bound, which has no solid to fill.
+    std::optional<double> enough_fill;
     /// Bound that the mean ratio of every tet should reach (shell/quality.h), 0 or more and less
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.
@@ -118,7 +123,7 @@ struct GrowResult {
 /// triangles; one entry per vertex in all lists; cap not negative, and finite where that side has
 /// no bound (a reversed surface: shell/sides.h); method not raw. On a surface that crosses itself
 /// the result is some shell; only a certificate tells. Throws InvalidOption when free_rounds is
-/// negative or min_quality out of range, Cancelled.
+/// negative, enough_fill or min_quality out of range, Cancelled.
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,
                       const LineLengths& stepped, const std::vector<double>& cap,
                       const GrowOptions& options, const SplitOptions& split,
