@@ -10,6 +10,7 @@
 #include "growth/sweep.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace vdb_shell::growth
 {
@@ -93,7 +94,7 @@ void set_radii(GrowState& s, const Steps& steps, std::vector<std::uint8_t>& inac
 
 } // namespace
 
-void lengthen_lines(GrowState& s, const Directions& directions, double least_gain,
+void lengthen_lines(GrowState& s, const Directions& directions, const EndOfLines& end,
                     const StageProgress& progress)
 {
     Steps steps = first_steps(s);
@@ -102,6 +103,8 @@ void lengthen_lines(GrowState& s, const Directions& directions, double least_gai
     int growing = s.mesh->vertices;
     double fill = fill_of(s);
     for (int round = 0; growing > 0 && round < s.schedule.lines.most_rounds; ++round) {
+        if (fill >= end.enough_fill)
+            break;
         progress.stop_if_interrupted(0);
         set_radii(s, steps, inactive);
         separate_triangles(s, inactive, planes);
@@ -112,7 +115,7 @@ void lengthen_lines(GrowState& s, const Directions& directions, double least_gai
         const double gain = fill_of(s) - fill;
         fill += gain;
         // In the first rounds steps are too short to win much, whatever room there is.
-        if (round >= s.schedule.lines.first_rounds && gain < least_gain)
+        if (round >= s.schedule.lines.first_rounds && gain < end.least_gain)
             break;
     }
 }
@@ -126,7 +129,10 @@ void lengthen_if_useful(GrowState& s, const Directions& directions, const GrowOp
     const bool between = s.bounded && fill >= schedule.thin_start && fill <= schedule.nearly_full;
     if (!options.grow_lines || (options.free_moves && between))
         return;
-    lengthen_lines(s, directions, options.free_moves && s.bounded ? schedule.least_gain : -1.0,
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    lengthen_lines(s, directions,
+                   {options.free_moves && s.bounded ? schedule.least_gain : -1.0,
+                    s.bounded ? options.enough_fill.value_or(kNever) : kNever},
                    progress);
 }
 

@@ -9,11 +9,16 @@
 namespace vdb_shell::growth
 {
 
+/// Shares of the solid.
+struct EndOfLines {
+    double least_gain;  ///< a round that wins less is the last; negative: the last step is the end
+    double enough_fill; ///< no round begins with so much filled
+};
+
 /// Lengthens pillars along their lines: one vertex at a time, each with a step of its own that
 /// doubles after a success and halves after a failure, so that short and long edges need no common
-/// scale. Ends after a round that wins less than `least_gain`, a share of the solid, or with the
-/// last step when that is negative.
-void lengthen_lines(GrowState& s, const Directions& directions, double least_gain,
+/// scale.
+void lengthen_lines(GrowState& s, const Directions& directions, const EndOfLines& end,
                     const StageProgress& progress);
 
 /// The same unless options.grow_lines is off, or free moves follow that finish the shell sooner:

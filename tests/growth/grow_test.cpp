@@ -400,6 +400,13 @@ TEST(Grow, EndsWhereThereIsEnough)
         expect_sound(enough, method);
         expect_embedded(enough.shell);
     }
+    GrowOptions along_lines;
+    along_lines.free_moves = false;
+    const double all = fill_of(grown(c, along_lines).shell);
+    along_lines.enough_fill = 0.9 * all;
+    const double enough = fill_of(grown(c, along_lines).shell);
+    EXPECT_GE(enough, 0.9 * all);
+    EXPECT_LT(enough, all);
 }
 
 TEST(Grow, RefusesToFillNothingOrMoreThanTheSolid)
