@@ -2,9 +2,10 @@
 
 // Takes: the input. Leaves in the result: a surface that a shell can be made of, or throws. To mend
 // means to change as little as makes it usable, so the attempts go from the least change to the
-// most: a repair, which keeps all that is sound; cuts through crossings, as long as nothing goes
-// that is farther from the rest than a voxel of the wrap, and nothing is parted; and the wrap, of
-// which something always comes, but which keeps no triangle.
+// most: a repair, which keeps all that is sound; one that drops loose pieces, and one that cuts
+// through crossings, as long as nothing goes that is farther from the rest than a voxel of the
+// wrap, and nothing is parted; and the wrap, of which something always comes, but which keeps no
+// triangle.
 
 #include "pipeline/prepare_surface.h"
 
@@ -75,9 +76,21 @@ bool may_cut(const MeshCheck& check)
     return !check.self_intersections.at_least && why_not_usable(check, crossings_allowed).empty();
 }
 
-/// Why the surface that cuts have left is not the input's any more; empty if it is. A body that is
-/// stuck into another one is cut in pieces, which have to be one solid; and what a voxel of the
-/// wrap can show is not to be lost. Precondition: it is usable.
+/// What a voxel of the wrap can show is not to be lost: why the surface is not the input's any
+/// more, beginning with `what`; empty if it is. Precondition: it is usable.
+std::string what_is_lost(const ShellResult& r, const TriangleMesh& mesh, const WrapOptions& options,
+                         const std::string& what, Interrupter* interrupter)
+{
+    const double voxel = wrap_voxel_size(mesh, options);
+    const double lost = surface_distance(mesh, r.surface, voxel, interrupter).max;
+    if (lost <= voxel)
+        return {};
+    return what + " lies " + number(lost) + " from the rest, more than a voxel of a wrap, " +
+           number(voxel);
+}
+
+/// The same of cuts. A body that is stuck into another one is cut in pieces, which have to be one
+/// solid.
 std::string what_cuts_have_spoiled(const ShellResult& r, const TriangleMesh& mesh,
                                    std::size_t components, const WrapOptions& options,
                                    Interrupter* interrupter)
@@ -85,12 +98,7 @@ std::string what_cuts_have_spoiled(const ShellResult& r, const TriangleMesh& mes
     if (r.report.mesh.components.size() > components)
         return "the cuts part it into " + number(r.report.mesh.components.size(), 12) +
                " components instead of " + number(components, 12);
-    const double voxel = wrap_voxel_size(mesh, options);
-    const double lost = surface_distance(mesh, r.surface, voxel, interrupter).max;
-    if (lost > voxel)
-        return "the cuts take away what lies " + number(lost) +
-               " from the rest, more than a voxel of a wrap, " + number(voxel);
-    return {};
+    return what_is_lost(r, mesh, options, "what the cuts take away", interrupter);
 }
 
 /// Precondition: r.surface has been looked at.
@@ -114,7 +122,16 @@ void mend(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
         if (take(Mending::repair, refusal()))
             return;
     }
-    if (!how.cut_crossings && may_cut(r.report.mesh)) {
+    if (!how.drop_loose && r.report.repair->loose.count > 0) {
+        how.drop_loose = true;
+        try_repair(how);
+        std::string refused = refusal();
+        if (refused.empty())
+            refused = what_is_lost(r, mesh, options.wrap, "what is loose", interrupter);
+        if (take(Mending::drop_loose, refused))
+            return;
+    }
+    if (!how.cut_crossings && !refusal().empty() && may_cut(r.report.mesh)) {
         const std::size_t components = r.report.mesh.components.size();
         how.cut_crossings = true;
         try_repair(how);

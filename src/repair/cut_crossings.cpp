@@ -10,7 +10,6 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/triangle_pairs.h"
-#include "mesh/components.h"
 #include "mesh/surface_defects.h"
 #include "mesh/triangle_contacts.h"
 #include "repair/working_surface.h"
@@ -25,10 +24,6 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3I;
-
-// A share of the area of the whole surface. An open piece with less than that is taken for
-// something that the cut severed; closing it would leave a small body of its own beside the object.
-constexpr double kRag = 0.01;
 
 /// Marks all triangles with a corner in common with a marked one. The points are marked first and
 /// the triangles afterwards: in a single pass a new mark could spread on to later triangles, and
@@ -63,38 +58,6 @@ void note(const WorkingSurface& surface, const std::vector<char>& drop, RepairRe
     for (std::size_t t = 0; t < drop.size(); ++t)
         if (drop[t] && surface.source[t] != kNoSource)
             add_to(report.cut, surface.source[t]);
-}
-
-/// The triangles of small open pieces. A closed piece stays however small it is, since it bounds a
-/// solid. Areas are only compared with each other, so the factor of one half is left out.
-std::vector<char> find_rags(const TriangleMesh& mesh)
-{
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
-    const std::vector<std::uint32_t> component_of =
-        component_of_triangles(uses, mesh.triangles.size());
-    std::vector<double> area;
-    double all = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Vec3I& corner = mesh.triangles[t];
-        const Vec3d a(mesh.points[corner[0]]);
-        const double twice =
-            (Vec3d(mesh.points[corner[1]]) - a).cross(Vec3d(mesh.points[corner[2]]) - a).length();
-        if (component_of[t] >= area.size())
-            area.resize(component_of[t] + 1);
-        area[component_of[t]] += twice;
-        all += twice;
-    }
-    std::vector<char> open(area.size());
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        while (end < uses.size() && uses[end].edge == uses[begin].edge)
-            ++end;
-        if (end - begin == 1)
-            open[component_of[uses[begin].triangle]] = 1;
-    }
-    std::vector<char> rag(mesh.triangles.size());
-    for (std::size_t t = 0; t < rag.size(); ++t)
-        rag[t] = open[component_of[t]] && area[component_of[t]] < kRag * all;
-    return rag;
 }
 
 } // namespace
@@ -146,7 +109,8 @@ bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report,
         add_ring(surface.mesh, drop);
     note(surface, drop, report);
     drop_triangles(surface, drop);
-    drop = find_rags(surface.mesh);
+    // What the cut has severed: closing it would leave a small body of its own beside the object.
+    drop = loose_triangles(surface.mesh);
     note(surface, drop, report);
     drop_triangles(surface, drop);
     return true;

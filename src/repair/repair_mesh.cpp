@@ -55,6 +55,8 @@ void close_up(repair::WorkingSurface& surface, const RepairOptions& options, Rep
     repair::part_fans(surface, report);
     progress.stop_if_interrupted(30);
     repair::fill_holes(surface, options, report, interrupter);
+    if (repair::drop_loose_pieces(surface, options.drop_loose, report))
+        repair::fill_holes(surface, options, report, interrupter);
     turn_by_nesting(surface, report, interrupter);
     repair::move_copies_apart(surface, report, interrupter);
     // Components that touched have been moved apart, so their nesting may come out otherwise now.
@@ -117,6 +119,8 @@ OptionList describe(RepairOptions& o)
                 "Repair: remove triangles lower than this, world units; 0 is those of no area")
              .in(Unit::world_length)
              .within(at_least(0)),
+         option("drop_loose", o.drop_loose, "--drop-loose",
+                "Repair: drop small open pieces that no fill closes, as single triangles"),
          option("cut_crossings", o.cut_crossings, "--cut-crossings",
                 "Repair: cut out triangles that cross others, and close the holes"),
          option("keep_crossing_fills", o.keep_crossing_fills, "--keep-crossing-fills",
@@ -153,7 +157,8 @@ RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
 bool RepairReport::changed() const
 {
     return welded_points.count + collapsed.count + degenerate.count + slivers.count + recut.count +
-               duplicates.count + sheets.count + turned.count + cut.count + copies + holes.size() >
+               duplicates.count + sheets.count + turned.count + cut.count +
+               (loose_dropped ? loose.count : 0) + copies + holes.size() >
            0;
 }
 

@@ -83,6 +83,9 @@ std::string repair_text(const RepairReport& report)
         out << "  " << report.split_edges << " edges parted; " << report.copies
             << " copies of points, " << report.moved_points << " moved apart by at most "
             << report.largest_move << '\n';
+    add(report.loose, report.loose_dropped
+                          ? "triangles of small open pieces dropped"
+                          : "triangles of small open pieces left, which --drop-loose drops");
     add(report.cut, "triangles cut out that cross others, or stand near");
     for (const HoleFill& hole : report.holes)
         out << "  " << hole_text(hole) << '\n';
@@ -120,6 +123,8 @@ std::string repair_json(const RepairReport& report)
                             {"copies", report.copies},
                             {"moved_points", report.moved_points},
                             {"largest_move", report.largest_move},
+                            {"loose", defect_json(report.loose)},
+                            {"loose_dropped", report.loose_dropped},
                             {"cut", defect_json(report.cut)},
                             {"holes", holes},
                             {"kept_triangles", report.kept_triangles},

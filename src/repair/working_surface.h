@@ -37,6 +37,12 @@ void orient(WorkingSurface& surface, RepairReport& report);
 void part_fans(WorkingSurface& surface, RepairReport& report);
 void fill_holes(WorkingSurface& surface, const RepairOptions& options, RepairReport& report,
                 Interrupter* interrupter);
+/// Marks the triangles of open pieces of less than a hundredth of the area. A closed piece bounds a
+/// solid however small it is.
+std::vector<char> loose_triangles(const TriangleMesh& mesh);
+/// After fill_holes: counts the triangles of loose pieces, and drops them if that is wanted. True
+/// if any was dropped; then the holes that were left open are no longer in the report.
+bool drop_loose_pieces(WorkingSurface& surface, bool wanted, RepairReport& report);
 /// Triangles that cross or touch another one, or have no area.
 std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* interrupter);
 /// Drops crossing triangles, from round 1 on also those at open rims, from round 2 on with growing

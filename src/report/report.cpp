@@ -325,7 +325,7 @@ ordered_json costs_json(const std::vector<StageCost>& stages)
 
 /// Of the whole report: raised when a key comes, goes or changes its meaning
 /// (docs/schema/report.schema.json).
-constexpr int kSchema = 3;
+constexpr int kSchema = 4;
 
 /// What was read and what became of it before lines were stepped.
 void add_surface(ordered_json& json, const ShellReport& report)
@@ -397,6 +397,7 @@ const NameTable<Mending>& names(Mending)
 {
     static const NameTable<Mending> table{{"as-it-is", Mending::none},
                                           {"repair", Mending::repair},
+                                          {"drop-loose", Mending::drop_loose},
                                           {"cut-crossings", Mending::cut_crossings},
                                           {"wrap", Mending::wrap}};
     return table;

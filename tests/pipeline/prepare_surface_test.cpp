@@ -97,6 +97,27 @@ TEST(PrepareSurface, MendingCutsAwayWhatAWrapCouldNotShow)
     EXPECT_GT(result.report.repair->kept_triangles, mesh.triangles.size() * 9 / 10);
 }
 
+TEST(PrepareSurface, MendingDropsALooseTriangleThatAWrapCouldNotShow)
+{
+    ShellOptions options;
+    options.wrap.voxel_size = 0.0625;
+    TriangleMesh mesh = test::icosphere(1.0, 4);
+    const auto n = std::uint32_t(mesh.points.size());
+    for (const double height : {1.01, 1.02, 1.03})
+        mesh.points.emplace_back(Vec3s(Vec3d(0.02 * height, (height - 1) / 2, height)));
+    mesh.triangles.emplace_back(n, n + 1, n + 2);
+    const ShellResult result = mended(mesh, options);
+    EXPECT_EQ(tried(result), (Tried{Mending::none, Mending::repair, Mending::drop_loose}));
+    EXPECT_EQ(result.report.repair->kept_triangles, mesh.triangles.size() - 1);
+    // Farther than a voxel it may be part of something.
+    for (std::uint32_t i = 0; i < 3; ++i)
+        mesh.points[n + i] += Vec3s(0, 0, 0.125F);
+    const ShellResult far = mended(mesh, options);
+    EXPECT_EQ(tried(far),
+              (Tried{Mending::none, Mending::repair, Mending::drop_loose, Mending::wrap}));
+    EXPECT_THAT(far.report.mend[2].refusal, HasSubstr("what is loose lies"));
+}
+
 TEST(PrepareSurface, MendingCutsNothingThatAWrapWouldShow)
 {
     ShellOptions options;

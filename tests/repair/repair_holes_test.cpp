@@ -40,6 +40,74 @@ TEST(RepairHoles, GivesABoxItsLidBack)
     }
 }
 
+/// A triangle that stands upright, `height` high, with its lower side at (0, 0, `foot`).
+TriangleMesh flake(float foot, float height)
+{
+    TriangleMesh mesh;
+    mesh.points = {{-0.05F, 0, foot}, {0.05F, 0, foot}, {0, 0, foot + height}};
+    mesh.triangles = {Vec3I(0, 1, 2)};
+    return mesh;
+}
+
+TEST(RepairHoles, DropsATriangleThatStandsInTheWayOfAFillWhenAsked)
+{
+    const TriangleMesh open =
+        without(icosphere(1.0, 4), [](const Vec3s& p) { return p[2] > 0.85; });
+    const auto flake_at = std::uint32_t(open.triangles.size());
+    const TriangleMesh mesh = joined(open, flake(0.8F, 0.4F));
+    RepairOptions options;
+    const RepairReport left = repair_mesh(mesh, options).report;
+    EXPECT_EQ(left.loose.first, std::vector<std::uint32_t>{flake_at});
+    EXPECT_FALSE(left.loose_dropped);
+    EXPECT_EQ(left.holes.size(), 2u);
+    EXPECT_EQ(left.kept_triangles, mesh.triangles.size());
+    options.drop_loose = true;
+    const RepairResult result = repair_mesh(mesh, options);
+    expect_sound(result.report);
+    EXPECT_EQ(result.report.loose.count, 1u);
+    EXPECT_TRUE(result.report.loose_dropped);
+    EXPECT_EQ(expect_kept(mesh, result), open.triangles.size());
+    ASSERT_EQ(result.report.holes.size(), 1u) << "the flake's is gone, the other filled";
+    EXPECT_EQ(result.report.holes[0].method, FillMethod::smooth);
+    EXPECT_NE(repair_text(result.report)
+                  .find("1 triangles of small open pieces dropped: " + std::to_string(flake_at)),
+              std::string::npos);
+}
+
+TEST(RepairHoles, DropsATriangleThatHangsOnAPointWhenAsked)
+{
+    TriangleMesh mesh = icosphere(1.0, 3);
+    const auto n = std::uint32_t(mesh.points.size());
+    mesh.points.emplace_back(1.2F * mesh.points[5]);
+    mesh.points.emplace_back(1.2F * mesh.points[5] + Vec3s(0.03F, 0.02F, 0.01F));
+    mesh.triangles.emplace_back(5, n, n + 1);
+    RepairOptions options;
+    EXPECT_EQ(repair_mesh(mesh, options).report.loose.count, 1u);
+    options.drop_loose = true;
+    const RepairResult result = repair_mesh(mesh, options);
+    expect_sound(result.report);
+    EXPECT_EQ(expect_kept(mesh, result), mesh.triangles.size() - 1);
+    EXPECT_EQ(result.report.moved_points, 0u) << "there is nobody left to move from";
+}
+
+TEST(RepairHoles, DropsNoOpenPieceThatIsLargeNorAnyThatIsClosed)
+{
+    RepairOptions options;
+    options.drop_loose = true;
+    // A body of a millionth of the area, and one that a fill closes.
+    const TriangleMesh small = translated(box({0, 0, 0}, {1e-3, 1e-3, 1e-3}), {2, 0, 0});
+    const TriangleMesh bowl = translated(
+        without(icosphere(1e-2, 2), [](const Vec3s& p) { return p[2] > 0.005F; }), {0, 2, 0});
+    const TriangleMesh bodies = joined(joined(icosphere(1.0, 3), small), bowl);
+    const RepairResult result = repair_mesh(bodies, options);
+    expect_sound(result.report);
+    EXPECT_EQ(result.report.loose.count, 0u);
+    EXPECT_EQ(expect_kept(bodies, result), bodies.triangles.size());
+    // Nobody knows what it is meant to be.
+    const TriangleMesh large = joined(icosphere(1.0, 3), translated(flake(0, 6), {3, 0, 0}));
+    EXPECT_EQ(repair_mesh(large, options).report.loose.count, 0u);
+}
+
 TEST(RepairHoles, ContinuesTheCurvatureOfASphereAcrossAHole)
 {
     const TriangleMesh open =

@@ -21,6 +21,9 @@ struct RepairOptions {
     /// Triangles whose smallest height is below this are collapsed or turned away, world units.
     /// 0: triangles of exactly zero area only.
     double sliver_height = 0;
+    /// Drop loose pieces: open ones of less than a hundredth of the area that no fill closes, such
+    /// as single triangles; and try the other holes again.
+    bool drop_loose = false;
     /// Cut out triangles that cross or touch others when all else is done, and close the holes that
     /// leaves; more around them where a fill does not succeed.
     bool cut_crossings = false;
@@ -72,6 +75,8 @@ struct RepairReport {
     std::size_t split_edges = 0;         ///< edges of three or more triangles parted
     std::size_t moved_points = 0;        ///< copies (and originals) moved apart
     double largest_move = 0;             ///< world units
+    Defect<std::uint32_t> loose;         ///< triangles of loose pieces (RepairOptions::drop_loose)
+    bool loose_dropped = false;          ///< whether they are gone
     Defect<std::uint32_t> cut;      ///< triangles cut out because they or others near them cross
     std::vector<HoleFill> holes;    ///< in the order of the attempts; after cuts, some come twice
     std::size_t kept_triangles = 0; ///< input triangles in the result with their coordinates bit
@@ -93,8 +98,9 @@ struct RepairResult {
 /// solid; orients consistently; parts fans and sheets that meet in a point or an edge; closes
 /// holes; turns components outward by their nesting. Holes of one-sided pieces stay open. What it
 /// cannot mend is in `report.after`; self-intersections of the input are only touched when asked
-/// (cut_crossings). Precondition as check_mesh, else InvalidOption; also for a tolerance that is
-/// negative or not finite. Same bytes for any number of threads.
+/// (cut_crossings), and so are pieces that cannot be closed (drop_loose). Precondition as
+/// check_mesh, else InvalidOption; also for a tolerance that is negative or not finite. Same bytes
+/// for any number of threads.
 RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options = {},
                          Interrupter* interrupter = nullptr);
 

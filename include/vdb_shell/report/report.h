@@ -50,7 +50,8 @@ struct StageCost {
 enum class Mending : std::uint8_t {
     none,          ///< the surface as it is
     repair,        ///< repair_mesh
-    cut_crossings, ///< the same with RepairOptions::cut_crossings
+    drop_loose,    ///< the same with RepairOptions::drop_loose
+    cut_crossings, ///< with RepairOptions::cut_crossings too
     wrap           ///< wrap_mesh
 };
 const NameTable<Mending>& names(Mending);
