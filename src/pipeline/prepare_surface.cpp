@@ -67,6 +67,12 @@ void repair(ShellResult& r, const TriangleMesh& mesh, RepairOptions repair,
     r.report.repair = std::move(repaired.report);
 }
 
+/// Loose pieces are in the way of fills, and are no cause of edges or points that are not manifold.
+bool may_drop_loose(const RepairReport& repaired)
+{
+    return repaired.loose.count > 0 && repaired.after.manifold();
+}
+
 /// Cuts help against crossings alone. Where more are there than were counted, a wrap is sooner
 /// done.
 bool may_cut(const MeshCheck& check)
@@ -122,7 +128,7 @@ void mend(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
         if (take(Mending::repair, refusal()))
             return;
     }
-    if (!how.drop_loose && r.report.repair->loose.count > 0) {
+    if (!how.drop_loose && may_drop_loose(*r.report.repair)) {
         how.drop_loose = true;
         try_repair(how);
         std::string refused = refusal();

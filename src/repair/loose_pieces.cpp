@@ -20,13 +20,32 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// A share of the area of the whole surface. What is open and larger is taken for a part of the
-// object.
-constexpr double kLoose = 0.01;
+// Shares of the area of the whole surface. What is open and larger is taken for a part of the
+// object; and where so much is loose altogether, the object may be made of it.
+constexpr double kLoose = 0.01, kLooseTogether = 0.25;
 
 bool left_open(const HoleFill& hole)
 {
     return hole.method == FillMethod::none;
+}
+
+/// Areas are only compared with each other.
+double twice_area(const TriangleMesh& mesh, std::size_t t)
+{
+    const Vec3I& corner = mesh.triangles[t];
+    const Vec3d a(mesh.points[corner[0]]);
+    return (Vec3d(mesh.points[corner[1]]) - a).cross(Vec3d(mesh.points[corner[2]]) - a).length();
+}
+
+double share_of(const TriangleMesh& mesh, const std::vector<char>& marked)
+{
+    double all = 0, some = 0;
+    for (std::size_t t = 0; t < marked.size(); ++t) {
+        const double twice = twice_area(mesh, t);
+        all += twice;
+        some += marked[t] ? twice : 0;
+    }
+    return all > 0 ? some / all : 0;
 }
 
 /// A point that no triangle has any more is in nobody's way, and nobody need be moved from it.
@@ -47,7 +66,6 @@ void forget_unused(WorkingSurface& surface)
 
 } // namespace
 
-/// Areas are only compared with each other, so the factor of one half is left out.
 std::vector<char> loose_triangles(const TriangleMesh& mesh)
 {
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
@@ -56,10 +74,7 @@ std::vector<char> loose_triangles(const TriangleMesh& mesh)
     std::vector<double> area;
     double all = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Vec3I& corner = mesh.triangles[t];
-        const Vec3d a(mesh.points[corner[0]]);
-        const double twice =
-            (Vec3d(mesh.points[corner[1]]) - a).cross(Vec3d(mesh.points[corner[2]]) - a).length();
+        const double twice = twice_area(mesh, t);
         if (component_of[t] >= area.size())
             area.resize(component_of[t] + 1);
         area[component_of[t]] += twice;
@@ -87,6 +102,8 @@ bool drop_loose_pieces(WorkingSurface& surface, bool wanted, RepairReport& repor
     if (std::none_of(holes.begin(), holes.end(), left_open))
         return false;
     const std::vector<char> loose = loose_triangles(surface.mesh);
+    if (share_of(surface.mesh, loose) > kLooseTogether)
+        return false;
     for (std::size_t t = 0; t < loose.size(); ++t)
         if (loose[t] && surface.source[t] != kNoSource)
             add_to(report.loose, surface.source[t]);

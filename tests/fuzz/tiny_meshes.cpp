@@ -232,16 +232,20 @@ ShellOptions some_options(std::uint32_t resolution, Bytes& bytes)
     const std::uint32_t how = bytes.next();
     o.grow.method = how % 2 ? Method::thickest : Method::certified;
     o.mend = how % 8 == 6;
-    o.wrap.resolution = o.level_set.resolution;
+    // A wrap has the triangles of a tiny surface as well: of sixteen voxels it has thousands, and
+    // takes twenty seconds.
+    o.wrap.resolution = 4 + int(resolution % 3);
     const std::uint32_t side = bytes.below(8);
     o.side = side == 7 ? Side::both : side == 6 ? Side::outward : Side::inward;
+    if ((how & 32) && o.side != Side::outward)
+        o.grow.enough_fill = 0.75;
     const std::uint32_t bits = bytes.next();
     if (bits & 1)
         o.line_step.thickness = 0.125;
     // Outward a thickness makes the level set as deep as that, whatever the size of the surface.
     o.level_set.max_memory_gib = 0.04;
     if (bits & 2)
-        o.repair.emplace();
+        o.repair.emplace().drop_loose = how & 16;
     if (bits & 4)
         o.layers.layers = int(bytes.below(4));
     if (bits & 8)

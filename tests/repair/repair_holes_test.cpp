@@ -103,6 +103,11 @@ TEST(RepairHoles, DropsNoOpenPieceThatIsLargeNorAnyThatIsClosed)
     expect_sound(result.report);
     EXPECT_EQ(result.report.loose.count, 0u);
     EXPECT_EQ(expect_kept(bodies, result), bodies.triangles.size());
+    // A soup of flakes is made of them.
+    TriangleMesh soup;
+    for (int i = 0; i < 200; ++i)
+        soup = joined(soup, translated(flake(0, 0.5F), {double(i), 0, 0}));
+    EXPECT_EQ(repair_mesh(soup, options).report.loose.count, 0u);
     // Nobody knows what it is meant to be.
     const TriangleMesh large = joined(icosphere(1.0, 3), translated(flake(0, 6), {3, 0, 0}));
     EXPECT_EQ(repair_mesh(large, options).report.loose.count, 0u);

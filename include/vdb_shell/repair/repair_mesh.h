@@ -21,8 +21,8 @@ struct RepairOptions {
     /// Triangles whose smallest height is below this are collapsed or turned away, world units.
     /// 0: triangles of exactly zero area only.
     double sliver_height = 0;
-    /// Drop loose pieces: open ones of less than a hundredth of the area that no fill closes, such
-    /// as single triangles; and try the other holes again.
+    /// Drop loose pieces, such as single triangles: open ones of less than a hundredth of the area
+    /// each, and a quarter together, that no fill closes; and try the other holes again.
     bool drop_loose = false;
     /// Cut out triangles that cross or touch others when all else is done, and close the holes that
     /// leaves; more around them where a fill does not succeed.
