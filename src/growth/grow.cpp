@@ -157,6 +157,9 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     if (options.free_moves)
         relax_fully(s, started.from, std::move(started.predicted_gain), started.lines.visibility,
                     options, progress.part(started_at, relaxed_at), report);
+    // What the start left no pillar to may have room now, as the pillars around it have moved.
+    report.released += static_cast<std::size_t>(
+        release_last_pins(s, started.lines.visibility, progress.part(relaxed_at, relaxed_at)));
     Improved improved = improve(s, mesh, options, split, progress.part(relaxed_at, 100), report);
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);

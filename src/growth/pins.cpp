@@ -8,6 +8,7 @@
 #include "growth/pins.h"
 
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 #include "growth/pillars_around_pin.h"
@@ -23,14 +24,21 @@ namespace vdb_shell::growth
 namespace
 {
 
-/// The mean pillar beside v, about what it would have had without the pin.
-double longest_try(const GrowState& s, int v)
+/// Of those beside v: about what it would have had without the pin.
+double mean_pillar(const GrowState& s, int v)
 {
     double sum = 0;
     for (const int u : neighbours(*s.mesh, v))
         sum += (s.b[u] - s.a[u]).length();
-    return std::min(sum / std::max(1, neighbours(*s.mesh, v).size()),
-                    s.schedule.pins.longest * s.diagonal);
+    return sum / std::max(1, neighbours(*s.mesh, v).size());
+}
+
+double mean_edge(const GrowState& s, int v)
+{
+    double sum = 0;
+    for (const int u : neighbours(*s.mesh, v))
+        sum += (s.a[u] - s.a[v]).length();
+    return sum / std::max(1, neighbours(*s.mesh, v).size());
 }
 
 // Which of them costs least differs from pin to pin, up to .6 % of the solid (scan falconstatue).
@@ -147,24 +155,122 @@ void box_in(GrowState& s, const std::vector<double>& longest)
     s.inner_tree.refit(boxes);
 }
 
+/// Those that a pillar may be found for, in the order of their indices.
+std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& visibility)
+{
+    std::vector<int> pins;
+    for (int v = 0; v < s.mesh->vertices; ++v)
+        if (s.pinned[v] && visibility[v] > 0 && s.cap[v] > 0 && star(*s.mesh, v).size() > 0)
+            pins.push_back(v);
+    return pins;
+}
+
+// What is released changes pillars beside it, and turning one of them shortens those beside that:
+// from the vertices around a pin so far as this. There are some hundred vertices within it; where
+// there are many more, triangles crowd around one of them, and all that follows would take the
+// square of their number.
+constexpr int kReach = 4;
+constexpr std::size_t kMostWithinReach = 2000;
+
+/// The vertices within reach of v, v among them; none where there are too many.
+std::vector<int> vertices_around(const GrowState& s, int v)
+{
+    std::vector<int> all{v};
+    for (int ring = 0; ring < kReach; ++ring) {
+        const std::size_t count = all.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            for (const int u : neighbours(*s.mesh, all[i]))
+                all.push_back(u);
+            if (all.size() > 10 * kMostWithinReach)
+                return {};
+        }
+        sort_unique(all);
+        if (all.size() > kMostWithinReach)
+            return {};
+    }
+    return all;
+}
+
+/// Boxes that hold the inner triangles of these vertices wherever they go: no farther than
+/// `longest` from their outer points, or than they are.
+void widen_boxes(GrowState& s, const std::vector<int>& vertices, double longest)
+{
+    for (const int u : vertices) {
+        const double wider = std::max(longest, (s.b[u] - s.a[u]).length()) + 2 * s.rounding;
+        const FloatBox box = float_box_of({s.a[u], s.a[u], s.a[u]}, (1 + kRadiusMargin) * wider);
+        for (const FaceCorner& at : star(*s.mesh, u))
+            s.inner_tree.widen(static_cast<std::size_t>(at.face), box);
+    }
+}
+
+/// Gives v a pillar while those beside it have none, and then these theirs: a vertex that hardly
+/// sees its triangles has to come before those that are easily served. False, with nothing changed,
+/// where one of them has none in the end. Precondition: BoxTree::index_parents.
+bool release_before_others(GrowState& s, int v, const std::vector<double>& visibility)
+{
+    const std::vector<int> around = vertices_around(s, v);
+    if (around.empty())
+        return false;
+    const double longest = std::min(mean_edge(s, v), s.schedule.pins.longest * s.diagonal);
+    widen_boxes(s, around, longest);
+    std::vector<PillarEnd> before;
+    for (const int u : around)
+        before.push_back({u, s.b[u]});
+    const auto put = [&s](int u, const Vec3d& end) {
+        s.b[u] = end;
+        s.pinned[u] = end == s.a[u];
+    };
+    std::vector<PillarEnd> beside;
+    for (const int u : neighbours(*s.mesh, v))
+        if (!s.pinned[u])
+            beside.push_back({u, s.b[u]});
+    std::stable_sort(beside.begin(), beside.end(), [&](const PillarEnd& p, const PillarEnd& q) {
+        return visibility[p.vertex] < visibility[q.vertex];
+    });
+    for (const PillarEnd& p : beside)
+        put(p.vertex, s.a[p.vertex]);
+    // Each release tests all that it changes, so what is valid in the end is so without these pins.
+    const auto released = [&](int u, double length) {
+        return release(s, u, length, visibility, PillarsBesidePin::turned);
+    };
+    if (released(v, longest) && std::all_of(beside.begin(), beside.end(), [&](const PillarEnd& p) {
+            return released(p.vertex, std::max(longest, (p.end - s.a[p.vertex]).length()));
+        }))
+        return true;
+    for (const PillarEnd& p : before)
+        put(p.vertex, p.end);
+    return false;
+}
+
 } // namespace
 
 int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBesidePin beside)
 {
-    // One after another in index order, never in parallel: each release changes what the next sees.
-    std::vector<int> candidates;
-    std::vector<double> longest(s.b.size(), 0.0);
-    for (int v = 0; v < s.mesh->vertices; ++v)
-        if (s.pinned[v] && visibility[v] > 0 && s.cap[v] > 0 && star(*s.mesh, v).size() > 0) {
-            candidates.push_back(v);
-            longest[v] = longest_try(s, v);
-        }
-    if (candidates.empty())
+    // One after another, never in parallel: each release changes what the next sees.
+    const std::vector<int> pins = pins_to_release(s, visibility);
+    if (pins.empty())
         return 0;
+    std::vector<double> longest(s.b.size(), 0.0);
+    for (const int v : pins)
+        longest[v] = std::min(mean_pillar(s, v), s.schedule.pins.longest * s.diagonal);
     box_in(s, longest);
     int released = 0;
-    for (const int v : candidates)
+    for (const int v : pins)
         released += release(s, v, longest[v], visibility, beside);
+    return released;
+}
+
+int release_last_pins(GrowState& s, const std::vector<double>& visibility,
+                      const StageProgress& progress)
+{
+    int released = release_pins(s, visibility, PillarsBesidePin::turned);
+    const std::vector<int> pins = pins_to_release(s, visibility);
+    if (!pins.empty())
+        s.inner_tree.index_parents();
+    for (const int v : pins) {
+        progress.stop_if_interrupted(100);
+        released += release_before_others(s, v, visibility);
+    }
     return released;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/stage_progress.h"
 #include "growth/grow_state.h"
 
 namespace vdb_shell::growth
@@ -15,5 +16,10 @@ enum class PillarsBesidePin { kept, shortened, turned };
 /// order of the indices, each vertex tried a bounded number of times. Returns how many were
 /// released. Precondition: the inner tree has been built; its boxes are left as this needs them.
 int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBesidePin beside);
+
+/// The same when growth is done and nothing is left to wait for: pillars beside a pin are also
+/// taken away, until it has one, and given back shorter.
+int release_last_pins(GrowState& s, const std::vector<double>& visibility,
+                      const StageProgress& progress);
 
 } // namespace vdb_shell::growth

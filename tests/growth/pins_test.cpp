@@ -206,4 +206,31 @@ TEST(Pins, AreReleasedBesideAPillarThatHardlySeesItsTriangles)
     expect_released(test::patch_of_hammer());
 }
 
+/// A vertex that hardly sees its triangles, among pillars that cannot give way any more.
+TEST(Pins, AreReleasedBeforeVerticesThatAreServedMoreEasily)
+{
+    const test::PinnedPatch patch = test::patch_of_nefertiti();
+    const TriangleMesh& surface = patch.surface;
+    const growth::Connectivity mesh = growth::connect(surface.points.size(), surface.triangles);
+    growth::GrowState s = with_pinned(mesh, surface, patch.inner, patch.pinned);
+    Directions directions = directions_along(surface, pseudo_normals(surface));
+    growth::mend_directions(surface, directions, s.schedule.initial);
+    EXPECT_EQ(violations(s), 0);
+    const std::vector<openvdb::Vec3d> before = s.b;
+    EXPECT_EQ(growth::release_pins(s, directions.visibility, growth::PillarsBesidePin::turned), 0);
+    EXPECT_EQ(s.b, before) << "a release that fails changes nothing";
+    const StageProgress progress(nullptr, "test");
+    EXPECT_EQ(growth::release_last_pins(s, directions.visibility, progress), 1);
+    EXPECT_EQ(std::count(s.pinned.begin(), s.pinned.end(), 1), 0);
+    for (std::size_t u = 0; u < s.b.size(); ++u)
+        EXPECT_NE(s.b[u], s.a[u]) << u;
+    expect_valid(s);
+    // Without a direction in which it sees all of them there is nothing to be done.
+    growth::GrowState blind = with_pinned(mesh, surface, patch.inner, patch.pinned);
+    EXPECT_EQ(violations(blind), 0);
+    directions.visibility[patch.pinned] = 0;
+    EXPECT_EQ(growth::release_last_pins(blind, directions.visibility, progress), 0);
+    EXPECT_EQ(blind.b, before);
+}
+
 } // namespace
