@@ -214,6 +214,7 @@ bool release_before_others(GrowState& s, int v, const std::vector<double>& visib
     const double longest = std::min(mean_edge(s, v), s.schedule.pins.longest * s.diagonal);
     widen_boxes(s, around, longest);
     std::vector<PillarEnd> before;
+    before.reserve(around.size());
     for (const int u : around)
         before.push_back({u, s.b[u]});
     const auto put = [&s](int u, const Vec3d& end) {
