@@ -12,9 +12,8 @@ import argparse
 import pathlib
 import statistics
 
-from halves import read_halves
 from runs import build, replace_tables, table
-from scan_figures import find
+from scan_figures import meshes_of
 
 RUNS = {"0.9": ["--enough-fill", "0.9"], "0.95": ["--enough-fill", "0.95"], "0.97": ["--enough-fill", "0.97"],
         "0.98": ["--enough-fill", "0.98"], "default": [], "0.99": ["--enough-fill", "0.99"],
@@ -22,8 +21,8 @@ RUNS = {"0.9": ["--enough-fill", "0.9"], "0.95": ["--enough-fill", "0.95"], "0.9
         "thickest": ["--thickest"]}
 
 
-def measured(command, mesh):
-    rows = {name: build(command, mesh, flags) for name, flags in RUNS.items()}
+def measured(command, mesh, default):
+    rows = {name: build(command, mesh, flags) if flags else default for name, flags in RUNS.items()}
     for name, row in rows.items():
         if row["exit"] != 0 or not row["certified"]:
             raise SystemExit(f"{mesh}, {name}: {row['message'] or 'not certified'}")
@@ -49,21 +48,17 @@ def main():
                         default=pathlib.Path(__file__).parent.parent / "measurements/scan_meshes.txt")
     parser.add_argument("--smallest", type=int, default=15000)
     options = parser.parse_args()
-    lines, by_half, missing = [], {}, []
-    for name, half in read_halves(options.meshes).items():
-        mesh = find(name, options.folders)
-        if mesh is None:
-            missing.append(name)
+    lines, by_half = [], {}
+    meshes, note = meshes_of(options)
+    for name, half, mesh in meshes:
+        default = build(options.command, mesh, [])
+        if default.get("triangles", options.smallest) < options.smallest:
             continue
-        first = build(options.command, mesh, ["--enough-fill", "0.01", "--samples", "0"])
-        if first["triangles"] < options.smallest:
-            continue
-        rows = measured(options.command, mesh)
+        rows = measured(options.command, mesh, default)
         by_half.setdefault(half, []).append(rows)
-        lines.append([name, half, f"{first['triangles']:,}", *(cell(rows, run) for run in RUNS)])
+        lines.append([name, half, f"{default['triangles']:,}", *(cell(rows, run) for run in RUNS)])
         print(" ".join(lines[-1]), flush=True)
     lines += [[f"mean of {half}", half, "", *(mean_cell(rows, run) for run in RUNS)] for half, rows in by_half.items()]
-    note = [f"Not there when this was measured: {', '.join(missing)}.", ""] if missing else []
     replace_tables(options.page, note + table(["mesh", "half", "triangles", *RUNS], lines))
 
 

@@ -43,6 +43,14 @@ def find(name, folders):
     return next((place for place in places if place.exists()), None)
 
 
+def meshes_of(options):
+    """[(name, half, mesh)] of the list's that are in the folders, and lines for the page that name the others."""
+    found = [(name, half, find(name, options.folders)) for name, half in read_halves(options.meshes).items()]
+    missing = [name for name, _, mesh in found if mesh is None]
+    note = [f"Not there when this was measured: {', '.join(missing)}.", ""] if missing else []
+    return [entry for entry in found if entry[2] is not None], note
+
+
 def tetgen_seconds(mesh):
     """Processor and wall time of tetgen -pY on the same surface; nothing where it is not installed or fails."""
     if not shutil.which("tetgen"):
@@ -114,18 +122,14 @@ def main():
             "time / TetGen -pY", "wall time / TetGen -pY"]
     if options.before:
         head += ["fill before", "pins before", "time / before"]
-    lines, missing, by_half = [], [], {}
-    for name, half in read_halves(options.meshes).items():
-        mesh = find(name, options.folders)
-        if mesh is None:
-            missing.append(name)
-            continue
+    lines, by_half = [], {}
+    meshes, note = meshes_of(options)
+    for name, half, mesh in meshes:
         row = row_of(mesh, options.command, options.before, options.wall, options.flags)
         by_half.setdefault(half, []).append(row)
         lines.append(cells(name, half, row))
         print(" ".join(lines[-1]), flush=True)
     lines += [means(half, rows) for half, rows in by_half.items()]
-    note = [f"Not there when this was measured: {', '.join(missing)}.", ""] if missing else []
     replace_tables(options.page, note + table(head, lines))
 
 

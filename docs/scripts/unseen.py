@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `build --mend` makes of whole collections of public meshes, for docs/measurements/unseen.md.
 
-    unseen.py COMMAND docs/measurements/unseen.md PREFIX=FOLDER ... [--skip NAME ...]
+    unseen.py COMMAND docs/measurements/unseen.md PREFIX=FOLDER ...
 
 Takes each .obj, .off and .ply in the folders; PREFIX comes before its name in the table and in unseen_meshes.txt, for names
-of other collections are the same. Each build is one run on one thread without a file; where one takes more than ten minutes,
-or fails, the table says so.
+of other collections are the same. Each build is one run on one thread without a file; where one fails the table says so.
 """
 import argparse
 import pathlib
@@ -38,14 +37,11 @@ def main():
     parser.add_argument("command")
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("folders", nargs="+")
-    parser.add_argument("--skip", nargs="*", default=[])
     a = parser.parse_args()
     rows, made = [], []
     for prefix, folder in (word.split("=", 1) for word in a.folders):
         for mesh in sorted(path for end in ("obj", "off", "ply") for path in pathlib.Path(folder).glob(f"*.{end}")):
             name = prefix + mesh.stem
-            if name in a.skip:
-                continue
             done = build(a.command, mesh, ["--mend", "--samples", "0"], figures)
             made += [done] if done["exit"] == 0 else []
             rows.append(row(name, done))

@@ -18,6 +18,7 @@
 #include "command/file_commands.h"
 #include "command/pose_command.h"
 #include "command/posed_surface.h"
+#include "mesh/triangle_area.h"
 
 #include <openvdb/openvdb.h>
 
@@ -30,23 +31,11 @@ namespace vdb_shell::command
 namespace
 {
 
-using openvdb::Vec3d;
-
 /// What costs are proportional to. Voxels of the surface are its area over the square of a voxel's
 /// edge, those of the solid its volume over the cube; `more_layers` counts those after the first.
 struct Size {
     double triangles = 0, surface_voxels = 0, solid_voxels = 0, more_layers = 0;
 };
-
-double area_of(const TriangleMesh& mesh)
-{
-    double sum = 0;
-    for (const openvdb::Vec3I& t : mesh.triangles) {
-        const Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
-        sum += 0.5 * (b - a).cross(c - a).length();
-    }
-    return sum;
-}
 
 /// After resampling.
 double triangles_of(const ShellOptions& shell, const TriangleMesh& mesh, double area)
@@ -138,7 +127,7 @@ Size size_of(const TriangleMesh& surface, double voxel, std::size_t layers)
     size.more_layers = double(layers) - 1;
     if (voxel > 0) {
         const double volume = std::abs(signed_volume(surface.points, surface.triangles));
-        size.surface_voxels = area_of(surface) / (voxel * voxel);
+        size.surface_voxels = surface_area(surface.points, surface.triangles) / (voxel * voxel);
         size.solid_voxels = volume / (voxel * voxel * voxel);
     }
     return size;
@@ -177,7 +166,8 @@ CallCost estimate_build(const BuildArguments& arguments)
     Size size = size_of(read.mesh, voxel, std::size_t(std::max(shell.layers.layers, 1)));
     // The voxels are those of the surface as it is read: resampling changes the number of its
     // triangles, and hardly its area and volume.
-    size.triangles = triangles_of(shell, read.mesh, area_of(read.mesh));
+    size.triangles =
+        triangles_of(shell, read.mesh, surface_area(read.mesh.points, read.mesh.triangles));
     CallCost cost;
     cost.file = arguments.mesh.string();
     cost.triangles = size.triangles;

@@ -102,9 +102,8 @@ void lengthen_lines(GrowState& s, const Directions& directions, const EndOfLines
     std::vector<std::uint8_t> inactive(s.b.size());
     int growing = s.mesh->vertices;
     double fill = fill_of(s);
-    for (int round = 0; growing > 0 && round < s.schedule.lines.most_rounds; ++round) {
-        if (fill >= end.enough_fill)
-            break;
+    const int most_rounds = s.schedule.lines.most_rounds;
+    for (int round = 0; growing > 0 && fill < end.enough_fill && round < most_rounds; ++round) {
         progress.stop_if_interrupted(0);
         set_radii(s, steps, inactive);
         separate_triangles(s, inactive, planes);

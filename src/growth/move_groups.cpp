@@ -208,8 +208,8 @@ std::size_t move_groups(GrowState& s, const std::vector<GroupShare>& shares,
                         const StageProgress& progress)
 {
     const GroupSchedule& schedule = s.schedule.groups;
-    const double empty = 1 - fill_of(s);
-    if (empty < schedule.least_void_of_solid || 1 - empty >= s.schedule.barrier.enough_fill)
+    const double fill = fill_of(s), empty = 1 - fill;
+    if (empty < schedule.least_void_of_solid || fill >= s.schedule.barrier.enough_fill)
         return 0;
     std::vector<Group> groups = groups_of(shares);
     const double void6 = empty * std::abs(volume6(s.a, s.mesh->faces));

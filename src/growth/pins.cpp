@@ -12,6 +12,7 @@
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 #include "growth/pillars_around_pin.h"
+#include "growth/trust_radius.h"
 
 #include <algorithm>
 #include <array>
@@ -30,14 +31,6 @@ double mean_pillar(const GrowState& s, int v)
     double sum = 0;
     for (const int u : neighbours(*s.mesh, v))
         sum += (s.b[u] - s.a[u]).length();
-    return sum / std::max(1, neighbours(*s.mesh, v).size());
-}
-
-double mean_edge(const GrowState& s, int v)
-{
-    double sum = 0;
-    for (const int u : neighbours(*s.mesh, v))
-        sum += (s.a[u] - s.a[v]).length();
     return sum / std::max(1, neighbours(*s.mesh, v).size());
 }
 
@@ -211,7 +204,8 @@ bool release_before_others(GrowState& s, int v, const std::vector<double>& visib
     const std::vector<int> around = vertices_around(s, v);
     if (around.empty())
         return false;
-    const double longest = std::min(mean_edge(s, v), s.schedule.pins.longest * s.diagonal);
+    const double longest =
+        std::min(mean_edge(*s.mesh, s.a, v), s.schedule.pins.longest * s.diagonal);
     widen_boxes(s, around, longest);
     std::vector<PillarEnd> before;
     before.reserve(around.size());

@@ -128,23 +128,22 @@ void mend(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
         if (take(Mending::repair, refusal()))
             return;
     }
-    if (!how.drop_loose && may_drop_loose(*r.report.repair)) {
-        how.drop_loose = true;
+    // Repairs that take something away; `lost`: why that is too much.
+    const auto try_more = [&](Mending tried, bool RepairOptions::*more, const auto& lost) {
+        how.*more = true;
         try_repair(how);
-        std::string refused = refusal();
-        if (refused.empty())
-            refused = what_is_lost(r, mesh, options.wrap, "what is loose", interrupter);
-        if (take(Mending::drop_loose, refused))
-            return;
-    }
+        const std::string refused = refusal();
+        return take(tried, refused.empty() ? lost() : refused);
+    };
+    if (!how.drop_loose && may_drop_loose(*r.report.repair) &&
+        try_more(Mending::drop_loose, &RepairOptions::drop_loose,
+                 [&] { return what_is_lost(r, mesh, options.wrap, "what is loose", interrupter); }))
+        return;
     if (!how.cut_crossings && !refusal().empty() && may_cut(r.report.mesh)) {
         const std::size_t components = r.report.mesh.components.size();
-        how.cut_crossings = true;
-        try_repair(how);
-        std::string refused = refusal();
-        if (refused.empty())
-            refused = what_cuts_have_spoiled(r, mesh, components, options.wrap, interrupter);
-        if (take(Mending::cut_crossings, refused))
+        if (try_more(Mending::cut_crossings, &RepairOptions::cut_crossings, [&] {
+                return what_cuts_have_spoiled(r, mesh, components, options.wrap, interrupter);
+            }))
             return;
     }
     wrap(r, mesh, options.wrap, interrupter);

@@ -39,27 +39,6 @@ void add_ring(const TriangleMesh& mesh, std::vector<char>& marked)
             marked[t] |= points[mesh.triangles[t][k]];
 }
 
-/// The uses come sorted by edge, so those of one edge stand together; a single one is a rim.
-void mark_rims(const TriangleMesh& mesh, std::vector<char>& marked)
-{
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        while (end < uses.size() && uses[end].edge == uses[begin].edge)
-            ++end;
-        if (end - begin == 1)
-            marked[uses[begin].triangle] = 1;
-    }
-}
-
-/// Fills and other triangles that a step has made have no number in the input, so they are not
-/// reported.
-void note(const WorkingSurface& surface, const std::vector<char>& drop, RepairReport& report)
-{
-    for (std::size_t t = 0; t < drop.size(); ++t)
-        if (drop[t] && surface.source[t] != kNoSource)
-            add_to(report.cut, surface.source[t]);
-}
-
 } // namespace
 
 /// Triangles that cross or touch another one. The exact test is defined for triangles with an area
@@ -93,6 +72,17 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* inte
     return {crossing.begin(), crossing.end()};
 }
 
+void mark_rims(const std::vector<EdgeUse>& uses, std::vector<char>& marked)
+{
+    // The uses of one edge stand together; a single one is a rim.
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (end < uses.size() && uses[end].edge == uses[begin].edge)
+            ++end;
+        if (end - begin == 1)
+            marked[uses[begin].triangle] = 1;
+    }
+}
+
 bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report,
                    Interrupter* interrupter)
 {
@@ -100,18 +90,18 @@ bool cut_crossings(WorkingSurface& surface, int round, RepairReport& report,
     // A rim that the last round has left belongs to a hole for which no fill was found. It needs
     // more room as well.
     if (round > 0)
-        mark_rims(surface.mesh, drop);
+        mark_rims(sorted_edge_uses(surface.mesh.triangles), drop);
     if (std::find(drop.begin(), drop.end(), char(1)) == drop.end())
         return false;
     // No ring in the first two rounds, one in the third, two in the fourth and so on: a wider cut
     // leaves a fill more room, but also less of the shape.
     for (int ring = 0; ring + 1 < round; ++ring)
         add_ring(surface.mesh, drop);
-    note(surface, drop, report);
+    add_sources(report.cut, surface, drop);
     drop_triangles(surface, drop);
     // What the cut has severed: closing it would leave a small body of its own beside the object.
     drop = loose_triangles(surface.mesh);
-    note(surface, drop, report);
+    add_sources(report.cut, surface, drop);
     drop_triangles(surface, drop);
     return true;
 }

@@ -7,7 +7,7 @@
 // so they are dropped on request only, and every triangle is counted.
 
 #include "mesh/components.h"
-#include "mesh/surface_defects.h"
+#include "mesh/triangle_area.h"
 #include "repair/working_surface.h"
 
 #include <algorithm>
@@ -17,7 +17,6 @@ namespace vdb_shell::repair
 namespace
 {
 
-using openvdb::Vec3d;
 using openvdb::Vec3I;
 
 // Shares of the area of the whole surface. What is open and larger is taken for a part of the
@@ -29,23 +28,12 @@ bool left_open(const HoleFill& hole)
     return hole.method == FillMethod::none;
 }
 
-/// Areas are only compared with each other.
-double twice_area(const TriangleMesh& mesh, std::size_t t)
+double area_of(const TriangleMesh& mesh, const std::vector<char>& marked)
 {
-    const Vec3I& corner = mesh.triangles[t];
-    const Vec3d a(mesh.points[corner[0]]);
-    return (Vec3d(mesh.points[corner[1]]) - a).cross(Vec3d(mesh.points[corner[2]]) - a).length();
-}
-
-double share_of(const TriangleMesh& mesh, const std::vector<char>& marked)
-{
-    double all = 0, some = 0;
-    for (std::size_t t = 0; t < marked.size(); ++t) {
-        const double twice = twice_area(mesh, t);
-        all += twice;
-        some += marked[t] ? twice : 0;
-    }
-    return all > 0 ? some / all : 0;
+    double area = 0;
+    for (std::size_t t = 0; t < marked.size(); ++t)
+        area += marked[t] ? triangle_area(mesh.points, mesh.triangles[t]) : 0;
+    return area;
 }
 
 /// A point that no triangle has any more is in nobody's way, and nobody need be moved from it.
@@ -71,25 +59,23 @@ std::vector<char> loose_triangles(const TriangleMesh& mesh)
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
     const std::vector<std::uint32_t> component_of =
         component_of_triangles(uses, mesh.triangles.size());
+    std::vector<char> at_rim(mesh.triangles.size());
+    mark_rims(uses, at_rim);
     std::vector<double> area;
-    double all = 0;
+    std::vector<char> open;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const double twice = twice_area(mesh, t);
-        if (component_of[t] >= area.size())
-            area.resize(component_of[t] + 1);
-        area[component_of[t]] += twice;
-        all += twice;
+        const std::size_t piece = component_of[t];
+        if (piece >= area.size()) {
+            area.resize(piece + 1);
+            open.resize(piece + 1);
+        }
+        area[piece] += triangle_area(mesh.points, mesh.triangles[t]);
+        open[piece] |= at_rim[t];
     }
-    std::vector<char> open(area.size());
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        while (end < uses.size() && uses[end].edge == uses[begin].edge)
-            ++end;
-        if (end - begin == 1)
-            open[component_of[uses[begin].triangle]] = 1;
-    }
+    const double most = kLoose * surface_area(mesh.points, mesh.triangles);
     std::vector<char> loose(mesh.triangles.size());
     for (std::size_t t = 0; t < loose.size(); ++t)
-        loose[t] = open[component_of[t]] && area[component_of[t]] < kLoose * all;
+        loose[t] = open[component_of[t]] && area[component_of[t]] < most;
     return loose;
 }
 
@@ -102,11 +88,10 @@ bool drop_loose_pieces(WorkingSurface& surface, bool wanted, RepairReport& repor
     if (std::none_of(holes.begin(), holes.end(), left_open))
         return false;
     const std::vector<char> loose = loose_triangles(surface.mesh);
-    if (share_of(surface.mesh, loose) > kLooseTogether)
+    if (area_of(surface.mesh, loose) >
+        kLooseTogether * surface_area(surface.mesh.points, surface.mesh.triangles))
         return false;
-    for (std::size_t t = 0; t < loose.size(); ++t)
-        if (loose[t] && surface.source[t] != kNoSource)
-            add_to(report.loose, surface.source[t]);
+    add_sources(report.loose, surface, loose);
     if (!wanted || std::find(loose.begin(), loose.end(), char(1)) == loose.end())
         return false;
     drop_triangles(surface, loose);

@@ -141,9 +141,7 @@ void drop_sheets(WorkingSurface& surface, const StageProgress& progress, RepairR
         const std::vector<char> drop = find_sheets(surface.mesh);
         if (std::find(drop.begin(), drop.end(), char(1)) == drop.end())
             return;
-        for (std::size_t t = 0; t < drop.size(); ++t)
-            if (drop[t] && surface.source[t] != kNoSource)
-                add_to(report.sheets, surface.source[t]);
+        add_sources(report.sheets, surface, drop);
         drop_triangles(surface, drop);
     }
 }

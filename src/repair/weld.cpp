@@ -88,6 +88,14 @@ void drop_triangles(WorkingSurface& surface, const std::vector<char>& drop)
     surface.source.resize(kept);
 }
 
+void add_sources(Defect<std::uint32_t>& defect, const WorkingSurface& surface,
+                 const std::vector<char>& marked)
+{
+    for (std::size_t t = 0; t < marked.size(); ++t)
+        if (marked[t] && surface.source[t] != kNoSource)
+            add_to(defect, surface.source[t]);
+}
+
 void weld_points(WorkingSurface& surface, double tolerance, RepairReport& report)
 {
     const std::vector<openvdb::Vec3s>& points = surface.mesh.points;

@@ -22,6 +22,12 @@ struct WorkingSurface {
 
 /// Drops the marked triangles.
 void drop_triangles(WorkingSurface& surface, const std::vector<char>& drop);
+/// Reports the marked triangles by their numbers in the input. Fills and others that a step has
+/// made have none, so they are not reported.
+void add_sources(Defect<std::uint32_t>& defect, const WorkingSurface& surface,
+                 const std::vector<char>& marked);
+/// Marks the triangles at open rims. Precondition: uses sorted by edge.
+void mark_rims(const std::vector<EdgeUse>& uses, std::vector<char>& marked);
 
 // The steps, in order. Each adds what it did to the report.
 

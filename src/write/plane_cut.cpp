@@ -191,18 +191,17 @@ CrossSectionOptions with_axis(CrossSectionOptions options, const std::vector<Vec
     // Areas that are equal but for rounding are equal: a cube is cut across z.
     constexpr double kMore = 1 + 1e-6;
     const Bounds box = bounds_of(points);
-    CrossSectionOptions widest = options;
-    widest.axis = Axis::z;
-    double most = section_area(points, triangles, cut_plane(widest, box));
-    for (const Axis axis : {Axis::y, Axis::x}) {
-        options.axis = axis;
-        const double area = section_area(points, triangles, cut_plane(options, box));
-        if (area > kMore * most) {
-            widest = options;
+    const auto area_across = [&](Axis axis) {
+        return section_area(points, triangles, cut_plane({axis, options.position}, box));
+    };
+    options.axis = Axis::z;
+    double most = area_across(Axis::z);
+    for (const Axis axis : {Axis::y, Axis::x})
+        if (const double area = area_across(axis); area > kMore * most) {
+            options.axis = axis;
             most = area;
         }
-    }
-    return widest;
+    return options;
 }
 
 } // namespace vdb_shell

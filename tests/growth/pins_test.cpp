@@ -175,14 +175,20 @@ TEST(Pins, AreReleasedByShorteningThePillarsThatLeaveNoDirection)
     }
 }
 
+Directions directions_of(const TriangleMesh& surface)
+{
+    Directions directions = directions_along(surface, pseudo_normals(surface));
+    growth::mend_directions(surface, directions, GrowthSchedule{}.initial);
+    return directions;
+}
+
 /// No pin is left, nothing around it meets anything, and no pillar has become longer.
 void expect_released(const test::PinnedPatch& patch)
 {
     const TriangleMesh& surface = patch.surface;
     const growth::Connectivity mesh = growth::connect(surface.points.size(), surface.triangles);
     growth::GrowState s = with_pinned(mesh, surface, patch.inner, patch.pinned);
-    Directions directions = directions_along(surface, pseudo_normals(surface));
-    growth::mend_directions(surface, directions, s.schedule.initial);
+    const Directions directions = directions_of(surface);
     const std::vector<openvdb::Vec3d> before = s.b;
     EXPECT_EQ(violations(s), 0);
     EXPECT_EQ(growth::release_pins(s, directions.visibility, growth::PillarsBesidePin::kept), 0);
@@ -213,8 +219,7 @@ TEST(Pins, AreReleasedBeforeVerticesThatAreServedMoreEasily)
     const TriangleMesh& surface = patch.surface;
     const growth::Connectivity mesh = growth::connect(surface.points.size(), surface.triangles);
     growth::GrowState s = with_pinned(mesh, surface, patch.inner, patch.pinned);
-    Directions directions = directions_along(surface, pseudo_normals(surface));
-    growth::mend_directions(surface, directions, s.schedule.initial);
+    Directions directions = directions_of(surface);
     EXPECT_EQ(violations(s), 0);
     const std::vector<openvdb::Vec3d> before = s.b;
     EXPECT_EQ(growth::release_pins(s, directions.visibility, growth::PillarsBesidePin::turned), 0);
