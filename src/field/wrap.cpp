@@ -17,6 +17,7 @@
 #include "mesh/equal_points.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
+#include "vdb_shell/resample/remesh.h"
 
 #include <algorithm>
 #include <array>
@@ -40,17 +41,31 @@ constexpr double kMostWrapVoxels = 1e3;
 // The field takes some ten voxels for each voxel of area, so 4096^2 voxels of area are 170 million
 // of them.
 constexpr double kMostVoxelsAlong = 4096.0;
+// Few triangles say little about what they are of: a gap or a slot between them may be finer than
+// their edges. Nor does a wrap that nobody has asked to be fine take minutes.
+constexpr double kFewestVoxelsUnasked = 128.0, kMostVoxelsUnasked = 256.0;
 constexpr double kDistanceSpacingVoxels = 1.0;
 /// The flags under which there may be a wrap.
 constexpr const char* kWraps = "--wrap or --mend";
 
-double voxel_size_for(const Bounds& bounds, const WrapOptions& options)
+/// A wrap is to show what the triangles show: a voxel as long as their edges does.
+double voxels_along(const TriangleMesh& mesh, double longest, const WrapOptions& options)
+{
+    if (options.resolution)
+        return *options.resolution;
+    const double edge = triangle_figures(mesh).mean_edge;
+    return edge > 0 ? std::clamp(longest / edge, kFewestVoxelsUnasked, kMostVoxelsUnasked)
+                    : kFewestVoxelsUnasked;
+}
+
+double voxel_size_for(const TriangleMesh& mesh, const Bounds& bounds, const WrapOptions& options)
 {
     const Vec3d size = bounds.high - bounds.low;
     const double longest = std::max({size[0], size[1], size[2]});
     if (!(longest > 0 && std::isfinite(longest)))
         fail<GeometryError>("wrap: the mesh's longest side is ", longest, ", must be positive");
-    const double voxel = options.voxel_size.value_or(longest / options.resolution);
+    const double voxel =
+        options.voxel_size ? *options.voxel_size : longest / voxels_along(mesh, longest, options);
     // The range of the options bounds the resolution only, not what a voxel size comes to for this
     // mesh.
     if (longest / voxel > kMostVoxelsAlong)
@@ -138,7 +153,8 @@ OptionList describe(WrapOptions& o)
              .in(Unit::world_length)
              .within(above(0)),
          option("resolution", o.resolution, "--wrap-resolution",
-                "Voxels of the wrap along the longest side of the bounding box")
+                "Voxels of the wrap along the longest side of the bounding box; unset: a voxel is "
+                "as long as the mesh's mean edge, within 128 to 256 of them")
              .needing(kWraps)
              .in(Unit::voxels)
              .within(at_least(1).at_most(kMostVoxelsAlong))
@@ -160,7 +176,7 @@ OptionList describe(WrapOptions& o)
 
 double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options)
 {
-    return voxel_size_for(bounds_of(mesh.points), options);
+    return voxel_size_for(mesh, bounds_of(mesh.points), options);
 }
 
 WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Interrupter* interrupter)
@@ -173,7 +189,7 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     const Bounds bounds = bounds_of(mesh.points);
     const Vec3d centre = 0.5 * (bounds.low + bounds.high);
     WrapResult result;
-    const double voxel = result.report.voxel_size = voxel_size_for(bounds, options);
+    const double voxel = result.report.voxel_size = voxel_size_for(mesh, bounds, options);
 
     const auto field =
         field_of(in_voxels(mesh, centre, voxel), 0.5 / voxel * (bounds.high - bounds.low), options,

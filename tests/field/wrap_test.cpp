@@ -249,6 +249,32 @@ TEST(Wrap, OneTriangleAndOneNeedleAreEnough)
     sound_wrap({{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}}, {});
 }
 
+TEST(Wrap, UnaskedAVoxelIsAsLongAsTheMeanEdgeWithinBounds)
+{
+    const TriangleMesh ball = icosphere(1.0, 3);
+    double edges = 0;
+    for (const openvdb::Vec3I& t : ball.triangles)
+        for (int k = 0; k < 3; ++k)
+            edges += (ball.points[t[k]] - ball.points[t[(k + 1) % 3]]).length();
+    const double mean = edges / (3.0 * double(ball.triangles.size()));
+    // Two balls so far apart that so many edges make up the length of both.
+    const auto voxels = [&](double edges_along) {
+        const double apart = edges_along * mean - 2.0;
+        const double voxel =
+            wrap_voxel_size(joined(ball, translated(ball, Vec3d(apart, 0, 0))), {});
+        return (apart + 2.0) / voxel;
+    };
+    EXPECT_NEAR(voxels(50), 128, 1e-3);
+    EXPECT_NEAR(voxels(200), 200, 1e-3);
+    EXPECT_NEAR(voxels(900), 256, 1e-3);
+    WrapOptions asked;
+    asked.resolution = 40;
+    EXPECT_NEAR(wrap_voxel_size(ball, asked), 2.0 / 40, 1e-6);
+    // An edge of no length is no measure.
+    const TriangleMesh spike{{{0, 0, 0}, {1, 0, 0}}, {{0, 0, 0}}};
+    EXPECT_NEAR(wrap_voxel_size(spike, {}), 1.0 / 128, 1e-6);
+}
+
 TEST(Wrap, MicronsAreAsGoodAsMetres)
 {
     TriangleMesh small = icosphere(1.0, 3);

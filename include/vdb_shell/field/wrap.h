@@ -18,8 +18,9 @@ struct WrapOptions {
     bool wanted = false;
     /// Edge length of a voxel of the wrap's field, world units. Unset: from `resolution`.
     std::optional<double> voxel_size;
-    /// Voxels along the longest side of the bounding box.
-    int resolution = 128;
+    /// Voxels along the longest side of the bounding box. Unset: as many as make a voxel as long
+    /// as the triangles' edges are in the mean, but no fewer than 128 and no more than 256.
+    std::optional<int> resolution;
     /// How far the surface may be moved for the sake of fewer triangles, in voxels.
     double adaptivity = 0.5;
     /// Half the thickness that sheets are given, in voxels, at least 0.9: with less a sheet could
