@@ -78,14 +78,17 @@ public:
         for (int round = 0; !pieces_.empty() && !stop_.wanted(); ++round) {
             build_tree();
             const Crowd found = sampled_crowd();
-            if (round > 0 && 2 * found.near > before)
+            const bool in_vain = round > 0 && 2 * found.near > before;
+            // Layers are looked for among whole items, from the beginning: that has to pay.
+            if (in_vain && found.near > kWorthHalving * double(pieces_.size()))
                 return LayeredPairs<Piece>(whole_items(), wanted_, stop_).list(keep, pairs);
             before = found.near_crowded;
-            const bool last = round == kMostRounds || pieces_.size() > most_pieces_ / 4 ||
-                              (round > 0 && found.near < kWorthHalving * double(pieces_.size()));
+            const bool last = round == kMostRounds || in_vain ||
+                              (round > 0 && found.near_crowded < kWorthHalving * found.crowded);
             crowded_.assign(pieces_.size(), 0);
             near_.assign(last ? 0 : pieces_.size(), {});
             for_each_index(near_.size(), [&](std::size_t p) { look_around(p); });
+            give_up_if_too_many();
             if (!list_round(keep, most, pairs))
                 return false;
             halve_crowded();
@@ -109,10 +112,12 @@ private:
     /// How many pairs of pieces are near each other, by samples.
     struct Crowd {
         double near, near_crowded; ///< of all pieces, and of those that have a crowd around them
+        double crowded;            ///< how many these are
     };
     Crowd sampled_crowd() const
     {
-        const std::size_t step = (pieces_.size() + kSamples - 1) / kSamples;
+        // Odd, as the four quarters of a piece stand in a row.
+        const std::size_t step = ((pieces_.size() + kSamples - 1) / kSamples) | 1U;
         std::vector<std::size_t> near((pieces_.size() + step - 1) / step);
         for_each_index(
             near.size(),
@@ -120,10 +125,11 @@ private:
                 for_each_near(s * step, [&](std::uint32_t) { return ++near[s], !stop_.wanted(); });
             },
             1);
-        Crowd crowd{0, 0};
+        Crowd crowd{0, 0, 0};
         for (const std::size_t n : near) {
             crowd.near += double(step * n);
             crowd.near_crowded += n > kCrowd ? double(step * n) : 0;
+            crowd.crowded += n > kCrowd ? double(step) : 0;
         }
         return crowd;
     }
@@ -171,6 +177,19 @@ private:
         crowded_[p] = near.size() > most;
         if (crowded_[p])
             std::vector<std::uint32_t>().swap(near);
+    }
+
+    std::size_t quarters_of_crowded() const
+    {
+        return 4 * std::size_t(std::count(crowded_.begin(), crowded_.end(), 1));
+    }
+    /// Where the quarters of crowded pieces would be too many, none is taken for crowded.
+    void give_up_if_too_many()
+    {
+        if (quarters_of_crowded() <= most_pieces_)
+            return;
+        std::fill(crowded_.begin(), crowded_.end(), 0);
+        near_.clear();
     }
 
     /// The pairs of the pieces that are not crowded; false if there are more than are wanted.
@@ -245,6 +264,8 @@ private:
     {
         std::vector<Piece> next;
         std::vector<std::uint32_t> whole_of_next;
+        next.reserve(quarters_of_crowded());
+        whole_of_next.reserve(next.capacity());
         for (std::size_t p = 0; p < pieces_.size(); ++p) {
             if (!crowded_[p])
                 continue;
