@@ -103,8 +103,9 @@ private:
     // Others near a piece from which on it pays to quarter it: four new pieces cost some 7 us, and
     // save three quarters of the others, at 20 ns each (8,000 needles, GCC 12).
     static constexpr double kWorthHalving = 512;
-    // Twenty rounds divide lengths by a million. A piece takes some 250 bytes, so these half a GiB;
-    // both bounds only limit what is spent before all pairs that are left are given.
+    // Twenty rounds divide lengths by a million. A piece takes some 250 bytes, so these half a GiB,
+    // and four of each item, where that is more, a KiB an item; both bounds only limit what is
+    // spent before all pairs that are left are given.
     static constexpr int kMostRounds = 20;
     static constexpr std::size_t kMostPieces = std::size_t(1) << 21;
     static constexpr std::size_t kSamples = 256;

@@ -58,23 +58,6 @@ double voxels_along(const TriangleMesh& mesh, double longest, const WrapOptions&
                     : kFewestVoxelsUnasked;
 }
 
-double voxel_size_for(const TriangleMesh& mesh, const Bounds& bounds, const WrapOptions& options)
-{
-    const Vec3d size = bounds.high - bounds.low;
-    const double longest = std::max({size[0], size[1], size[2]});
-    if (!(longest > 0 && std::isfinite(longest)))
-        fail<GeometryError>("wrap: the mesh's longest side is ", longest, ", must be positive");
-    const double voxel =
-        options.voxel_size ? *options.voxel_size : longest / voxels_along(mesh, longest, options);
-    // The range of the options bounds the resolution only, not what a voxel size comes to for this
-    // mesh.
-    if (longest / voxel > kMostVoxelsAlong)
-        fail<InvalidOption>("wrap: voxel size ", voxel, " gives ", longest / voxel,
-                            " voxels along the longest side ", longest, ", over the limit ",
-                            kMostVoxelsAlong);
-    return voxel;
-}
-
 /// The first of those that are the same and turned the same way. A winding number would count each
 /// copy, and see a solid far around thousands of them.
 std::vector<openvdb::Vec3I> without_repeats(const TriangleMesh& mesh)
@@ -176,7 +159,20 @@ OptionList describe(WrapOptions& o)
 
 double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options)
 {
-    return voxel_size_for(mesh, bounds_of(mesh.points), options);
+    const Bounds bounds = bounds_of(mesh.points);
+    const Vec3d size = bounds.high - bounds.low;
+    const double longest = std::max({size[0], size[1], size[2]});
+    if (!(longest > 0 && std::isfinite(longest)))
+        fail<GeometryError>("wrap: the mesh's longest side is ", longest, ", must be positive");
+    const double voxel =
+        options.voxel_size ? *options.voxel_size : longest / voxels_along(mesh, longest, options);
+    // The range of the options bounds the resolution only, not what a voxel size comes to for this
+    // mesh.
+    if (longest / voxel > kMostVoxelsAlong)
+        fail<InvalidOption>("wrap: voxel size ", voxel, " gives ", longest / voxel,
+                            " voxels along the longest side ", longest, ", over the limit ",
+                            kMostVoxelsAlong);
+    return voxel;
 }
 
 WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Interrupter* interrupter)
@@ -189,7 +185,7 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     const Bounds bounds = bounds_of(mesh.points);
     const Vec3d centre = 0.5 * (bounds.low + bounds.high);
     WrapResult result;
-    const double voxel = result.report.voxel_size = voxel_size_for(mesh, bounds, options);
+    const double voxel = result.report.voxel_size = wrap_voxel_size(mesh, options);
 
     const auto field =
         field_of(in_voxels(mesh, centre, voxel), 0.5 / voxel * (bounds.high - bounds.low), options,
