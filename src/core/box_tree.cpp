@@ -34,29 +34,6 @@ struct BoxTree::Item {
     int box;
 };
 
-bool FloatBox::meets_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, double limit) const
-{
-    // The test of slabs (Kay and Kajiya, "Ray Tracing Complex Scenes", 1986). A difference and a
-    // quotient of doubles have a relative error of about 2e-16 together, so the factor is far above
-    // what can turn a hit into a miss; the absolute term serves rays that begin on the box, where
-    // both ends are about 0.
-    constexpr double kAboveRounding = 1 + 1e-9, kLeast = 1e-300;
-    double from = 0, to = limit;
-    for (int k = 0; k < 3; ++k) {
-        const auto low = double(lo[k]), high = double(hi[k]);
-        if (d[k] == 0) {
-            // A ray along this slab stays in it or out of it. Dividing by 0 would give no number
-            // where it runs in the slab's own boundary.
-            if (p[k] < low || p[k] > high)
-                return false;
-            continue;
-        }
-        const double a = (low - p[k]) / d[k], b = (high - p[k]) / d[k];
-        from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
-    }
-    return from <= to * kAboveRounding + kLeast;
-}
-
 void BoxTree::build(std::vector<FloatBox> boxes)
 {
     const std::size_t count = boxes.size();
@@ -241,12 +218,6 @@ void BoxTree::fit_nodes()
             lane == 0 ? void(around[i] = box) : around[i].add(box);
         }
     }
-}
-
-FourBoxes FourBoxes::none()
-{
-    constexpr float kFar = std::numeric_limits<float>::infinity();
-    return {{four(kFar), four(kFar), four(kFar)}, {four(-kFar), four(-kFar), four(-kFar)}};
 }
 
 void BoxTree::Near::add(const FloatBox& box, int item)

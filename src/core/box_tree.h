@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/four_floats.h"
+#include "core/box_ray.h"
+#include "core/float_box.h"
 
 #include <openvdb/Types.h>
 
@@ -14,61 +15,7 @@
 namespace vdb_shell
 {
 
-/// A closed box; the fourth lane is always within.
-struct FloatBox {
-    FourFloats lo, hi;
-
-    static FloatBox around(const openvdb::Vec3s& p)
-    {
-        const FourFloats at{p[0], p[1], p[2], 0};
-        return {at, at};
-    }
-    void add(const openvdb::Vec3s& p) { add(around(p)); }
-    void add(const FloatBox& o) { lo = least_of(lo, o.lo), hi = most_of(hi, o.hi); }
-    bool overlaps(const FloatBox& o) const
-    {
-        using TwoWords __attribute__((vector_size(16))) = long long;
-        const auto within = (TwoWords)((lo <= o.hi) & (o.lo <= hi));
-        return (within[0] & within[1]) == -1;
-    }
-    bool contains(const openvdb::Vec3s& p) const { return overlaps(around(p)); }
-    /// Whether p + t d, 0 <= t <= limit, may meet it: never no where it does.
-    bool meets_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, double limit) const;
-};
-
-/// Four boxes, by axis.
-struct FourBoxes {
-    std::array<FourFloats, 3> lo, hi;
-
-    /// Four that overlap nothing.
-    static FourBoxes none();
-    static FourBoxes same(const FloatBox& box)
-    {
-        return {{four(box.lo[0]), four(box.lo[1]), four(box.lo[2])},
-                {four(box.hi[0]), four(box.hi[1]), four(box.hi[2])}};
-    }
-    void set(std::size_t lane, const FloatBox& box)
-    {
-        for (std::size_t k = 0; k < 3; ++k)
-            lo[k][lane] = box.lo[k], hi[k][lane] = box.hi[k];
-    }
-    FloatBox get(std::size_t lane) const
-    {
-        FloatBox box{};
-        for (std::size_t k = 0; k < 3; ++k)
-            box.lo[k] = lo[k][lane], box.hi[k] = hi[k][lane];
-        return box;
-    }
-    /// A bit for each that overlaps the other's.
-    unsigned overlaps(const FourBoxes& o) const
-    {
-        auto within = (lo[0] <= o.hi[0]) & (o.lo[0] <= hi[0]);
-        for (std::size_t k = 1; k < 3; ++k)
-            within &= (lo[k] <= o.hi[k]) & (o.lo[k] <= hi[k]);
-        return bits_of(within);
-    }
-};
-
+inline thread_local long visited_nodes = 0, visited_items = 0, visited_inside = 0;
 /// A tree over boxes that may be rebuilt every round, and is queried in parallel: for a box, a ray,
 /// or all boxes of a group at a time. Same order of what is found for any number of threads.
 class BoxTree
@@ -137,28 +84,34 @@ public:
         return found;
     }
 
-    /// Calls visit(i) for the boxes the ray p + t d, 0 <= t <= limit, may meet; visit may lower
-    /// limit.
+    /// Calls visit(i) for the boxes the ray p + t d, 0 <= t <= limit, may meet, those that it comes
+    /// to first about first; visit may lower limit.
     template <class Visit>
     void for_each_on_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, const double& limit,
                          Visit&& visit) const
     {
-        descend([&](std::size_t, const FourBoxes& boxes) { return met_by_ray(boxes, p, d, limit); },
-                [&](std::size_t at) {
-                    visit(item_[at]);
-                    return true;
-                });
+        for_each_on_ray_while(p, d, limit, [&](int i) {
+            visit(i);
+            return true;
+        });
     }
-    /// The same but for boxes that carry one of these marks, until visit(i) returns false.
-    /// Precondition: mark().
+    /// The same until visit(i) returns false.
+    template <class Visit>
+    void for_each_on_ray_while(const openvdb::Vec3d& p, const openvdb::Vec3d& d,
+                               const double& limit, Visit&& visit) const
+    {
+        descend_along(
+            BoxRay(p, d), limit, [](std::size_t, unsigned met) { return met; },
+            [&](std::size_t at) { return visit(item_[at]); });
+    }
+    /// The same but for boxes that carry one of these marks. Precondition: mark().
     template <class Visit>
     void for_each_on_ray_without(const Marks& marks, const openvdb::Vec3d& p,
                                  const openvdb::Vec3d& d, double limit, Visit&& visit) const
     {
-        descend(
-            [&](std::size_t node, const FourBoxes& boxes) {
-                return without(marks, node, met_by_ray(boxes, p, d, limit));
-            },
+        descend_along(
+            BoxRay(p, d), limit,
+            [&](std::size_t node, unsigned met) { return without(marks, node, met); },
             [&](std::size_t at) { return visit(item_[at]); });
     }
 
@@ -271,6 +224,50 @@ private:
         }
     }
 
+    /// The same along a ray, nearer nodes first: what visit finds in them lowers the limit before
+    /// those behind are looked at. left(node, met) may take bits away from those that are met.
+    template <class Left, class Visit>
+    void descend_along(const BoxRay& ray, const double& limit, const Left& left,
+                       Visit&& visit) const
+    {
+        if (nodes_.empty())
+            return;
+        struct Waiting {
+            std::size_t node;
+            double entry;
+        };
+        std::array<Waiting, kStack> stack;
+        std::size_t top = 0;
+        stack[top++] = {0, 0.0};
+        std::array<double, kWide> entry;
+        while (top > 0) {
+            const Waiting at = stack[--top];
+            if (at.entry > BoxRay::no_less(limit))
+                continue;
+            const Node& n = nodes_[at.node];
+            ++visited_nodes;
+            unsigned met =
+                left(at.node, ray.meets(n.box, limit, entry) & ((1U << n.children) - 1U));
+            const std::size_t first = top;
+            for (; met != 0; met &= met - 1) {
+                const auto lane = std::size_t(__builtin_ctz(met));
+                const auto child = static_cast<std::size_t>(n.child[lane]);
+                if (n.leaf) {
+                    ++visited_items;
+                    visited_inside += entry[lane] == 0;
+                    if (entry[lane] <= BoxRay::no_less(limit) && !visit(child))
+                        return;
+                    continue;
+                }
+                // The nearest is on top of the stack.
+                std::size_t place = top++;
+                for (; place > first && stack[place - 1].entry < entry[lane]; --place)
+                    stack[place] = stack[place - 1];
+                stack[place] = {child, entry[lane]};
+            }
+        }
+    }
+
     /// Of the lanes of a node that are met those without these marks.
     unsigned without(const Marks& marks, std::size_t node, unsigned met) const
     {
@@ -282,15 +279,6 @@ private:
         }
         return met;
     }
-    static unsigned met_by_ray(const FourBoxes& boxes, const openvdb::Vec3d& p,
-                               const openvdb::Vec3d& d, double limit)
-    {
-        unsigned met = 0;
-        for (std::size_t lane = 0; lane < kWide; ++lane)
-            met |= unsigned(boxes.get(lane).meets_ray(p, d, limit)) << lane;
-        return met;
-    }
-
     std::vector<int> item_;       ///< in the order of the leaves
     std::vector<FloatBox> boxes_; ///< of the items, in that order
     std::vector<Node> nodes_;     ///< each before its children

@@ -20,6 +20,7 @@
 #include "growth/pins.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
+#include "mesh/curve_order.h"
 #include "mesh/exact_volume.h"
 #include "mesh/surface_defects.h"
 #include "vdb_shell/options/option.h"
@@ -42,29 +43,40 @@ struct Started {
     std::vector<double> predicted_gain; ///< RelaxOptions::predicted_gain
 };
 
-bool begins_on_levels(const GrowStart& start)
-{
-    return start.from == GrowFrom::levels && !start.levels.empty();
-}
+/// What growth is given, in the order that it goes through the mesh in.
+struct Ordered {
+    const TriangleMesh& mesh;
+    const Directions& directions;
+    const std::vector<double>& stepped;
+    const std::vector<Vec3s>& inner; ///< GrowStart::inner
+    const GrowStart& start;          ///< but for the inner points
+    const MeshOrder& order;
 
-Started start_growth(GrowState& s, const TriangleMesh& mesh, const Directions& directions,
-                     const LineLengths& stepped, const GrowStart& start, const GrowOptions& options,
+    bool begins_on_levels() const
+    {
+        return start.from == GrowFrom::levels && !start.levels.empty();
+    }
+};
+
+Started start_growth(GrowState& s, const Ordered& given, const GrowOptions& options,
                      const StageProgress& progress, GrowReport& report)
 {
-    const bool on_levels = begins_on_levels(start);
+    const bool on_levels = given.begins_on_levels();
     // Smoothing pays where the start is along the lines, not where they are only fallen back on.
-    Started started{
-        StartedFrom::lines, prepare_directions(mesh, directions, options, !on_levels), {}};
+    Started started{StartedFrom::lines,
+                    prepare_directions(given.mesh, given.directions, options, !on_levels),
+                    {}};
     if (on_levels) {
         started.from = StartedFrom::prolonged;
-        started.predicted_gain = start_from_levels(s, mesh, started.lines, stepped.length,
-                                                   start.levels, options, progress, report);
-    } else if (start.from == GrowFrom::shell) {
-        const Pillars given = pillars_to(mesh, start.inner, std::move(started.lines));
-        mend_prolonged(s, given.lines, given.length, progress);
-        started.lines = pillars_to(mesh, shell_of(mesh, s).inner, given.lines).lines;
+        started.predicted_gain =
+            start_from_levels(s, given.mesh, started.lines, given.stepped, given.start.levels,
+                              given.order, options, progress, report);
+    } else if (given.start.from == GrowFrom::shell) {
+        const Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
+        mend_prolonged(s, pillars.lines, pillars.length, progress);
+        started.lines = pillars_to(given.mesh, shell_of(given.mesh, s).inner, pillars.lines).lines;
     } else {
-        start_from_lines(s, started.lines, stepped.length, options, progress);
+        start_from_lines(s, started.lines, given.stepped, options, progress);
     }
     return started;
 }
@@ -126,28 +138,20 @@ bool take_more_care(const Connectivity& connectivity, const std::vector<std::uin
     return true;
 }
 
-} // namespace
-
-GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
-                           const Directions& directions, const LineLengths& stepped,
-                           const std::vector<double>& cap, const GrowOptions& wanted,
-                           const SplitOptions& split, Interrupter* interrupter)
+/// The shell, in the order that the mesh is given in.
+GrowResult grow_in_order(const Ordered& given, const std::vector<double>& cap,
+                         const GrowOptions& options, const SplitOptions& split,
+                         Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "grow");
-    require_in_range(wanted, "growth");
-    assert(wanted.method != Method::raw);
-    GrowOptions options = wanted;
-    options.schedule = schedule_of(wanted);
-    assert(directions.inward.size() == mesh.points.size());
-    assert(stepped.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
+    const TriangleMesh& mesh = given.mesh;
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     GrowState s = make_state(connectivity, mesh.points, cap, options.schedule);
     GrowResult result;
     GrowReport& report = result.report;
     // Percent. From levels on it is mostly the start that takes time, else the rounds.
-    const double started_at = begins_on_levels(start) ? 60 : 20, relaxed_at = 90;
-    Started started = start_growth(s, mesh, directions, stepped, start, options,
-                                   progress.part(0, started_at), report);
+    const double started_at = given.begins_on_levels() ? 60 : 20, relaxed_at = 90;
+    Started started = start_growth(s, given, options, progress.part(0, started_at), report);
     report.released += static_cast<std::size_t>(
         release_pins(s, started.lines.visibility, PillarsBesidePin::turned));
     // A prolonged shell has left the lines.
@@ -160,7 +164,8 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     // What the start left no pillar to may have room now, as the pillars around it have moved.
     report.released += static_cast<std::size_t>(
         release_last_pins(s, started.lines.visibility, progress.part(relaxed_at, relaxed_at)));
-    Improved improved = improve(s, mesh, options, split, progress.part(relaxed_at, 100), report);
+    Improved improved =
+        improve(s, mesh, given.order, options, split, progress.part(relaxed_at, 100), report);
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
@@ -174,7 +179,36 @@ GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
     std::vector<double> bound = cap;
     if (!take_more_care(connectivity, turned, careful, bound))
         return result;
-    return grow_shell_from(start, mesh, directions, stepped, bound, careful, split, interrupter);
+    return grow_in_order(given, bound, careful, split, interrupter);
+}
+
+} // namespace
+
+GrowResult grow_shell_from(const GrowStart& start, const TriangleMesh& mesh,
+                           const Directions& directions, const LineLengths& stepped,
+                           const std::vector<double>& cap, const GrowOptions& wanted,
+                           const SplitOptions& split, Interrupter* interrupter)
+{
+    require_in_range(wanted, "growth");
+    assert(wanted.method != Method::raw);
+    assert(directions.inward.size() == mesh.points.size());
+    assert(stepped.length.size() == mesh.points.size() && cap.size() == mesh.points.size());
+    GrowOptions options = wanted;
+    options.schedule = schedule_of(wanted);
+    const MeshOrder order = curve_order(mesh);
+    if (order.own())
+        return grow_in_order({mesh, directions, stepped.length, start.inner, start, order}, cap,
+                             options, split, interrupter);
+    const auto by_vertex = [&](const auto& values) { return values_at(values, order.vertices); };
+    const TriangleMesh ordered = in_order(mesh, order);
+    const Directions lines{by_vertex(directions.inward), by_vertex(directions.visibility)};
+    const std::vector<double> lengths = by_vertex(stepped.length);
+    const std::vector<Vec3s> inner = start.inner.empty() ? start.inner : by_vertex(start.inner);
+    GrowResult result = grow_in_order({ordered, lines, lengths, inner, start, order},
+                                      by_vertex(cap), options, split, interrupter);
+    result.shell = shell_out_of_order(result.shell, order);
+    result.split.order = out_of_order(result.split.order, order.triangles);
+    return result;
 }
 
 GrowResult grow_shell(const TriangleMesh& mesh, const Directions& directions,

@@ -102,6 +102,21 @@ PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s)
     return shell;
 }
 
+PrismShell shell_out_of_order(const PrismShell& shell, const MeshOrder& order)
+{
+    PrismShell before;
+    before.outer = out_of_order(shell.outer, order.vertices);
+    before.inner = out_of_order(shell.inner, order.vertices);
+    if (!shell.stop.empty())
+        before.stop = out_of_order(shell.stop, order.vertices);
+    before.triangles = out_of_order(shell.triangles, order.triangles);
+    for_each_index(before.triangles.size(), [&](std::size_t t) {
+        for (int k = 0; k < 3; ++k)
+            before.triangles[t][k] = order.vertices[before.triangles[t][k]];
+    });
+    return before;
+}
+
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
 {
     if (p.empty())

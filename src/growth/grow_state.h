@@ -7,6 +7,7 @@
 #include "growth/connectivity.h"
 #include "growth/predicates.h"
 #include "growth/prism.h"
+#include "mesh/curve_order.h"
 #include "vdb_shell/growth/schedule.h"
 #include "vdb_shell/shell/prism_shell.h"
 
@@ -109,6 +110,8 @@ inline CornerIds inner_ids(const GrowState& s, int f)
 
 /// The shell as it is between two rounds, without reasons for its stops.
 PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s);
+/// The shell of a mesh that was put in order, as that of the mesh before.
+PrismShell shell_out_of_order(const PrismShell& shell, const MeshOrder& order);
 
 /// Six times the signed volume enclosed.
 double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);

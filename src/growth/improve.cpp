@@ -26,15 +26,26 @@ bool may_turn_diagonals(const GrowState& s, const GrowOptions& options, const Sp
     return options.flips && (!s.twelve || split.rule == SplitRule::length_descending);
 }
 
+/// Rules go by the indices that vertices have in the user's mesh.
+PrismSplit split_by_rule(const PrismShell& shell, const MeshOrder& order, const SplitOptions& split)
+{
+    if (order.own())
+        return split_prisms(shell, split);
+    PrismSplit by_rule = split_prisms(shell_out_of_order(shell, order), split);
+    by_rule.order = values_at(by_rule.order, order.triangles);
+    return by_rule;
+}
+
 /// Settles the diagonals. Gives back the ripples of the user's rule: inconsistencies that it could
 /// not resolve.
-std::size_t choose_diagonals(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
-                             const SplitOptions& split, GrowReport& report)
+std::size_t choose_diagonals(GrowState& s, const TriangleMesh& mesh, const MeshOrder& order,
+                             const GrowOptions& options, const SplitOptions& split,
+                             GrowReport& report)
 {
     PrismSplit by_rule;
     if (s.twelve) {
         // The rule looks at lengths, which moves have changed since the last time.
-        by_rule = split_prisms(shell_of(mesh, s), split);
+        by_rule = split_by_rule(shell_of(mesh, s), order, split);
         for (std::size_t f = 0; f < by_rule.order.size(); ++f)
             s.order[f] = static_cast<std::uint8_t>(order_index(by_rule.order[f]));
     }
@@ -65,12 +76,13 @@ PrismSplit split_of(const GrowState& s, std::size_t ripples)
 
 } // namespace
 
-Improved improve(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
-                 const SplitOptions& split, const StageProgress& progress, GrowReport& report)
+Improved improve(GrowState& s, const TriangleMesh& mesh, const MeshOrder& order,
+                 const GrowOptions& options, const SplitOptions& split,
+                 const StageProgress& progress, GrowReport& report)
 {
     Improved improved;
     std::size_t ripples = 0;
-    const auto choose = [&] { ripples = choose_diagonals(s, mesh, options, split, report); };
+    const auto choose = [&] { ripples = choose_diagonals(s, mesh, order, options, split, report); };
     const auto probe = [&] { improved.stop = probe_stops(s); };
     if (s.twelve && !(options.min_quality > 0)) {
         // With all twelve tets tested the stops do not depend on the diagonals.

@@ -17,8 +17,9 @@ struct Improved {
 };
 
 /// Chooses the diagonals, moves vertices for better tets where options.min_quality asks for that,
-/// and finds what holds each vertex back. Adds to the report.
-Improved improve(GrowState& s, const TriangleMesh& mesh, const GrowOptions& options,
-                 const SplitOptions& split, const StageProgress& progress, GrowReport& report);
+/// and finds what holds each vertex back. Adds to the report. `order`: that of the mesh.
+Improved improve(GrowState& s, const TriangleMesh& mesh, const MeshOrder& order,
+                 const GrowOptions& options, const SplitOptions& split,
+                 const StageProgress& progress, GrowReport& report);
 
 } // namespace vdb_shell::growth

@@ -247,11 +247,12 @@ bool inner_triangle_clear(const GrowState& s, int f)
 {
     const InnerTriangle triangle(s, f);
     const FloatBox box = float_box_of(triangle.corners());
-    // The walk through a tree cannot be ended early; once a contact is found the tests are skipped.
     bool clear = true;
-    s.inner_tree.for_each_overlap(
-        box, [&](int g) { clear = clear && (g == f || !triangle.meets_inner(g)); });
-    s.outer_tree.for_each_overlap(box, [&](int g) { clear = clear && !triangle.meets_outer(g); });
+    s.inner_tree.for_each_overlap_while(
+        box, [&](int g) { return clear = g == f || !triangle.meets_inner(g); });
+    if (clear)
+        s.outer_tree.for_each_overlap_while(
+            box, [&](int g) { return clear = !triangle.meets_outer(g); });
     return clear;
 }
 

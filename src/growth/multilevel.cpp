@@ -18,9 +18,11 @@
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "growth/relax_options.h"
+#include "mesh/curve_order.h"
 #include "vdb_shell/mesh/normals.h"
 #include "vdb_shell/resample/coarsen.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -47,23 +49,9 @@ Directions lines_of_level(const TriangleMesh& mesh, const GrowOptions& options, 
 std::vector<std::vector<std::uint32_t>> vertices_of(const std::vector<Coarsened>& levels)
 {
     std::vector<std::vector<std::uint32_t>> from;
-    for (const Coarsened& level : levels) {
-        from.push_back(level.from);
-        if (from.size() > 1)
-            for (std::uint32_t& v : from.back())
-                v = from[from.size() - 2][v];
-    }
+    for (const Coarsened& level : levels)
+        from.push_back(from.empty() ? level.from : values_at(from.back(), level.from));
     return from;
-}
-
-std::vector<double> at_vertices(const std::vector<double>& all,
-                                const std::vector<std::uint32_t>& vertices)
-{
-    std::vector<double> some;
-    some.reserve(vertices.size());
-    for (const std::uint32_t v : vertices)
-        some.push_back(all[v]);
-    return some;
 }
 
 /// Where a single round on the whole surface follows, most of the time goes into mending, and
@@ -178,7 +166,7 @@ bool wants_levels(const TriangleMesh& mesh, const GrowOptions& options)
 
 std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
                                       const Directions& lines, const std::vector<double>& stepped,
-                                      const std::vector<Coarsened>& levels,
+                                      const std::vector<Coarsened>& levels, const MeshOrder& order,
                                       const GrowOptions& options, const StageProgress& progress,
                                       GrowReport& report)
 {
@@ -187,18 +175,23 @@ std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
     const auto job_of = [&](double begin, double end) {
         return LevelJob{mesh.triangles.size(), options, progress.part(begin, end)};
     };
-    const auto from = vertices_of(levels);
+    auto from = vertices_of(levels);
+    if (!order.own()) {
+        const std::vector<std::uint32_t> place = places_of(order.vertices);
+        for (std::vector<std::uint32_t>& vertices : from)
+            vertices = values_at(place, vertices);
+    }
     const LevelJob coarsest = job_of(0, ends[levels.size() - 1]);
     std::vector<Vec3d> inner =
-        grow_on_level(levels.back().mesh, at_vertices(s.cap, from.back()), StartedFrom::lines,
+        grow_on_level(levels.back().mesh, values_at(s.cap, from.back()), StartedFrom::lines,
                       coarsest, [&](GrowState& level, const Directions& own_lines, GrowReport&) {
-                          start_from_lines(level, own_lines, at_vertices(stepped, from.back()),
+                          start_from_lines(level, own_lines, values_at(stepped, from.back()),
                                            options, coarsest.progress);
                       });
     for (std::size_t i = levels.size() - 1; i-- > 0;) {
         const LevelJob job = job_of(ends[i + 1], ends[i]);
         inner =
-            grow_on_level(levels[i].mesh, at_vertices(s.cap, from[i]), StartedFrom::prolonged, job,
+            grow_on_level(levels[i].mesh, values_at(s.cap, from[i]), StartedFrom::prolonged, job,
                           [&](GrowState& level, const Directions& own_lines, GrowReport& of_level) {
                               start_from_coarser(level, levels[i].mesh, own_lines,
                                                  levels[i + 1].mesh, inner, job, of_level);
@@ -216,8 +209,11 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
     std::vector<Coarsened> levels;
     if (!growth::wants_levels(mesh, options))
         return levels;
+    // A coarse surface takes over the order of the finer one.
+    const MeshOrder order = curve_order(mesh);
+    const TriangleMesh ordered = in_order(mesh, order);
     const auto finest = [&]() -> const TriangleMesh& {
-        return levels.empty() ? mesh : levels.back().mesh;
+        return levels.empty() ? ordered : levels.back().mesh;
     };
     const MultilevelSchedule& schedule = options.schedule.multilevel;
     const double times =
@@ -240,14 +236,19 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
             break;
         levels.push_back(std::move(coarse));
     }
+    if (!levels.empty() && !order.own())
+        levels.front().from = values_at(order.vertices, levels.front().from);
     return levels;
 }
 
 std::vector<std::uint32_t> vertices_of_coarsest(const TriangleMesh& mesh,
                                                 const std::vector<Coarsened>& levels)
 {
-    if (!levels.empty())
-        return growth::vertices_of(levels).back();
+    if (!levels.empty()) {
+        std::vector<std::uint32_t> vertices = growth::vertices_of(levels).back();
+        std::sort(vertices.begin(), vertices.end());
+        return vertices;
+    }
     std::vector<std::uint32_t> all(mesh.points.size());
     std::iota(all.begin(), all.end(), 0U);
     return all;

@@ -27,18 +27,21 @@ struct Near {
 /// is found sooner than what the triangles around it meet.
 StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
 {
-    const FloatBox box = float_box(box_of({s.b[v], x, x}));
-    StopReason met = StopReason::none;
-    s.inner_tree.for_each_overlap(box, [&](int g) {
-        if (met == StopReason::none && !s.mesh->incident_to(g, v) &&
-            segment_touches_triangle(s.b[v], x, inner_corners(s, g)))
-            met = StopReason::inner_contact;
+    const Vec3d& here = s.b[v];
+    const Vec3d way = x - here;
+    const double whole_way = 1;
+    bool met = false;
+    s.inner_tree.for_each_on_ray_while(here, way, whole_way, [&](int g) {
+        met = !s.mesh->incident_to(g, v) && segment_touches_triangle(here, x, inner_corners(s, g));
+        return !met;
     });
-    s.outer_tree.for_each_overlap(box, [&](int g) {
-        if (met == StopReason::none && segment_touches_triangle(s.b[v], x, outer_corners(s, g)))
-            met = StopReason::outer_contact;
+    if (met)
+        return StopReason::inner_contact;
+    s.outer_tree.for_each_on_ray_while(here, way, whole_way, [&](int g) {
+        met = segment_touches_triangle(here, x, outer_corners(s, g));
+        return !met;
     });
-    return met;
+    return met ? StopReason::outer_contact : StopReason::none;
 }
 
 /// What the triangles around v meet first, with b_v = x. Cheap tests come first. When an inner

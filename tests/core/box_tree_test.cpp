@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace
 {
@@ -153,6 +154,48 @@ TEST(BoxTree, IsEmptyWithoutBoxes)
     BoxTree tree;
     tree.build({});
     tree.for_each_overlap(FloatBox{}, [](int) { FAIL(); });
+}
+
+// A wall of boxes behind each other: once the first is found the others are beyond the limit.
+TEST(BoxTree, ARayThatEndsAtTheNearestBoxSeesFewOthers)
+{
+    constexpr int kWalls = 100, kAcross = 10;
+    std::vector<FloatBox> boxes;
+    for (int wall = 0; wall < kWalls; ++wall)
+        for (int i = 0; i < kAcross * kAcross; ++i) {
+            const Vec3s low(float(wall), float(i / kAcross), float(i % kAcross));
+            boxes.push_back(FloatBox::around(low));
+            boxes.back().add(low + Vec3s(0.125F, 1, 1));
+        }
+    BoxTree tree;
+    tree.build(boxes);
+    // From either end.
+    for (const double from : {-1.0, kWalls + 1.0}) {
+        const openvdb::Vec3d start(from, 4.5, 4.5), way(from < 0 ? 1 : -1, 0.001, 0.002);
+        double limit = 1e9;
+        int seen = 0;
+        tree.for_each_on_ray(start, way, limit, [&](int i) {
+            ++seen;
+            const FloatBox& box = boxes[std::size_t(i)];
+            const double face = double(from < 0 ? box.lo[0] : box.hi[0]);
+            limit = std::min(limit, std::abs(face - from));
+        });
+        EXPECT_EQ(limit, from < 0 ? 1 : 1.875);
+        EXPECT_LE(seen, 8);
+    }
+}
+
+TEST(BoxTree, ARayCanBeEnded)
+{
+    const std::vector<FloatBox> boxes(50, random_boxes(1, 4)[0]);
+    BoxTree tree;
+    tree.build(boxes);
+    openvdb::Vec3d inside;
+    for (int k = 0; k < 3; ++k)
+        inside[k] = 0.5 * (double(boxes[0].lo[k]) + double(boxes[0].hi[k]));
+    int seen = 0;
+    tree.for_each_on_ray_while(inside, {1, 0, 0}, 1e9, [&](int) { return ++seen < 3; });
+    EXPECT_EQ(seen, 3);
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "growth/grown.h"
 #include "growth/move_tests.h"
 #include "growth/predicates.h"
+#include "mesh/curve_order.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
 #include "vdb_shell/certify/certificate.h"
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 namespace
 {
@@ -377,6 +379,43 @@ TEST(Grow, ProgressGoesForwardInSmallStepsFromLevelToLevel)
     for (std::size_t i = 1; i < notes.percents.size(); ++i)
         step = std::max(step, notes.percents[i] - notes.percents[i - 1]);
     EXPECT_LE(step, 25);
+}
+
+// Growth goes through a large surface along a curve, whatever order its file has.
+TEST(Grow, AShellHasTheVerticesAndTrianglesOfItsMeshWhereTheyWere)
+{
+    TriangleMesh mesh = bumpy_sphere(6);
+    ASSERT_GE(mesh.triangles.size(), kLeastToOrder);
+    std::vector<std::uint32_t> mirrored(mesh.points.size());
+    for (std::size_t v = 0; v < mirrored.size(); ++v)
+        // Every other one from the end.
+        mirrored[v] = static_cast<std::uint32_t>(v % 2 == 0 ? v : 2 * (mirrored.size() / 2) - v);
+    std::vector<std::uint32_t> triangles(mesh.triangles.size());
+    std::iota(triangles.rbegin(), triangles.rend(), 0U);
+    mesh = in_order(mesh, {mirrored, triangles});
+    ASSERT_FALSE(curve_order(mesh).own());
+    const Case c = case_of(mesh);
+    const SplitOptions by_index{SplitRule::vertex_index, 1};
+    const GrowResult result =
+        grow_shell(c.mesh, c.directions, c.start, c.cap, GrowOptions{}, by_index);
+    EXPECT_EQ(result.shell.outer, mesh.points);
+    EXPECT_EQ(result.shell.triangles, mesh.triangles);
+    EXPECT_EQ(result.shell.stop.size(), mesh.points.size());
+    // Rules see the mesh's own indices.
+    EXPECT_EQ(result.split.order, split_prisms(result.shell, by_index).order);
+    const auto certificate = certify_shell(result.shell, result.split, PrismTest::twelve_tets);
+    EXPECT_TRUE(certificate.certified());
+    EXPECT_GT(fill_of(result.shell), 0.97);
+    // Bumps and centre are as they are, so each pillar goes inward.
+    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        ASSERT_LT(result.shell.inner[v].length(), result.shell.outer[v].length()) << v;
+    // And the way back from the coarsest surface leads to vertices of the mesh.
+    const std::vector<Coarsened> levels = coarse_levels(mesh, GrowOptions{});
+    ASSERT_FALSE(levels.empty());
+    const std::vector<std::uint32_t> first = vertices_of_coarsest(mesh, {levels.front()});
+    EXPECT_TRUE(std::is_sorted(first.begin(), first.end()));
+    for (std::size_t v = 0; v < levels.front().from.size(); ++v)
+        ASSERT_EQ(levels.front().mesh.points[v], mesh.points[levels.front().from[v]]) << v;
 }
 
 TEST(Grow, CoarseningStopsWhenAsked)
