@@ -90,21 +90,15 @@ public:
     void for_each_on_ray(const openvdb::Vec3d& p, const openvdb::Vec3d& d, const double& limit,
                          Visit&& visit) const
     {
-        for_each_on_ray_while(p, d, limit, [&](int i) {
-            visit(i);
-            return true;
-        });
-    }
-    /// The same until visit(i) returns false.
-    template <class Visit>
-    void for_each_on_ray_while(const openvdb::Vec3d& p, const openvdb::Vec3d& d,
-                               const double& limit, Visit&& visit) const
-    {
         descend_along(
             BoxRay(p, d), limit, [](std::size_t, unsigned met) { return met; },
-            [&](std::size_t at) { return visit(item_[at]); });
+            [&](std::size_t at) {
+                visit(item_[at]);
+                return true;
+            });
     }
-    /// The same but for boxes that carry one of these marks. Precondition: mark().
+    /// The same but for boxes that carry one of these marks, until visit(i) returns false.
+    /// Precondition: mark().
     template <class Visit>
     void for_each_on_ray_without(const Marks& marks, const openvdb::Vec3d& p,
                                  const openvdb::Vec3d& d, double limit, Visit&& visit) const

@@ -27,18 +27,17 @@ struct Near {
 /// is found sooner than what the triangles around it meet.
 StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
 {
-    const Vec3d& here = s.b[v];
-    const Vec3d way = x - here;
-    const double whole_way = 1;
+    const FloatBox box = float_box(box_of({s.b[v], x, x}));
     bool met = false;
-    s.inner_tree.for_each_on_ray_while(here, way, whole_way, [&](int g) {
-        met = !s.mesh->incident_to(g, v) && segment_touches_triangle(here, x, inner_corners(s, g));
+    s.inner_tree.for_each_overlap_while(box, [&](int g) {
+        met =
+            !s.mesh->incident_to(g, v) && segment_touches_triangle(s.b[v], x, inner_corners(s, g));
         return !met;
     });
     if (met)
         return StopReason::inner_contact;
-    s.outer_tree.for_each_on_ray_while(here, way, whole_way, [&](int g) {
-        met = segment_touches_triangle(here, x, outer_corners(s, g));
+    s.outer_tree.for_each_overlap_while(box, [&](int g) {
+        met = segment_touches_triangle(s.b[v], x, outer_corners(s, g));
         return !met;
     });
     return met ? StopReason::outer_contact : StopReason::none;

@@ -185,17 +185,4 @@ TEST(BoxTree, ARayThatEndsAtTheNearestBoxSeesFewOthers)
     }
 }
 
-TEST(BoxTree, ARayCanBeEnded)
-{
-    const std::vector<FloatBox> boxes(50, random_boxes(1, 4)[0]);
-    BoxTree tree;
-    tree.build(boxes);
-    openvdb::Vec3d inside;
-    for (int k = 0; k < 3; ++k)
-        inside[k] = 0.5 * (double(boxes[0].lo[k]) + double(boxes[0].hi[k]));
-    int seen = 0;
-    tree.for_each_on_ray_while(inside, {1, 0, 0}, 1e9, [&](int) { return ++seen < 3; });
-    EXPECT_EQ(seen, 3);
-}
-
 } // namespace

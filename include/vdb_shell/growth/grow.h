@@ -75,8 +75,10 @@ struct GrowReport {
 };
 
 /// Surfaces for growth to begin on, each of fewer triangles than the one before, as
-/// GrowOptions::coarse_from asks. None for a side without bound, for a surface of few triangles or
-/// one that cannot be coarsened. Same result for any number of threads. Throws Cancelled.
+/// GrowOptions::coarse_from asks. Those of a large mesh stand in an order in which near vertices
+/// are near in memory, so that the first one's `from` need not be ascending. None for a side
+/// without bound, for a surface of few triangles or one that cannot be coarsened. Same result for
+/// any number of threads. Throws Cancelled.
 std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions& options,
                                      Interrupter* interrupter = nullptr);
 
