@@ -15,7 +15,6 @@
 namespace vdb_shell
 {
 
-inline thread_local long visited_nodes = 0, visited_items = 0, visited_inside = 0;
 /// A tree over boxes that may be rebuilt every round, and is queried in parallel: for a box, a ray,
 /// or all boxes of a group at a time. Same order of what is found for any number of threads.
 class BoxTree
@@ -239,7 +238,6 @@ private:
             if (at.entry > BoxRay::no_less(limit))
                 continue;
             const Node& n = nodes_[at.node];
-            ++visited_nodes;
             unsigned met =
                 left(at.node, ray.meets(n.box, limit, entry) & ((1U << n.children) - 1U));
             const std::size_t first = top;
@@ -247,8 +245,6 @@ private:
                 const auto lane = std::size_t(__builtin_ctz(met));
                 const auto child = static_cast<std::size_t>(n.child[lane]);
                 if (n.leaf) {
-                    ++visited_items;
-                    visited_inside += entry[lane] == 0;
                     if (entry[lane] <= BoxRay::no_less(limit) && !visit(child))
                         return;
                     continue;

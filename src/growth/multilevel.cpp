@@ -211,9 +211,9 @@ std::vector<Coarsened> coarse_levels(const TriangleMesh& mesh, const GrowOptions
         return levels;
     // A coarse surface takes over the order of the finer one.
     const MeshOrder order = curve_order(mesh);
-    const TriangleMesh ordered = in_order(mesh, order);
+    const TriangleMesh ordered = order.own() ? TriangleMesh{} : in_order(mesh, order);
     const auto finest = [&]() -> const TriangleMesh& {
-        return levels.empty() ? ordered : levels.back().mesh;
+        return !levels.empty() ? levels.back().mesh : order.own() ? mesh : ordered;
     };
     const MultilevelSchedule& schedule = options.schedule.multilevel;
     const double times =
