@@ -49,6 +49,7 @@ Directions lines_of_level(const TriangleMesh& mesh, const GrowOptions& options, 
 std::vector<std::vector<std::uint32_t>> vertices_of(const std::vector<Coarsened>& levels)
 {
     std::vector<std::vector<std::uint32_t>> from;
+    from.reserve(levels.size());
     for (const Coarsened& level : levels)
         from.push_back(from.empty() ? level.from : values_at(from.back(), level.from));
     return from;
