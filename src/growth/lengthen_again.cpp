@@ -3,16 +3,23 @@
 // Takes: a valid shell after mending, and where its inner points were before. Leaves: a valid shell
 // that is thicker. Mending shortens all three pillars of a prism that fails, for which of them is
 // to blame cannot be told then, and goes on for as long as one of them fails again; afterwards most
-// that were not can go back. Few points have lost much, so they are tried one by one.
+// that were not can go back. Few points have lost much, so they are tried one by one: in effect,
+// for what is found on several threads is what the points in their order would find.
 
 #include "growth/lengthen_again.h"
 
 #include "core/parallel.h"
+#include "core/propose_in_blocks.h"
+#include "growth/box.h"
+#include "growth/first_contact.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 #include "growth/violations.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdb_shell::growth
@@ -44,22 +51,128 @@ void put(GrowState& s, int v, const Vec3d& x, const std::vector<int>& faces)
         s.inner_tree.replace(static_cast<std::size_t>(f), float_box_of(inner_corners(s, f)));
 }
 
+/// The places on the way back, the farthest first, until visit(x) takes one.
+template <class Visit>
+bool any_place(const GrowState& s, int v, const Vec3d& before, const Visit& visit)
+{
+    const Vec3d here = s.b[v];
+    double share = 1;
+    for (int i = 0; i < s.schedule.mend.tries_back; ++i, share *= 0.5)
+        if (visit(capped(s, v, here + share * (before - here))))
+            return true;
+    return false;
+}
+
+/// What is asked first: the tests that look at the vertex's own prisms alone.
+bool own_prisms_allow(const GrowState& s, int v, const Vec3d& x)
+{
+    return x != s.b[v] && x != s.a[v] && tets_positive_at(s, v, x) && !swallows_component(s, v, x);
+}
+
+/// Tries each place in turn.
 bool put_back(GrowState& s, int v, const Vec3d& before)
 {
     const Vec3d here = s.b[v];
     const std::vector<int> faces = faces_at(*s.mesh, v);
-    double share = 1;
-    for (int i = 0; i < s.schedule.mend.tries_back; ++i, share *= 0.5) {
-        const Vec3d x = capped(s, v, here + share * (before - here));
-        if (x == here || x == s.a[v] || !tets_positive_at(s, v, x) || swallows_component(s, v, x))
-            continue;
+    return any_place(s, v, before, [&](const Vec3d& x) {
+        if (!own_prisms_allow(s, v, x))
+            return false;
         put(s, v, x, faces);
         if (faces_valid(s, faces))
             return true;
         put(s, v, here, faces);
-    }
-    return false;
+        return false;
+    });
 }
+
+/// Where one point can go while all others stay.
+struct Proposal {
+    bool known = false; ///< else it has to be tried in place
+    bool moves = false;
+    Vec3d to{0.0};
+    FloatBox
+        reach{}; ///< of its triangles, wherever it was tried; what lies outside does not matter
+};
+
+/// Whether the tests that change nothing say all that faces_valid says.
+bool can_be_proposed(const GrowState& s, int v)
+{
+    return !s.mesh->has_crowds && s.excused.empty() && !beside_a_pin(s, v) && !is_witness(s, v);
+}
+
+FloatBox reach_of(const GrowState& s, int v, const Vec3d& before)
+{
+    Box reach;
+    reach.add(s.b[v]);
+    any_place(s, v, before, [&](const Vec3d& x) {
+        reach.add(x);
+        return false;
+    });
+    for (const int u : neighbours(*s.mesh, v))
+        reach.add(s.b[u]);
+    return float_box(reach);
+}
+
+Proposal propose(const GrowState& s, int v, const Vec3d& before, NearTriangles& near)
+{
+    Proposal proposal;
+    proposal.reach = reach_of(s, v, before);
+    proposal.known = can_be_proposed(s, v);
+    proposal.moves =
+        proposal.known && any_place(s, v, before, [&](const Vec3d& x) {
+            proposal.to = x;
+            return own_prisms_allow(s, v, x) && first_contact(s, v, x, near) == StopReason::none;
+        });
+    return proposal;
+}
+
+/// Puts points back in their order. Most do not meet, so each is tried as if those before it in its
+/// block stayed, on all threads; one that comes near what has moved since is tried again.
+class PuttingBack
+{
+public:
+    PuttingBack(GrowState& s, const std::vector<Vec3d>& before) : s_(s), before_(before) {}
+
+    void begin() { moved_.clear(); }
+    void propose(int v, std::size_t slot)
+    {
+        proposals_[slot] =
+            growth::propose(s_, v, before_[static_cast<std::size_t>(v)], near_.local());
+    }
+    bool make(int v, std::size_t slot)
+    {
+        const Proposal& proposal = proposals_[slot];
+        const bool stale = std::any_of(moved_.begin(), moved_.end(), [&](const FloatBox& box) {
+            return box.overlaps(proposal.reach);
+        });
+        const bool moves = stale || !proposal.known
+                               ? put_back(s_, v, before_[static_cast<std::size_t>(v)])
+                               : proposal.moves && take(v, proposal.to);
+        if (moves)
+            moved_.push_back(proposal.reach);
+        return moves;
+    }
+
+    static constexpr std::size_t kBlock = 128;
+
+private:
+    bool take(int v, const Vec3d& x)
+    {
+        const std::vector<int> faces = faces_at(*s_.mesh, v);
+        const Vec3d here = s_.b[v];
+        put(s_, v, x, faces);
+        if (std::none_of(faces.begin(), faces.end(), [&](int f) { return holds_component(s_, f); }))
+            return true;
+        put(s_, v, here, faces);
+        return put_back(s_, v, before_[static_cast<std::size_t>(v)]);
+    }
+
+    GrowState& s_;
+    const std::vector<Vec3d>& before_;
+    std::array<Proposal, kBlock> proposals_;
+    std::vector<FloatBox> moved_; ///< in this block
+    tbb::enumerable_thread_specific<NearTriangles> near_;
+};
 
 } // namespace
 
@@ -80,11 +193,17 @@ std::size_t lengthen_again(GrowState& s, const std::vector<Vec3d>& before,
     // A tree that was refitted often is slow, and later stages go in its order.
     s.inner_tree.build(inner_boxes(s));
     s.inner_tree.index_parents();
-    std::size_t moved = 0;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        progress.stop_if_interrupted(100 * double(i) / double(vertices.size()));
-        moved += put_back(s, vertices[i], before[std::size_t(vertices[i])]);
-    }
+    PuttingBack putting(s, before);
+    std::size_t begun = 0, moved = 0;
+    propose_in_blocks(
+        vertices.size(), PuttingBack::kBlock,
+        [&] {
+            progress.stop_if_interrupted(100 * double(begun) / double(vertices.size()));
+            begun += PuttingBack::kBlock;
+            putting.begin();
+        },
+        [&](std::size_t i, std::size_t slot) { putting.propose(vertices[i], slot); },
+        [&](std::size_t i, std::size_t slot) { moved += putting.make(vertices[i], slot); });
     return moved;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "growth/active_set.h"
+#include "growth/first_contact.h"
 #include "growth/move_tests.h"
 
 #include <algorithm>
@@ -17,11 +18,6 @@ namespace vdb_shell::growth
 {
 namespace
 {
-
-/// What a query of the trees finds, kept from one vertex to the next for its memory.
-struct Near {
-    BoxTree::Near inner, outer;
-};
 
 /// What b_v itself goes through on its way to x: most that are held up are held up by that, and it
 /// is found sooner than what the triangles around it meet.
@@ -43,42 +39,9 @@ StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
     return met ? StopReason::outer_contact : StopReason::none;
 }
 
-/// What the triangles around v meet first, with b_v = x. Cheap tests come first. When an inner
-/// contact and an outer one both happen, the order of the tests decides which is named, the same
-/// way for all vertices.
-StopReason contact_at(const GrowState& s, int v, const Vec3d& x, Near& near)
-{
-    const Slice<FaceCorner> fan = star(*s.mesh, v);
-    // Around a pin the inner triangles share corners with outer ones too, and the fans do not tell.
-    const bool fans_clear = !beside_a_pin(s, v);
-    if (fans_clear && !adjacent_clear_at(s, v, x))
-        return StopReason::inner_contact;
-    Box all;
-    for (const FaceCorner& at : fan)
-        all.add(box_of(moved_corners(s, at, x)));
-    s.inner_tree.list_overlaps(float_box(all), near.inner);
-    s.outer_tree.list_overlaps(float_box(all), near.outer);
-    for (const FaceCorner& at : fan) {
-        const InnerTriangle moved(s, at, x);
-        const FloatBox box = float_box_of(moved.corners());
-        for (const FaceCorner& other : fan)
-            if (!fans_clear && other.face > at.face &&
-                moved.meets_inner(other.face, moved_corners(s, other, x)))
-                return StopReason::inner_contact;
-        const auto tested = [&](int g) {
-            return s.mesh->incident_to(g, v) || (fans_clear && s.mesh->share_a_corner(at.face, g));
-        };
-        if (near.inner.any_overlap(box, [&](int g) { return !tested(g) && moved.meets_inner(g); }))
-            return StopReason::inner_contact;
-        if (near.outer.any_overlap(box, [&](int g) { return moved.meets_outer(g); }))
-            return StopReason::outer_contact;
-    }
-    return StopReason::none;
-}
-
 /// `in_crowd`: one of thousands around a vertex, each of which would ask about all of its
 /// triangles.
-StopReason reason_at(const GrowState& s, int v, double step, bool in_crowd, Near& near)
+StopReason reason_at(const GrowState& s, int v, double step, bool in_crowd, NearTriangles& near)
 {
     if (s.pinned[v])
         return StopReason::pinned;
@@ -91,7 +54,7 @@ StopReason reason_at(const GrowState& s, int v, double step, bool in_crowd, Near
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
     const StopReason met = met_on_way(s, v, x);
-    return met == StopReason::none && !in_crowd ? contact_at(s, v, x, near) : met;
+    return met == StopReason::none && !in_crowd ? first_contact(s, v, x, near) : met;
 }
 
 } // namespace
@@ -104,7 +67,7 @@ std::vector<StopReason> probe_stops(GrowState& s)
     std::vector<std::uint8_t> in_crowd(s.b.size());
     leave_out_crowds(s, in_crowd);
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
-        Near near;
+        NearTriangles near;
         for (std::size_t v = begin; v < end; ++v)
             stop[v] = reason_at(s, static_cast<int>(v), step, in_crowd[v] != 0, near);
     });
