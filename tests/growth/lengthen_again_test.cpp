@@ -84,7 +84,7 @@ TEST_F(LengthenAgain, PointsInEachOthersWayComeBackAsIfOneByOne)
     std::vector<Vec3d> before = s_.b;
     // Half of them far beyond the middle, in the way of all others; all have lost, no two as much.
     for (std::size_t v = 0; v < s_.b.size(); ++v) {
-        const double far = v % 2 == 0 ? 1.0 : 1.2 + 0.003 * double(v);
+        const double far = v % 2 == 0 ? 1.0 : 2.2 + 0.003 * double(v);
         before[v] = growth::rounded(s_.a[v] + far * (s_.b[v] - s_.a[v]));
         s_.b[v] = along(static_cast<int>(v), 0.6 - 0.0005 * double(v));
     }
@@ -95,7 +95,7 @@ TEST_F(LengthenAgain, PointsInEachOthersWayComeBackAsIfOneByOne)
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
                      [&](int u, int v) { return lost6[std::size_t(u)] > lost6[std::size_t(v)]; });
-    std::size_t moved = 0, stayed = 0;
+    std::size_t moved = 0, barred = 0;
     for (const int v : order) {
         const Vec3d here = one_by_one.b[v];
         bool moves = false;
@@ -103,13 +103,14 @@ TEST_F(LengthenAgain, PointsInEachOthersWayComeBackAsIfOneByOne)
             one_by_one.b[v] = growth::capped(one_by_one, v, here + share * (before[v] - here));
             one_by_one.inner_tree.build(growth::inner_boxes(one_by_one));
             moves = growth::faces_valid(one_by_one, growth::faces_at(mesh_, v));
+            barred += !moves;
         }
         if (!moves)
             one_by_one.b[v] = here;
-        ++(moves ? moved : stayed);
+        moved += moves;
     }
     EXPECT_GT(moved, 0U);
-    EXPECT_GT(stayed, 0U) << "none is in another's way";
+    EXPECT_GT(barred, s_.b.size() / 4) << "few are in another's way";
     s_.schedule.mend.least_loss = 0;
     EXPECT_EQ(growth::lengthen_again(s_, before, progress()), moved);
     EXPECT_EQ(s_.b, one_by_one.b);
