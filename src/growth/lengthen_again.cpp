@@ -90,8 +90,8 @@ struct Proposal {
     bool known = false; ///< else it has to be tried in place
     bool moves = false;
     Vec3d to{0.0};
-    FloatBox
-        reach{}; ///< of its triangles, wherever it was tried; what lies outside does not matter
+    /// Of its triangles, wherever it was tried: what lies outside does not matter.
+    FloatBox reach{};
 };
 
 /// Whether the tests that change nothing say all that faces_valid says.
