@@ -6,7 +6,6 @@
 
 #include "growth/first_contact.h"
 
-#include "growth/box.h"
 #include "growth/move_tests.h"
 
 namespace vdb_shell::growth
@@ -19,11 +18,9 @@ StopReason first_contact(const GrowState& s, int v, const Vec3d& x, NearTriangle
     const bool fans_clear = !beside_a_pin(s, v);
     if (fans_clear && !adjacent_clear_at(s, v, x))
         return StopReason::inner_contact;
-    Box all;
-    for (const FaceCorner& at : fan)
-        all.add(box_of(moved_corners(s, at, x)));
-    s.inner_tree.list_overlaps(float_box(all), near.inner);
-    s.outer_tree.list_overlaps(float_box(all), near.outer);
+    const FloatBox all = float_box(box_of_star(s, v, x));
+    s.inner_tree.list_overlaps(all, near.inner);
+    s.outer_tree.list_overlaps(all, near.outer);
     for (const FaceCorner& at : fan) {
         const InnerTriangle moved(s, at, x);
         const FloatBox box = float_box_of(moved.corners());

@@ -158,4 +158,13 @@ std::vector<FloatBox> inner_boxes(const GrowState& s)
     return boxes;
 }
 
+Box box_of_star(const GrowState& s, int v, const Vec3d& x)
+{
+    Box box;
+    box.add(x);
+    for (const int u : neighbours(*s.mesh, v))
+        box.add(s.b[u]);
+    return box;
+}
+
 } // namespace vdb_shell::growth

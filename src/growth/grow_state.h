@@ -122,5 +122,7 @@ double fill_of(const GrowState& s);
 
 /// By face, the box of its inner triangle as it is.
 std::vector<FloatBox> inner_boxes(const GrowState& s);
+/// The box of the inner triangles around v, with b_v = x.
+Box box_of_star(const GrowState& s, int v, const Vec3d& x);
 
 } // namespace vdb_shell::growth

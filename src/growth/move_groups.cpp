@@ -124,11 +124,8 @@ private:
     Box box_of_faces(const Group& group) const
     {
         Box box;
-        for (const GroupShare& share : group) {
-            box.add(s_.b[share.vertex]);
-            for (const int u : neighbours(*s_.mesh, share.vertex))
-                box.add(s_.b[u]);
-        }
+        for (const GroupShare& share : group)
+            box.add(box_of_star(s_, share.vertex, s_.b[share.vertex]));
         return box;
     }
     Box box_to_move_in(const Group& group) const
