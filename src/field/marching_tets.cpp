@@ -8,6 +8,7 @@
 
 #include "field/marching_tets.h"
 
+#include "core/parallel.h"
 #include "core/sort_unique.h"
 
 #include <algorithm>
@@ -166,8 +167,10 @@ IndexSurface marching_tets(const openvdb::FloatGrid& field)
         const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
         return static_cast<openvdb::Vec3I::ValueType>(found - edges.begin());
     };
-    for (const EdgeTriangle& t : cut)
-        surface.triangles.emplace_back(index_of(t[0]), index_of(t[1]), index_of(t[2]));
+    surface.triangles.resize(cut.size());
+    for_each_index(cut.size(), [&](std::size_t t) {
+        surface.triangles[t] = {index_of(cut[t][0]), index_of(cut[t][1]), index_of(cut[t][2])};
+    });
     return surface;
 }
 

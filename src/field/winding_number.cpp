@@ -35,6 +35,11 @@ Vec3d centroid(const TriangleCorners& t)
     return (t[0] + t[1] + t[2]) / 3.0;
 }
 
+Vec3d area_normal(const TriangleCorners& t)
+{
+    return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]);
+}
+
 } // namespace
 
 WindingNumber::WindingNumber(std::vector<TriangleCorners> triangles)
@@ -42,6 +47,15 @@ WindingNumber::WindingNumber(std::vector<TriangleCorners> triangles)
 {
     if (!triangles_.empty())
         build(0, static_cast<std::uint32_t>(triangles_.size()));
+    // Each triangle is met by the groups of points all around it, a hundred of them and more.
+    dipoles_.reserve(triangles_.size());
+    for (const TriangleCorners& corners : triangles_) {
+        Dipole& dipole = dipoles_.emplace_back();
+        dipole.centre = centroid(corners);
+        dipole.area_normal = area_normal(corners);
+        for (const Vec3d& corner : corners)
+            dipole.far = std::max(dipole.far, kFarTriangle * (corner - dipole.centre).length());
+    }
 }
 
 void WindingNumber::summarise(Node& node) const
@@ -49,7 +63,7 @@ void WindingNumber::summarise(Node& node) const
     double area = 0;
     for (std::uint32_t t = node.begin; t < node.end; ++t) {
         const TriangleCorners& corners = triangles_[t];
-        const Vec3d normal = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        const Vec3d normal = area_normal(corners);
         node.area_normal += normal;
         node.centre += normal.length() * centroid(corners);
         area += normal.length();
@@ -101,24 +115,16 @@ struct WindingNumber::Surroundings {
     {
         return (centre - middle).lengthSqr() > (distance + radius) * (distance + radius);
     }
-    void add_far(const Vec3d& centre, const Vec3d& area_normal)
+    void add_far(const Vec3d& centre, const Vec3d& normal)
     {
-        if (area_normal == Vec3d(0.0)) // without a view, and perhaps where a point is
+        if (normal == Vec3d(0.0)) // without a view, and perhaps where a point is
             return;
         const Vec3d to = centre - middle;
         far.push_back({{float(to[0]), float(to[1]), float(to[2])},
-                       {float(area_normal[0]), float(area_normal[1]), float(area_normal[2])}});
+                       {float(normal[0]), float(normal[1]), float(normal[2])}});
     }
-    void add(const TriangleCorners& corners)
+    void add_near(const TriangleCorners& corners)
     {
-        const Vec3d centre = centroid(corners);
-        double squared = 0;
-        for (const Vec3d& corner : corners)
-            squared = std::max(squared, (corner - centre).lengthSqr());
-        if (is_beyond(kFarTriangle * std::sqrt(squared), centre)) {
-            add_far(centre, 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]));
-            return;
-        }
         NearTriangle& triangle = near.emplace_back();
         for (std::size_t k = 0; k < 3; ++k)
             for (int axis = 0; axis < 3; ++axis)
@@ -137,7 +143,10 @@ void WindingNumber::look_around(std::uint32_t first, Surroundings& from) const
             from.add_far(node.centre, node.area_normal);
         } else if (node.right == 0) {
             for (std::uint32_t t = node.begin; t < node.end; ++t)
-                from.add(triangles_[t]);
+                if (const Dipole& dipole = dipoles_[t]; from.is_beyond(dipole.far, dipole.centre))
+                    from.add_far(dipole.centre, dipole.area_normal);
+                else
+                    from.add_near(triangles_[t]);
         } else {
             // Halving by number keeps the tree at most 32 levels deep, and each level leaves one
             // node on the stack.

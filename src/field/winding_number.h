@@ -49,11 +49,17 @@ public:
 
 private:
     struct Surroundings;
+    /// A triangle from afar.
+    struct Dipole {
+        openvdb::Vec3d centre, area_normal;
+        double far = 0; ///< from this distance on it counts as one
+    };
     void build(std::uint32_t begin, std::uint32_t end);
     void summarise(Node& node) const;
     void look_around(std::uint32_t node, Surroundings& from) const;
 
     std::vector<TriangleCorners> triangles_;
+    std::vector<Dipole> dipoles_; ///< of the triangles
     std::vector<Node> nodes_;
 };
 

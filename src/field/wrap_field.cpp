@@ -10,7 +10,6 @@
 #include "field/wrap_field.h"
 
 #include "core/parallel.h"
-#include "core/sort_unique.h"
 #include "core/stage_stop.h"
 #include "field/mesh_distances.h"
 #include "field/voxel_distances.h"
@@ -113,11 +112,12 @@ std::vector<Coord> band_voxels(const openvdb::FloatGrid& boundary, const openvdb
 std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
                                        const openvdb::FloatGrid& field)
 {
-    std::vector<Coord> beyond;
+    openvdb::MaskTree beyond;
+    openvdb::tree::ValueAccessor<openvdb::MaskTree> mark(beyond);
     const auto values = field.getConstAccessor();
     const auto add_unknown = [&](const Coord& voxel) {
         if (!values.isValueOn(voxel))
-            beyond.push_back(voxel);
+            mark.setValueOn(voxel);
     };
     for (const Coord& voxel : fresh) {
         const bool inside = values.getValue(voxel) < 0;
@@ -132,8 +132,7 @@ std::vector<Coord> beyond_sign_changes(const std::vector<Coord>& fresh,
         if (changes)
             for_each_neighbour(voxel, add_unknown);
     }
-    sort_unique(beyond);
-    return beyond;
+    return active_voxels(beyond);
 }
 
 } // namespace

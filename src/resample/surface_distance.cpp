@@ -19,12 +19,12 @@
 #include "resample/triangle_pieces.h"
 #include "vdb_shell/core/error.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 namespace vdb_shell
@@ -60,44 +60,41 @@ struct Samples {
 class SamplesInCells
 {
 public:
-    SamplesInCells(Samples& samples, double cell) : samples_(samples), cell_(cell) {}
+    /// `low`: of the box of all points, from where cells are counted.
+    SamplesInCells(Samples& samples, const Vec3d& low, double cell)
+        : samples_(samples), low_(low), cell_(cell), place_(places_)
+    {
+    }
 
     void add(const Vec3d& point, double area)
     {
-        std::array<std::int64_t, 3> key{};
-        for (int k = 0; k < 3; ++k)
-            key[std::size_t(k)] = static_cast<std::int64_t>(std::floor(point[k] / cell_));
-        const auto [at, is_new] = place_.try_emplace(key, samples_.points.size());
-        if (is_new)
+        const openvdb::Coord cell = openvdb::Coord::floor((point - low_) / cell_);
+        std::int32_t index = 0;
+        if (!place_.probeValue(cell, index)) {
+            index = static_cast<std::int32_t>(samples_.points.size());
+            place_.setValue(cell, index);
             samples_.add(point, 0.0);
-        samples_.areas[at->second] += area;
+        }
+        samples_.areas[static_cast<std::size_t>(index)] += area;
     }
 
 private:
-    struct Hash {
-        std::size_t operator()(const std::array<std::int64_t, 3>& key) const
-        {
-            std::uint64_t sum = 0;
-            for (const std::int64_t k : key)
-                sum = (sum ^ std::uint64_t(k)) * 0x9E3779B97F4A7C15ULL;
-            return std::size_t(sum ^ (sum >> 32U));
-        }
-    };
     Samples& samples_;
+    Vec3d low_;
     double cell_;
-    std::unordered_map<std::array<std::int64_t, 3>, std::size_t, Hash> place_;
+    openvdb::Int32Tree places_{-1}; ///< by cell, its place among the samples
+    openvdb::tree::ValueAccessor<openvdb::Int32Tree> place_;
 };
 
-/// Whether there is so much of the surface that each cell of a grid around it has several pieces.
+/// Whether there is more of the surface than one sheet for each cell of a grid around it. The grid
+/// has a cell to spare along each axis, so no box is crowded, however thin.
 bool fills_cells(const TriangleMesh& mesh, double spacing, double area)
 {
-    // Without that a cell has one sheet of a surface in it, and most have none.
-    constexpr double kCrowd = 8;
     const Bounds bounds = bounds_of(mesh.points);
     double cells = 1;
     for (int k = 0; k < 3; ++k)
-        cells *= 1 + (bounds.high[k] - bounds.low[k]) / spacing;
-    return area / (spacing * spacing) > kCrowd * cells;
+        cells *= 2 + (bounds.high[k] - bounds.low[k]) / spacing;
+    return area / (spacing * spacing) > cells;
 }
 
 /// Where sheets lie many in one place, samples of a place are asked once: the place bounds them,
@@ -126,7 +123,7 @@ Samples sample(const TriangleMesh& mesh, double spacing)
             list.add(Vec3d(p), 0.0);
     };
     if (fills_cells(mesh, spacing, area)) {
-        SamplesInCells cells(samples, 0.5 * spacing);
+        SamplesInCells cells(samples, bounds_of(mesh.points).low, spacing);
         add_to(cells);
     } else
         add_to(samples);
