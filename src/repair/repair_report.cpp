@@ -7,6 +7,7 @@
 
 #include "vdb_shell/repair/repair_mesh.h"
 
+#include "mesh/defect_json.h"
 #include "mesh/mesh_check_json.h"
 
 #include <nlohmann/json.hpp>
@@ -19,11 +20,6 @@ namespace
 {
 
 using nlohmann::ordered_json;
-
-ordered_json defect_json(const Defect<std::uint32_t>& defect)
-{
-    return {{"count", defect.count}, {"first", defect.first}};
-}
 
 ordered_json after_json(const MeshCheck& check)
 {

@@ -11,11 +11,12 @@
 
 #include "vdb_shell/report/report.h"
 
-#include "certify/certificate_findings.h"
 #include "core/degrees.h"
 #include "mesh/components_json.h"
+#include "mesh/defect_json.h"
 #include "mesh/mesh_check_json.h"
 #include "mesh/placement_json.h"
+#include "report/checks_report.h"
 #include "report/cores_report.h"
 #include "report/pose_report.h"
 #include "report/resample_report.h"
@@ -23,21 +24,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include <limits>
-
 namespace vdb_shell
 {
 namespace
 {
 
 using nlohmann::ordered_json;
-
-/// All are counted but only the first few by index are named (Defect::kFirstShown), so that a
-/// report stays short however bad the surface is. A pair becomes a list of two.
-template <typename Element> ordered_json defect_json(const Defect<Element>& defect)
-{
-    return {{"count", defect.count}, {"first", defect.first}};
-}
 
 ordered_json read_json(const ReadReport& read)
 {
@@ -145,29 +137,6 @@ ordered_json tets_json(const ShellReport& report)
             {"first_flat", report.signs.flat.first}};
 }
 
-ordered_json conformity_json(const Conformity& conformity)
-{
-    return {{"conforming", conformity.conforming()},
-            {"crowded_faces", defect_json(conformity.crowded_faces)},
-            {"misoriented_faces", defect_json(conformity.misoriented_faces)},
-            {"stray_faces", defect_json(conformity.stray_faces)},
-            {"missing_triangles", defect_json(conformity.missing_triangles)}};
-}
-
-/// Points in no tet, in one and in several add up to the samples. Those outside are apart: they
-/// were drawn on the way and belong to no share of the solid.
-ordered_json coverage_json(const Coverage& coverage)
-{
-    return {{"samples", coverage.samples},
-            {"in_none", coverage.in_none},
-            {"in_one", coverage.in_one},
-            {"in_several", coverage.in_several},
-            {"outside_covered", coverage.outside_covered},
-            {"covered_share", coverage.covered_share},
-            {"overlap_share", coverage.overlap_share},
-            {"standard_error", coverage.standard_error}};
-}
-
 ordered_json layers_json(const ShellReport& report)
 {
     // An array from the beginning: a shell of one layer has an empty list here, not null.
@@ -244,63 +213,6 @@ ordered_json outside_json(const OutsideReport& outside)
             {"scale", outside.scale ? scale_json(*outside.scale) : ordered_json()}};
 }
 
-/// What holds tet by tet where the whole is not certified (docs/theory.md, "A surface that crosses
-/// itself").
-ordered_json overlaps_json(const Overlaps& overlaps)
-{
-    return {{"pairs", defect_json(overlaps.pairs)},
-            {"tets", overlaps.tets},
-            {"certified_tets", overlaps.certified_tets()},
-            {"uncertified_tets", defect_json(overlaps.uncertified)},
-            {"prisms", overlaps.prisms},
-            {"certified_prisms", overlaps.certified_prisms()},
-            {"uncertified_prisms", defect_json(overlaps.uncertified_prisms)},
-            {"certified_volume", overlaps.certified_volume}};
-}
-
-/// Names and order are those of the certificate's own messages, so that a failure in the text can
-/// be looked up by the same word here.
-template <typename OneCertificate>
-void add_findings(ordered_json& json, const OneCertificate& certificate)
-{
-    for_each_kind(certificate,
-                  [&](const char* name, const auto& defect) { json[name] = defect_json(defect); });
-}
-
-/// Stands where a PrismTest is named otherwise.
-constexpr const char* kComplexTest = "complex";
-
-/// Findings stand under the certificate itself where there is one layer, else by layer, from the
-/// outermost; the hull is only looked at where there are several. All layers are certified by the
-/// same test, so that of the first stands for it. A tapered stack has one certificate for all, and
-/// a test of another name: its tets alone are positive.
-ordered_json certificate_json(const StackCertificate& certificate)
-{
-    const std::vector<Certificate>& layers = certificate.layers;
-    const PrismTest test = layers.empty() ? PrismTest::twelve_tets : layers.front().test;
-    ordered_json json{{"test", certificate.complex ? kComplexTest : name_in_table(test)},
-                      {"certified", certificate.certified()},
-                      {"locally_valid", certificate.locally_valid()}};
-    if (certificate.complex) {
-        add_findings(json, *certificate.complex);
-        return json;
-    }
-    if (layers.size() == 1) {
-        add_findings(json, layers.front());
-        return json;
-    }
-    json["hull_contacts"] = defect_json(certificate.hull_contacts);
-    json["hull_nested_wrongly"] = defect_json(certificate.hull_nested_wrongly);
-    json["layers"] = ordered_json::array();
-    for (const Certificate& layer : layers) {
-        ordered_json one{{"certified", layer.certified()},
-                         {"locally_valid", layer.locally_valid()}};
-        add_findings(one, layer);
-        json["layers"].push_back(one);
-    }
-    return json;
-}
-
 ordered_json mend_json(const std::vector<MendAttempt>& attempts)
 {
     ordered_json json = ordered_json::array();
@@ -372,23 +284,6 @@ void add_shell(ordered_json& json, const ShellReport& report)
                       {"without_tet_demanded", report.without_tet_demanded},
                       {"ripples", report.ripples}};
     json["tets"] = tets_json(report);
-}
-
-/// What was measured of the tets and proven of them.
-void add_checks(ordered_json& json, const ShellReport& report)
-{
-    json["conformity"] = conformity_json(report.conformity);
-    json["quality"] = quality_json(report.quality);
-    json["surface_bounds"] = bounds_json(report.surface_bounds);
-    json["wanted"] = report.wanted ? wanted_json(*report.wanted) : ordered_json();
-    json["volume"] = {{"solid", report.solid_volume},
-                      {"shell", report.shell_volume},
-                      {"outside", report.outside_volume},
-                      {"fill", report.fill}};
-    json["coverage"] = coverage_json(report.coverage);
-    json["certificate"] =
-        report.certificate ? certificate_json(*report.certificate) : ordered_json();
-    json["overlaps"] = report.overlaps ? overlaps_json(*report.overlaps) : ordered_json();
 }
 
 } // namespace
