@@ -54,7 +54,8 @@ std::string names_for_parser(const Option& option)
     for (const std::string& name : option.names)
         if (name.rfind("--", 0) == 0)
             names += "," + name;
-    return option.kind == OptionKind::flag ? names + ",!" + negation_of(option) : names;
+    const std::string negation = negation_of(option);
+    return negation.empty() ? names : names + ",!" + negation;
 }
 
 /// The words that CLI11 has for its own types.
@@ -340,11 +341,6 @@ Option preset_option(std::filesystem::path& preset)
                       "File of options as JSON, or what `info --json` prints; flags win over it");
     o.group = "Options";
     return o;
-}
-
-std::string negation_of(const Option& option)
-{
-    return "--no-" + option.flag.substr(2);
 }
 
 } // namespace vdb_shell::command

@@ -47,7 +47,4 @@ Option purpose_option(Purpose& purpose);
 /// The option that gives apply() its file.
 Option preset_option(std::filesystem::path& preset);
 
-/// The flag that turns the option's flag off: "--no-half" for "--half".
-std::string negation_of(const Option& option);
-
 } // namespace vdb_shell::command

@@ -20,8 +20,8 @@ std::vector<std::string> flags_of(const Option& option)
 {
     std::vector<std::string> flags = option.names;
     flags.insert(flags.begin(), option.flag);
-    if (option.kind == OptionKind::flag)
-        flags.push_back(negation_of(option));
+    if (const std::string negation = negation_of(option); !negation.empty())
+        flags.push_back(negation);
     if (!option.shorthand.empty())
         flags.push_back(option.shorthand);
     return flags;

@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <sstream>
+#include <string_view>
 
 namespace vdb_shell::command
 {
@@ -89,6 +90,25 @@ public:
             text += "  # " + example.does + "\n  vdb_shell " + example.words + '\n';
         return text + (examples.empty() ? "" : "\n");
     }
+
+    /// CLI11 says of the negation of a switch which value it stands for; people read that from its
+    /// name.
+    std::string make_option_name(const CLI::Option* option, bool is_positional) const override
+    {
+        const std::string names = CLI::Formatter::make_option_name(option, is_positional);
+        std::string text;
+        for (std::size_t at = 0; at < names.size();)
+            if (names.compare(at, kNegated.size(), kNegated) == 0)
+                at += kNegated.size();
+            else if (const char c = names[at++]; c == ',')
+                text += ", ";
+            else
+                text += c;
+        return text;
+    }
+
+private:
+    static constexpr std::string_view kNegated = "{false}";
 };
 
 } // namespace

@@ -35,7 +35,11 @@ void write_option(std::ostream& out, const Option& option)
     out << ".TP\n\\fB" << escaped(option.flag);
     for (const std::string& name : option.names)
         out << "\\fR, \\fB" << escaped(name);
+    if (const std::string negation = negation_of(option); !negation.empty())
+        out << "\\fR, \\fB" << escaped(negation);
     out << "\\fR";
+    if (option.kind == OptionKind::flag && std::get<bool>(option.get()))
+        out << " [on]";
     if (option.kind != OptionKind::flag) {
         out << " \\fI" << (option.kind == OptionKind::text ? "text" : "value") << "\\fR";
         const std::string value = text_of(option.get());

@@ -269,6 +269,14 @@ OptionList in_group(const std::string& group, OptionList options)
     return options;
 }
 
+std::string negation_of(const Option& option)
+{
+    if (option.kind != OptionKind::flag || option.flag.empty())
+        return "";
+    return option.flag.rfind("--no-", 0) == 0 ? "--" + option.flag.substr(5)
+                                              : "--no-" + option.flag.substr(2);
+}
+
 std::string expectation(const Option& option)
 {
     std::string range = option.range.text();

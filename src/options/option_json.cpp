@@ -135,6 +135,7 @@ ordered_json option_schema(const OptionSection& section, const Option& option)
     };
     ordered_json json{{"flag", or_null(option.flag)}};
     json["names"] = option.names;
+    json["negation"] = or_null(negation_of(option));
     json["key"] = or_null(path_of(section, option));
     json["type"] = type_name(option.kind);
     json["unit"] = name_in_table(option.unit);

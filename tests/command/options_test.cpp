@@ -243,9 +243,14 @@ std::set<std::string> flags_in(const std::string& help)
     for (std::string line; std::getline(lines, line);) {
         if (line.rfind("  -", 0) != 0)
             continue;
-        std::istringstream names(line.substr(2, line.find(' ', 2) - 2));
-        for (std::string name; std::getline(names, name, ',');)
-            flags.insert(name.substr(0, name.find('{')));
+        // "-o, --output TEXT   Where to": names end where none follows after a comma.
+        std::istringstream words(line);
+        for (std::string name; words >> name;) {
+            const bool is_last = name.back() != ',';
+            flags.insert(is_last ? name : name.substr(0, name.size() - 1));
+            if (is_last)
+                break;
+        }
     }
     return flags;
 }
@@ -264,8 +269,9 @@ TEST_F(Options, TheSchemaHasEveryFlagOfTheHelp)
                 continue;
             const auto flag = option.at("flag").get<std::string>();
             known.insert(flag);
-            if (option.at("type") == "flag")
-                known.insert("--no-" + flag.substr(2));
+            EXPECT_EQ(option.at("negation").is_null(), option.at("type") != "flag") << flag;
+            if (!option.at("negation").is_null())
+                known.insert(option.at("negation").get<std::string>());
         }
         EXPECT_EQ(flags_in(run(name + " --help").out), known) << name;
     }

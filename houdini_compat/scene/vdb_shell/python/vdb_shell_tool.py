@@ -21,9 +21,9 @@ import time
 
 # kind: int, float, flag, menu, text. `unset` is the value that stands for none at all, which the
 # command then gets no option for. `group` is the folder it stands in.
-Parameter = collections.namedtuple("Parameter", "name label kind default choices flag help group low unset")
+Parameter = collections.namedtuple("Parameter", "name label kind default choices flag negation help group low unset")
 
-RESULT = Parameter("result", "Result", "menu", "shell", ("shell", "volumes", "both"), None,
+RESULT = Parameter("result", "Result", "menu", "shell", ("shell", "volumes", "both"), None, None,
                    "Tetrahedra and surfaces, the level set and depth volumes, or both", "Result", None, None)
 KINDS = {"flag": "flag", "integer": "int", "unsigned": "int", "number": "float", "choice": "menu", "text": "text"}
 
@@ -74,7 +74,8 @@ def parameter_of(option):
     if kind == "text":
         default = default or ""
     return Parameter(name, name.replace("_", " ").title(), kind, default,
-                     tuple(option["choices"]) or None, option["flag"], option["help"], option["group"], low, unset)
+                     tuple(option["choices"]) or None, option["flag"], option["negation"], option["help"],
+                     option["group"], low, unset)
 
 
 @functools.lru_cache(maxsize=None)
@@ -105,7 +106,7 @@ def option_words(values):
         if parameter.flag is None or value == parameter.default or value == parameter.unset:
             continue
         if parameter.kind == "flag":
-            words.append(parameter.flag if value else "--no-" + parameter.flag[2:])
+            words.append(parameter.flag if value else parameter.negation)
         else:
             words += [parameter.flag, repr(value) if parameter.kind == "float" else str(value)]
     return words
