@@ -104,8 +104,8 @@ OptionList in_group(const std::string& group, OptionList options);
 /// "above 0", "a whole number, 0 or more", "one of raw, certified, thickest": what to expect.
 std::string expectation(const Option& option);
 
-/// The flag that turns a switch off: "--no-half" for "--half", "--clobber" for "--no-clobber". Empty
-/// for what takes a value and for what has no flag.
+/// The flag that turns a switch off: "--no-half" for "--half", "--clobber" for "--no-clobber".
+/// Empty for what takes a value and for what has no flag.
 std::string negation_of(const Option& option);
 
 /// Sets the field. Throws InvalidOption "`name` is -1, must be above 0" for a value of another kind
