@@ -14,7 +14,6 @@
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/houdini/shell_geometry.h"
 #include "vdb_shell/io/read_mesh.h"
-#include "vdb_shell/shell/shared_points.h"
 #include "vdb_shell/write/html_page.h"
 #include "vdb_shell/write/tet_file.h"
 
@@ -94,14 +93,6 @@ Solid solid_of(const ShellFile& file, std::vector<std::uint8_t> certified)
     return solid;
 }
 
-/// The surface that was grown: the inner one, or the outermost if the whole shell lies outside of
-/// the input.
-TriangleMesh grown_surface(const ShellStack& stack)
-{
-    const bool outward = stack.skin == stack.layers.size();
-    return outward ? TriangleMesh{stack.surface(0), stack.triangles()} : inner_surface(stack);
-}
-
 } // namespace
 
 OptionSections describe(Outputs& o)
@@ -111,13 +102,14 @@ OptionSections describe(Outputs& o)
                "File to write; give it once for each file wanted. By extension: .vdb (everything), "
                ".geo .bgeo .bgeo.sc (all but the grids, for Houdini), .usda (surface, tets, and "
                "the volumes of the .vdb written with it), .vtu .node .ele .mesh .msh (tets), .obj "
-               ".ply .off .stl (inner surface; the outer one of an outward shell), .png (picture: "
-               "a section, or the surface whole or cut open), .html (a page to turn "
-               "and cut it in a browser)")
+               ".ply .off .stl (a surface of the shell, --surface says which), .png (picture: a "
+               "section, or the surface whole or cut open), .html (a page to turn and cut it in a "
+               "browser)")
             .with_names({"-o"});
     return {{"", in_group("Output", {output, no_clobber_option(o.no_clobber)})},
             {"vdb", describe(o.vdb)},
             {"usd", describe(o.usd)},
+            {"surface_file", describe(o.surface)},
             {"picture", describe(o.picture)}};
 }
 
@@ -182,7 +174,8 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
                        &files);
             break;
         case Kind::surface:
-            write_mesh(path, grown_surface(file.stack), file.placement, &files);
+            write_mesh(path, surface_of(file.stack, outputs.surface.surface), file.placement,
+                       &files);
             break;
         case Kind::picture:
             write_picture(path, file, outputs.picture, &files);

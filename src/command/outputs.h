@@ -5,6 +5,7 @@
 #include "vdb_shell/houdini/usd_file.h"
 #include "vdb_shell/options/section.h"
 #include "vdb_shell/write/picture.h"
+#include "vdb_shell/write/surface_file.h"
 #include "vdb_shell/write/vdb_file.h"
 
 #include "command/file_plan.h"
@@ -24,6 +25,7 @@ struct Outputs {
     VdbWriteOptions vdb;
     PictureOptions picture;
     UsdOptions usd;
+    SurfaceFileOptions surface;
     bool no_clobber = false;
 };
 

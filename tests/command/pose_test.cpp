@@ -51,6 +51,31 @@ protected:
     const std::string rod = mesh_file("rod.obj", rest);
 };
 
+TEST_F(Pose, TheSkinOfAWrappedSurfaceIsAPoseOfItsShell)
+{
+    const std::string open = mesh_file("open.obj", without_triangle(rest, 3));
+    ASSERT_EQ(
+        run("build " + open + kCoarse + " --wrap --wrap-resolution 24 -q -o " + file("wrapped.vdb"))
+            .status,
+        ExitCode::success);
+    ASSERT_EQ(run("convert " + file("wrapped.vdb") + " --surface skin -o " + file("skin.obj") +
+                  " -o " + file("skin.ply"))
+                  .status,
+              ExitCode::success);
+    for (const char* skin : {"skin.obj", "skin.ply"}) {
+        EXPECT_EQ(run("inspect " + file(skin)).status, ExitCode::success);
+        const Outcome posed =
+            run("pose " + file("wrapped.vdb") + " " + file(skin) + " -q -o " + file("posed.vdb"));
+        ASSERT_EQ(posed.status, ExitCode::success) << posed.err;
+        const ShellStack before = read_shell_vdb(folder / "wrapped.vdb").stack,
+                         after = read_shell_vdb(folder / "posed.vdb").stack;
+        EXPECT_EQ(after.surface(0), before.surface(0));
+        EXPECT_EQ(after.surface(1), before.surface(1));
+    }
+    expect_refusal("convert " + file("wrapped.vdb") + " --surface skin -o " + file("skin.vtu"),
+                   ExitCode::usage_error, {"--surface", ".obj"});
+}
+
 TEST_F(Pose, WritesEveryFormatAndCheckProvesThem)
 {
     const std::string skin = mesh_file("bent.obj", bent(1.2));
