@@ -109,7 +109,7 @@ OptionSections describe(Outputs& o)
     return {{"", in_group("Output", {output, no_clobber_option(o.no_clobber)})},
             {"vdb", describe(o.vdb)},
             {"usd", describe(o.usd)},
-            {"surface_file", describe(o.surface)},
+            {"surface_file", describe(o.surface_file)},
             {"picture", describe(o.picture)}};
 }
 
@@ -174,7 +174,7 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
                        &files);
             break;
         case Kind::surface:
-            write_mesh(path, surface_of(file.stack, outputs.surface.surface), file.placement,
+            write_mesh(path, surface_of(file.stack, outputs.surface_file.surface), file.placement,
                        &files);
             break;
         case Kind::picture:

@@ -25,7 +25,7 @@ struct Outputs {
     VdbWriteOptions vdb;
     PictureOptions picture;
     UsdOptions usd;
-    SurfaceFileOptions surface;
+    SurfaceFileOptions surface_file;
     bool no_clobber = false;
 };
 

@@ -3,9 +3,9 @@
 // triangles that bound a solid, with the sign of the winding number (A. Jacobson and others, 2013),
 // and the distance to the sheets less half the thickness of a plate. Where the triangles leave a
 // gap, the fall of the winding number takes the place of the distance, and its zero closes the gap.
-// Values are computed by many threads and written by one, in sorted order, so the bits do not
-// depend on the number of threads. Values are only about distances; their zero set is what counts.
-// docs/stages/wrap.md, "What a wrap is", explains the numbers.
+// Values are computed by many threads and written by one, in the order of the tree, so the bits
+// do not depend on the number of threads. Values are only about distances; their zero set is what
+// counts. docs/stages/wrap.md, "What a wrap is", explains the numbers.
 
 #include "field/wrap_field.h"
 
