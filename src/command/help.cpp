@@ -14,7 +14,7 @@
 #include <map>
 #include <memory>
 #include <sstream>
-#include <string_view>
+#include <vector>
 
 namespace vdb_shell::command
 {
@@ -91,24 +91,19 @@ public:
         return text + (examples.empty() ? "" : "\n");
     }
 
-    /// CLI11 says of the negation of a switch which value it stands for; people read that from its
+    /// CLI11 adds to the negation of a switch which value it stands for; people read that from its
     /// name.
     std::string make_option_name(const CLI::Option* option, bool is_positional) const override
     {
-        const std::string names = CLI::Formatter::make_option_name(option, is_positional);
-        std::string text;
-        for (std::size_t at = 0; at < names.size();)
-            if (names.compare(at, kNegated.size(), kNegated) == 0)
-                at += kNegated.size();
-            else if (const char c = names[at++]; c == ',')
-                text += ", ";
-            else
-                text += c;
-        return text;
+        if (is_positional)
+            return CLI::Formatter::make_option_name(option, is_positional);
+        std::vector<std::string> names;
+        for (const std::string& name : option->get_snames())
+            names.push_back("-" + name);
+        for (const std::string& name : option->get_lnames())
+            names.push_back("--" + name);
+        return CLI::detail::join(names, ", ");
     }
-
-private:
-    static constexpr std::string_view kNegated = "{false}";
 };
 
 } // namespace

@@ -38,9 +38,9 @@ void write_option(std::ostream& out, const Option& option)
     if (const std::string negation = negation_of(option); !negation.empty())
         out << "\\fR, \\fB" << escaped(negation);
     out << "\\fR";
-    if (option.kind == OptionKind::flag && std::get<bool>(option.get()))
-        out << " [on]";
-    if (option.kind != OptionKind::flag) {
+    if (option.kind == OptionKind::flag) {
+        out << (std::get<bool>(option.get()) ? " [on]" : "");
+    } else {
         out << " \\fI" << (option.kind == OptionKind::text ? "text" : "value") << "\\fR";
         const std::string value = text_of(option.get());
         // The default, where it says something: most texts have an empty one.

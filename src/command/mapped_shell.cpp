@@ -71,8 +71,7 @@ SurfaceCoordinates texture_of(const std::filesystem::path& mesh, const MappedShe
                                             ? houdini::read_polygon_texture(mesh, placement)
                                             : read_texture_coordinates(mesh, placement);
     // The textured surface is that at rest. In the pose no triangle would lie on one of its own.
-    const ShellStack rest = rest_stack(shell.file);
-    return surface_coordinates(textured, {rest.surface(rest.skin), rest.triangles()});
+    return surface_coordinates(textured, skin_surface(rest_stack(shell.file)));
 }
 
 void require_same_tets(const MappedShell& first, const MappedShell& second)

@@ -121,7 +121,7 @@ void measure_sides(ShellResult& result)
 /// Which pins had to be, and where so many are together that a triangle has no tet.
 void judge_pins(ShellReport& report, const ShellStack& stack, const TetMesh& tets)
 {
-    const TriangleMesh skin{stack.surface(stack.skin), stack.triangles()};
+    const TriangleMesh skin = skin_surface(stack);
     const std::vector<std::uint32_t> demanded = blind_vertices(skin);
     report.demanded_pins = summary_of(demanded);
     std::vector<char> has_tet(skin.triangles.size()), blind(skin.points.size());

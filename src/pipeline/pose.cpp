@@ -41,7 +41,7 @@ FloatGridPtr level_set_of(const PosedShell& posed, double voxel_size, Interrupte
 {
     LevelSetOptions options;
     options.voxel_size = voxel_size;
-    const TriangleMesh skin{posed.stack.surface(posed.stack.skin), posed.stack.triangles()};
+    const TriangleMesh skin = skin_surface(posed.stack);
     // The signs of the narrow band's own field are for surfaces that do not cross themselves.
     if (posed.report.mesh.embedded())
         return mesh_to_narrow_band(skin, options, interrupter);

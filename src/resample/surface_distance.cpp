@@ -88,9 +88,8 @@ private:
 
 /// Whether there is more of the surface than one sheet for each cell of a grid around it. The grid
 /// has a cell to spare along each axis, so no box is crowded, however thin.
-bool fills_cells(const TriangleMesh& mesh, double spacing, double area)
+bool fills_cells(const Bounds& bounds, double spacing, double area)
 {
-    const Bounds bounds = bounds_of(mesh.points);
     double cells = 1;
     for (int k = 0; k < 3; ++k)
         cells *= 2 + (bounds.high[k] - bounds.low[k]) / spacing;
@@ -122,8 +121,9 @@ Samples sample(const TriangleMesh& mesh, double spacing)
         for (const openvdb::Vec3s& p : mesh.points)
             list.add(Vec3d(p), 0.0);
     };
-    if (fills_cells(mesh, spacing, area)) {
-        SamplesInCells cells(samples, bounds_of(mesh.points).low, spacing);
+    const Bounds bounds = bounds_of(mesh.points);
+    if (fills_cells(bounds, spacing, area)) {
+        SamplesInCells cells(samples, bounds.low, spacing);
         add_to(cells);
     } else
         add_to(samples);

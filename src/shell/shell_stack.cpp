@@ -21,6 +21,11 @@ ShellStack one_layer(PrismShell shell, PrismSplit split)
     return stack;
 }
 
+TriangleMesh skin_surface(const ShellStack& stack)
+{
+    return {stack.surface(stack.skin), stack.triangles()};
+}
+
 PrismShell hull_of(const ShellStack& stack)
 {
     const bool outward = stack.skin == stack.layers.size();

@@ -88,8 +88,7 @@ class Coordinates
 {
 public:
     Coordinates(const CoordinateInputs& inputs, Ramp ramp, bool nearest)
-        : in_(inputs), skin_{inputs.stack->surface(inputs.stack->skin), inputs.stack->triangles()},
-          ramp_(std::move(ramp))
+        : in_(inputs), skin_(skin_surface(*inputs.stack)), ramp_(std::move(ramp))
     {
         // A tree over the whole skin takes memory and time, and only one of the coordinates needs
         // it.

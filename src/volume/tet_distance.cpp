@@ -187,7 +187,7 @@ TetDistances scan(const ShellStack& stack, const TetMesh& tets, const TetDistanc
     distance->tree().getNodes(to);
     if (from.empty())
         return {distance, nearest};
-    const TriangleMesh mesh{stack.surface(stack.skin), stack.triangles()};
+    const TriangleMesh mesh = skin_surface(stack);
     const DistanceSurface surface(mesh, options.voxel_size);
     // Batches, so that the user can stop in between.
     constexpr std::size_t kBatches = 20;

@@ -29,9 +29,9 @@ OptionList describe(SurfaceFileOptions& o)
 
 TriangleMesh surface_of(const ShellStack& stack, ShellSurface which)
 {
-    const bool outward = stack.skin == stack.layers.size();
     if (which == ShellSurface::skin)
-        return {stack.surface(stack.skin), stack.triangles()};
+        return skin_surface(stack);
+    const bool outward = stack.skin == stack.layers.size();
     return outward ? TriangleMesh{stack.surface(0), stack.triangles()} : inner_surface(stack);
 }
 

@@ -41,6 +41,9 @@ struct ShellStack {
 /// The present case: one layer below the surface.
 ShellStack one_layer(PrismShell shell, PrismSplit split);
 
+/// The surface that the shell stands on, with all its points in their order.
+TriangleMesh skin_surface(const ShellStack& stack);
+
 /// S_0 and S_n as one shell, with the diagonals' choice left to the caller: what the stack looks
 /// like from both sides. `stop` is that of the layer that ends the pillar: the innermost, or the
 /// outermost where all layers lie above the skin.
