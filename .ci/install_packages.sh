@@ -6,7 +6,7 @@ set -euo pipefail
 
 build=(g++ cmake ninja-build libtbb-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev libopenmesh-dev
        libcgal-dev libhwy-dev libxxhash-dev libpng-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libeigen3-dev)
-test=(git libgtest-dev libgmock-dev clang libclang-rt-14-dev clang-format clang-tidy doxygen python3 python3-jsonschema python3-openvdb python3-numpy python3-vtk9 gmsh tetgen libopenvdb-tools blender chromium
+test=(git libgtest-dev libgmock-dev libbenchmark-dev clang libclang-rt-14-dev clang-format clang-tidy doxygen python3 python3-jsonschema python3-openvdb python3-numpy python3-vtk9 gmsh tetgen libopenvdb-tools blender chromium
       slurm-wlm munge)
 
 case "${1:-}" in

@@ -6,7 +6,8 @@
 
 Looks at each .md below FOLDER but those in build folders: the file or folder that a link or picture names exists, and
 a page that it names with an anchor (`page.md#section`) has a heading of that name. Links to the web are not looked up.
-Pages that a source or a script names by their path must exist as well.
+Pages that a source or a script names by their path must exist as well, and so must what a page names in backticks by
+a path that begins with a folder of the project (`src/main.cpp`), but for patterns (`src/*.h`) and placeholders (`tests/NAME_test.cpp`).
 Prints what is broken and ends with status 1, or says how many links there are.
 """
 import os
@@ -16,6 +17,9 @@ import sys
 
 LINK = re.compile(r"\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
 FENCE = re.compile(r"^(```|~~~).*?^\1\s*$", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"(?<!`)`([^`]+)`(?!`)")
+PLACE = re.compile(r"(?:src|include|tests|docs|samples|houdini_compat)/[^\s:,;()]*")
+PATTERN = re.compile(r"[*?<>{}$]|\.\.\.|(?<![A-Za-z])[A-Z][A-Z_]+(?![A-Za-z0-9.])")
 MENTION = re.compile(r"(?<![\w./-])docs/[\w/]+\.(?:md|py)\b")
 SOURCES = {".h", ".cpp", ".py", ".sh", ".cmake", ".txt", ".json"}
 SKIPPED = {".git", ".cache", "node_modules"}
@@ -32,6 +36,18 @@ def mentions(source):
     for number, line in enumerate(source.read_text(errors="replace").splitlines(), 1):
         for found in MENTION.finditer(line):
             yield number, found[0]
+
+
+def places(page):
+    """Line number and path of each place in the project that a page names in backticks."""
+    text = FENCE.sub(lambda block: "\n" * block[0].count("\n"), page.read_text())
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("    "):
+            continue
+        for code in CODE.findall(line):
+            found = PLACE.match(code)
+            if found and not PATTERN.search(found[0]):
+                yield number, found[0]
 
 
 def anchors(page):
@@ -88,6 +104,10 @@ def broken_in(folder, path):
             wrong = fault(folder, path, address)
             if wrong:
                 broken.append(f"{place}:{line}: {address}: {wrong}")
+        for line, named in places(path):
+            count += 1
+            if not (folder / named).exists():
+                broken.append(f"{place}:{line}: `{named}`: no such file")
     elif path.suffix in SOURCES:
         for line, page in mentions(path):
             count += 1

@@ -4,8 +4,8 @@
     checksums.py COMMAND MESHES [--against FILE] > FILE
 
 One line a mesh and set of options: SHA-256 of the tets (.vtu, which names no version and no time),
-file name, options. With --against the lines that differ are printed instead, and the exit status is
-1 if there are any. MESHES is a folder with paper/, artist/ and scans/, or any folder of meshes.
+file name, options. With --against the lines that differ are printed instead, and those of FILE that
+were not made (none of them with --only); the exit status is 1 if there are any, or nothing was made. MESHES is a folder with paper/, artist/ and scans/, or any folder of meshes.
 """
 import argparse
 import hashlib
@@ -54,6 +54,11 @@ def checksum(command, path, options, folder):
     return hashlib.sha256(tets.read_bytes()).hexdigest()
 
 
+def what_of(line):
+    """File and options of a line, behind the 64 characters of its checksum (or of the status in its place)."""
+    return line[65:]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
@@ -63,20 +68,25 @@ def main():
     arguments = parser.parse_args()
     before = set(arguments.against.read_text().splitlines()) if arguments.against else set()
     differ = same = 0
+    made = set()
     with tempfile.TemporaryDirectory() as folder:
         for path, options in jobs(arguments.meshes):
             if arguments.only not in path.stem:
                 continue
             line = f"{checksum(arguments.command, path, options, folder)} {path.parent.name}/{path.stem} {options}".rstrip()
+            made.add(what_of(line))
             if line in before:
                 same += 1
                 continue
             differ += 1
             print(line, flush=True)
-    if arguments.against:
-        print(f"{same} the same, {differ} differ", file=sys.stderr)
-        return 1 if differ else 0
-    return 0
+    if not arguments.against:
+        return 0 if made else 1
+    missing = [] if arguments.only else sorted(line for line in before if what_of(line) not in made)
+    for line in missing:
+        print(f"not made: {line}")
+    print(f"{same} the same, {differ} differ, {len(missing)} not made", file=sys.stderr)
+    return 1 if differ or missing or not made else 0
 
 
 if __name__ == "__main__":

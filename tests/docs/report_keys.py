@@ -10,7 +10,7 @@ the entries of that list. Each row "| `path` | keys | ... |" of the section "Rep
 all keys that were found under that path, and no others, in the order of the reports. An object
 without a row of its path is as the row of the end of its path tells, or one of the shapes of the
 second table.
-Each report is also held against docs/schema/report.schema.json.
+Each report is also held against docs/schema/report.schema.json, and the page has to say its schema's number.
 Prints what differs and ends with status 1, or says how many keys were compared.
 """
 import json
@@ -126,7 +126,8 @@ def faults(found, rows, shapes):
 
 def main():
     command, project = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
-    rows, shapes = rows_of(project / "docs" / "file_format.md")
+    page = project / "docs" / "file_format.md"
+    rows, shapes = rows_of(page)
     if not FILLER:
         del rows["core_fill"]
     schema = json.loads((project / "docs" / "schema" / "report.schema.json").read_text())
@@ -137,6 +138,8 @@ def main():
             against_schema += json_schema.all_faults(report, schema)
     if not json_schema.all_faults({**report, "side": 1}, schema):
         against_schema.append("the schema allows a side that is a number")
+    if f"the number of this form, {report['schema']}, " not in page.read_text():
+        against_schema.append(f"the page does not say that the report's schema is {report['schema']}")
     wrong = list(dict.fromkeys([*faults(found, rows, shapes), *against_schema]))
     print("\n".join(wrong) or f"{sum(map(len, rows.values()))} keys of {len(rows)} objects are as the page has them")
     return 1 if wrong else 0

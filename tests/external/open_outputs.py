@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens files that vdb_shell wrote with other people's programs and prints what each reports.
 
-    open_outputs.py FILE...
+    open_outputs.py [--with PROGRAM] FILE...
 
 Volumes (.vdb) are opened by pyopenvdb (`openvdb` from 12 on) and vdb_print, .vtu by VTK, .msh and
-.mesh by gmsh. A program that is not there is named and left out. Exit status: 0 when all that were
-there opened their files, 1 when one did not, 77 when none was there.
+.mesh by gmsh. A program that is not there is named and left out; --with takes one of them only, so
+that a test of its own tells of each whether it was there. Exit status: 0 when all that were there
+opened their files, 1 when one did not or none had a file to open, 77 when none was there.
 """
 
 import os
@@ -15,7 +16,8 @@ import subprocess
 import sys
 import tempfile
 
-opened, failed = [], []
+PROGRAMS = ("pyopenvdb", "vdb_print", "VTK", "gmsh")
+opened, failed, missing = [], [], []
 
 
 def report(program, path, text, ok=True):
@@ -24,6 +26,7 @@ def report(program, path, text, ok=True):
 
 
 def absent(program, path):
+    missing.append(program)
     print(f"{program}: not there, {os.path.basename(path)} not tried")
 
 
@@ -89,21 +92,26 @@ def open_vtk(path):
            f"types {sorted(kinds)}, arrays {', '.join(arrays)}", good)
 
 
-def open_file(path):
+def open_file(path, programs):
     extension = os.path.splitext(path)[1].lower()
-    if extension == ".vdb":
-        open_volumes(path)
-        run("vdb_print", path, [path], " ")
-    elif extension == ".vtu":
-        open_vtk(path)
-    elif extension in (".msh", ".mesh"):
-        run("gmsh", path, [path, "-check"], "nodes")
-    else:
+    if extension not in (".vdb", ".vtu", ".msh", ".mesh"):
         print(f"nothing here opens {path}")
+    if extension == ".vdb" and "pyopenvdb" in programs:
+        open_volumes(path)
+    if extension == ".vdb" and "vdb_print" in programs:
+        run("vdb_print", path, [path], " ")
+    if extension == ".vtu" and "VTK" in programs:
+        open_vtk(path)
+    if extension in (".msh", ".mesh") and "gmsh" in programs:
+        run("gmsh", path, [path, "-check"], "nodes")
 
 
 def main():
-    paths = sys.argv[1:]
+    paths, programs = sys.argv[1:], PROGRAMS
+    if paths[:1] == ["--with"]:
+        programs, paths = paths[1:2], paths[2:]
+        if programs[0] not in PROGRAMS:
+            sys.exit(f"open_outputs.py: {programs[0]} is none of {', '.join(PROGRAMS)}")
     if len(paths) == 2 and paths[0] == "--make-with":
         # For ctest: the command makes the files of a small shell first.
         with tempfile.TemporaryDirectory() as folder:
@@ -114,13 +122,15 @@ def main():
             subprocess.run([command, "convert", names[0], "--half", "--points", "beside", "-o", half],
                            check=True, capture_output=True)
             for name in [*names, half, os.path.join(folder, "half.points.vdb")]:
-                open_file(name)
+                open_file(name, programs)
     else:
         for path in paths:
-            open_file(path)
+            open_file(path, programs)
     if failed:
         return 1
-    return 0 if opened else 77
+    if opened:
+        return 0
+    return 77 if missing else 1
 
 
 if __name__ == "__main__":
