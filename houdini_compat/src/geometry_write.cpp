@@ -257,7 +257,16 @@ void write_geometry(const fs::path& path, const HoudiniGeometry& geometry, Outpu
     const Format format = format_by_extension(path);
     require_consistent(geometry);
     write_stream_atomically(
-        path, [&](std::ostream& out) { write_geometry(out, geometry, format); }, with);
+        path,
+        [&](std::ostream& out) {
+            try {
+                write_geometry(out, geometry, format);
+            } catch (const WriteError& error) {
+                // The writers know streams only.
+                throw WriteError(path.string() + ": " + error.what());
+            }
+        },
+        with);
 }
 
 } // namespace vdb_shell::houdini

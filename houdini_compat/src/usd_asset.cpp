@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <system_error>
+
 namespace vdb_shell
 {
 namespace
@@ -34,8 +36,14 @@ std::string relative_asset(const fs::path& path, const fs::path& volume)
 {
     // Without touching the disk: neither file has to exist yet, and symbolic links stay as the user
     // wrote them.
-    const fs::path folder = fs::absolute(path).lexically_normal().parent_path();
-    const fs::path target = fs::absolute(volume).lexically_normal();
+    std::error_code gone, volume_gone;
+    const fs::path folder = fs::absolute(path, gone).lexically_normal().parent_path();
+    const fs::path target = fs::absolute(volume, volume_gone).lexically_normal();
+    if (gone || volume_gone)
+        throw WriteError(path.string() +
+                         ": cannot be written: the folder that it is named from "
+                         "is gone: " +
+                         (gone ? gone : volume_gone).message());
     const fs::path relative = target.lexically_relative(folder);
     // No relative path leads from one root to another; only an absolute one is left.
     if (relative.empty())

@@ -2,8 +2,8 @@
 
 // The options of a USD stage. They say what the numbers mean and change none of them: a stage with
 // another axis or unit has the same coordinates, and the program that opens it does the turning.
-// The rate of frames has no flag, since the command writes one sample; the library can write
-// several.
+// The rate of frames has no flag here, since most commands write one sample; `usd`, which writes
+// several, gives it one.
 
 #include "vdb_shell/houdini/usd_file.h"
 #include "vdb_shell/options/option.h"

@@ -176,7 +176,8 @@ PointVectors point_velocities(const PoseResult& before, const PoseResult& after,
 
 /// All that the .vdb of a posed shell holds; `rest` is that of the shell at rest. Without
 /// `with_volumes` the grids are null; else they have rest.surface's voxel size, which it must have
-/// then. Throws what level sets and report_json throw, Cancelled.
+/// then. Throws what level sets throw; ReadError where the report in `rest` is no JSON object;
+/// Cancelled.
 ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
                      Interrupter* interrupter = nullptr);
 

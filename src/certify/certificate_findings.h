@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/defect_list.h"
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/complex_certificate.h"
 
@@ -10,12 +11,6 @@
 
 namespace vdb_shell
 {
-
-template <typename Element> void add_to(Defect<Element>& defect, const Element& element)
-{
-    if (defect.count++ < Defect<Element>::kFirstShown)
-        defect.first.push_back(element);
-}
 
 /// The indices of the flags that are raised.
 inline Defect<std::uint32_t> raised(const std::vector<char>& flags)

@@ -10,6 +10,7 @@
 #include "vdb_shell/certify/complex_certificate.h"
 
 #include "core/sort_unique.h"
+#include "mesh/surface_defects.h"
 #include "vdb_shell/shell/shared_points.h"
 
 #include "certify/certificate_findings.h"
@@ -81,16 +82,6 @@ std::vector<int> check_signs(const TetMesh& mesh, ComplexCertificate& certificat
         if (sign[t] <= 0)
             add_to(certificate.bad_tets, t);
     return sign;
-}
-
-std::vector<char> find_degenerate(const FreeFaces& free)
-{
-    std::vector<char> degenerate(free.faces.size());
-    for_each_index(degenerate.size(), [&](std::size_t f) {
-        const Vec3I& c = free.faces[f];
-        degenerate[f] = exact::collinear(free.points[c[0]], free.points[c[1]], free.points[c[2]]);
-    });
-    return degenerate;
 }
 
 void list_contact(const FreeFaces& free, std::uint32_t f, std::uint32_t g,
@@ -296,7 +287,7 @@ ComplexCertificate certify_complex(const ShellStack& stack, Interrupter* interru
     certificate.conformity = check_conformity(stack, tets);
     progress.stop_if_interrupted(30);
     const FreeFaces free = find_free_faces(stack, tets);
-    const std::vector<char> degenerate = find_degenerate(free);
+    const std::vector<char> degenerate = find_degenerate(free.points, free.faces);
     check_contacts(free, degenerate, certificate);
     progress.stop_if_interrupted(80);
     const TetTree tree(tets, sign);

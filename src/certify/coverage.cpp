@@ -218,7 +218,7 @@ Coverage estimate_coverage(const TriangleMesh& surface, const TetMesh& tets,
     if (options.samples == 0)
         return {};
     require_solid(surface);
-    const StageProgress progress(interrupter, "Coverage");
+    const StageProgress progress(interrupter, "coverage");
     const Scene scene = make_scene(surface, tets, options.samples);
     const CounterRandom random(options.seed);
     // Only a solid that fills next to nothing of the cells it passes through comes near this bound.

@@ -11,9 +11,8 @@
 #include "certify/surface_contacts.h"
 
 #include "certify/certificate_findings.h"
-#include "core/exact.h"
-#include "core/parallel.h"
 #include "core/triangle_pairs.h"
+#include "mesh/surface_defects.h"
 #include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
@@ -71,16 +70,6 @@ int shared_corners(const Vec3I& first, const Vec3I& second)
     return shared;
 }
 
-std::vector<char> find_degenerate(const TwoSurfaces& both)
-{
-    std::vector<char> degenerate(both.faces.size());
-    for_each_index(degenerate.size(), [&](std::size_t f) {
-        const Vec3I& c = both.faces[f];
-        degenerate[f] = exact::collinear(both.points[c[0]], both.points[c[1]], both.points[c[2]]);
-    });
-    return degenerate;
-}
-
 void list_contact(const TwoSurfaces& both, std::uint32_t first, std::uint32_t second,
                   Certificate& certificate)
 {
@@ -103,7 +92,7 @@ std::vector<std::array<std::uint32_t, 2>>
 check_surfaces(const PrismShell& shell, const std::vector<char>& pinned, Certificate& certificate)
 {
     const TwoSurfaces both = lay_together(shell, pinned);
-    const std::vector<char> degenerate = find_degenerate(both);
+    const std::vector<char> degenerate = find_degenerate(both.points, both.faces);
     for (std::uint32_t f = 0; f < degenerate.size(); ++f)
         if (degenerate[f])
             add_to(both.inner(f) ? certificate.inner_folds : certificate.outer_contacts,

@@ -8,21 +8,10 @@
 
 #include "core/exact.h"
 #include "core/parallel.h"
+#include "mesh/defect_list.h"
 
 namespace vdb_shell
 {
-namespace
-{
-
-void add_to(Defect<std::uint32_t>& defect, std::size_t tet)
-{
-    if (defect.first.size() < Defect<std::uint32_t>::kFirstShown)
-        defect.first.push_back(static_cast<std::uint32_t>(tet));
-    ++defect.count;
-}
-
-} // namespace
-
 TetSigns count_tet_signs(const TetMesh& mesh)
 {
     std::vector<int> sign(mesh.tets.size());
@@ -33,7 +22,7 @@ TetSigns count_tet_signs(const TetMesh& mesh)
     });
     TetSigns signs;
     signs.tets = sign.size();
-    for (std::size_t i = 0; i < sign.size(); ++i) {
+    for (std::uint32_t i = 0; i < sign.size(); ++i) {
         if (sign[i] < 0)
             add_to(signs.inverted, i);
         if (sign[i] == 0)

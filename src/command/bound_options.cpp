@@ -10,14 +10,16 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/words.h"
+#include "vdb_shell/io/read_file.h"
+#include "vdb_shell/pose/pose_shell.h"
 
 #include "command/build_command.h"
 #include "options/option_json.h"
+#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 #include <utility>
@@ -156,14 +158,16 @@ bool was_given(const BoundOption& bound)
            (bound.shorthand_given && bound.shorthand_given->count() > 0);
 }
 
-std::string text_of_file(const std::filesystem::path& preset)
+/// Of what `info --json` prints.
+nlohmann::ordered_json parameters_in(const nlohmann::ordered_json& json, const std::string& name)
 {
-    std::ifstream in(preset, std::ios::binary);
-    std::ostringstream text;
-    // An empty file fails here as well, since nothing goes into the stream. It is no JSON either.
-    if (!in || !(text << in.rdbuf()))
-        throw ReadError(preset.string() + ": cannot be read as a file of options");
-    return text.str();
+    const nlohmann::ordered_json& parameters = json.at("parameters");
+    if (!parameters.is_object())
+        throw InvalidOption(name + ": parameters is " +
+                            shown_in_part(parameters.dump(
+                                -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) +
+                            ", must be an object");
+    return parameters;
 }
 
 /// Sets what a text of JSON says, from a file or of a purpose. `name` opens messages.
@@ -173,13 +177,15 @@ void set_from_text(BoundOptions& bound, const std::string& text, const std::stri
     // `info --json` prints the options beside the report, and what it prints can be given as the
     // file.
     if (json.contains("parameters"))
-        json = nlohmann::ordered_json(json.at("parameters"));
-    // One file serves all commands: what it says has to be an option of `build`, which has them
-    // all, and what this command has no use for is left aside. Reading it into arguments of `build`
+        json = parameters_in(json, name);
+    // One file serves all commands: what it says has to be an option of `build`, or of how `pose`
+    // mends, and what this command has no use for is left aside. Reading it into arguments of both
     // first is what finds misspelt keys; without that every unknown key would look like one of
     // another command.
     BuildArguments all;
+    PoseOptions pose;
     OptionSections sections = describe(all);
+    sections.push_back({"pose", vdb_shell::describe(pose)});
     set_from_json(json, sections, name);
     set_known_from_json(json, bound.sections, name);
 }
@@ -316,7 +322,8 @@ void apply(BoundOptions& bound)
     const BoundOption* preset = find(bound, kPresetFlag);
     if (preset && was_given(*preset)) {
         const std::string file = preset->given->results().back();
-        set_from_text(bound, text_of_file(file), file);
+        // Whole and not from a pipe: it is read for the plan, and again for each frame.
+        set_from_text(bound, read_whole_file(file), file);
     }
     for (BoundOption& option : bound.options)
         if (was_given(option))

@@ -75,17 +75,21 @@ ShellResult read_and_build(const BuildArguments& arguments, ShellOptions& option
             throw InvalidOption(name + ": --recentre and --rescale are for triangles; a level set "
                                        "has a transform of its own");
         FloatGridPtr field;
-        StageClock(read_cost).run("read",
-                                  [&] { field = read_level_set(source.file, source.grid); });
+        StageClock(read_cost, interrupter).run("read", [&] {
+            field = read_level_set(source.file, source.grid);
+        });
         result = build_shell_from_level_set(*field, options, name, thickness.get(), interrupter,
                                             read_cores(arguments.cores, arguments.read, {}));
     } else {
         ReadResult read;
         interrupter->start("read");
-        StageClock(read_cost).run(
-            "read", [&] { read = read_surface(arguments.mesh, arguments.read, arguments.format); });
+        StageClock(read_cost, interrupter).run("read", [&] {
+            read = read_surface(arguments.mesh, arguments.read, arguments.format);
+        });
         warn_of_lost_digits(arguments.mesh, read, context);
         const Placement& placement = read.report.placement;
+        for (const std::filesystem::path& output : arguments.outputs.paths)
+            require_place_for(output, placement);
         // Before in_unit: what frames have in common is kept in world units, while a frame that is
         // rescaled may have a unit of its own.
         keep_voxel_size(options, context);
@@ -282,7 +286,7 @@ int run_build(const BuildArguments& arguments, Context& context)
     require_tets(arguments, result);
     OutputSet files(existing_files(arguments.outputs.no_clobber));
     interrupter.start("write");
-    StageClock(write_cost).run("write", [&] {
+    StageClock(write_cost, &interrupter).run("write", [&] {
         if (!arguments.remesh_map.empty())
             write_remesh_map(arguments.remesh_map, *result.remesh_map, &files);
         // Before to_file, which takes the tets out of the result.

@@ -24,6 +24,8 @@
 #include "command/repair_command.h"
 #include "command/usd_command.h"
 #include "command/volumes_command.h"
+#include "options/option_json.h"
+#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -113,6 +115,12 @@ OptionSections describe(GlobalArguments& a)
             {"", in_group("Frames", {frames, dry_run, keep_going, manifest, resume, at_once})}};
 }
 
+/// Numbers with all digits, since options that differ in the seventh one give other bytes.
+std::string exact_text(const OptionValue& value)
+{
+    return std::holds_alternative<double>(value) ? value_json(value).dump() : text_of(value);
+}
+
 } // namespace
 
 struct Call::Parts {
@@ -121,17 +129,22 @@ struct Call::Parts {
     Arguments a;
     BoundOptions global;
     std::vector<Subcommand> commands;
+    /// The only one that is registered; empty: all are.
+    std::string only;
 
     /// The order of its calls is that of the commands in the help.
     template <typename Add, typename Struct>
     void add(const char* name, const char* help, Add add_options, Struct& arguments,
-             std::function<FilePlan()> plan, std::function<int(Context&)> run)
+             std::function<FilePlan()> plan, std::function<int(Context&)> run,
+             bool gathers_frames = false)
     {
+        if (!only.empty() && only != name)
+            return;
         CLI::App* subcommand = app.add_subcommand(name, help);
         subcommand->footer(
             "Options of every command, as --frames and --progress: vdb_shell --help");
-        commands.push_back(
-            {subcommand, add_options(*subcommand, arguments), std::move(plan), std::move(run)});
+        commands.push_back({subcommand, add_options(*subcommand, arguments), std::move(plan),
+                            std::move(run), gathers_frames});
     }
 
     void add_commands();
@@ -182,13 +195,11 @@ void Call::Parts::add_file_commands()
     add(
         "page", "Write a page that shows a shell, or its frames, in a browser", add_page_command,
         a.page, [this] { return plan_page(a.page); },
-        [this](Context& context) { return run_page(a.page, context); });
-    commands.back().gathers_frames = true;
+        [this](Context& context) { return run_page(a.page, context); }, true);
     add(
         "usd", "Write one USD stage of a shell's frames", add_usd_command, a.usd,
         [this] { return plan_usd(a.usd); },
-        [this](Context& context) { return run_usd(a.usd, context); });
-    commands.back().gathers_frames = true;
+        [this](Context& context) { return run_usd(a.usd, context); }, true);
     add(
         "info", "Print what a shell's file holds", add_info_command, a.info,
         [this] { return plan_reading(a.info.file); },
@@ -287,9 +298,10 @@ std::vector<std::string> words_of(const std::vector<std::string>& given)
     return words;
 }
 
-Call::Call() : parts_(std::make_unique<Parts>())
+Call::Call(const std::string& only) : parts_(std::make_unique<Parts>())
 {
     Parts& p = *parts_;
+    p.only = only;
     p.app.set_version_flag("--version", version_text());
     p.app.require_subcommand(1);
     // Global options may stand behind the command as well, where people tend to add them.
@@ -304,7 +316,20 @@ Call::~Call() = default;
 void Call::parse(const std::vector<std::string>& words)
 {
     // The parser takes them from the back.
-    parts_->app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    try {
+        parts_->app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::RequiredError&) {
+        const std::vector<std::string> unknown = parts_->app.remaining();
+        // The parser asks for a command before it asks what the words are.
+        if (!parts_->app.get_subcommands().empty() || unknown.empty())
+            throw;
+        const bool is_flag = unknown.front().rfind('-', 0) == 0;
+        throw CLI::ExtrasError(shown_in_part(unknown.front()) +
+                                   (is_flag
+                                        ? " is no option of every command, and no command is given"
+                                        : " is no command"),
+                               CLI::ExitCodes::ExtrasError);
+    }
     apply(parts_->global);
 }
 
@@ -346,7 +371,7 @@ std::string Call::options_text() const
                 text += name_alone(word) + '\n';
     for (const BoundOption& bound : command.bound.options) {
         const Option& option = bound.option;
-        const std::string value = text_of(option.get());
+        const std::string value = exact_text(option.get());
         text += option.flag + ' ' + option.key + '=';
         if (option.kind == OptionKind::text && bound.given)
             // An option that can be given several times keeps more than its field shows, and their

@@ -12,8 +12,10 @@
 
 #include "command/exit_code.h"
 #include "command/file_commands.h"
+#include "options/parse_json.h"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <ostream>
 
@@ -61,6 +63,10 @@ FilePlan plan_compare(const CompareArguments& arguments)
 int run_compare(const CompareArguments& arguments, Context& context)
 {
     const ShellFile first = read_shell(arguments.first), second = read_shell(arguments.second);
+    // Refused by the name of its file, and by its depth, before options are compared.
+    const std::string which = ": its parameters";
+    parse_json(first.parameters_json, arguments.first.string() + which);
+    parse_json(second.parameters_json, arguments.second.string() + which);
     const ShellComparison comparison = compare_shells(first, second);
     const auto print = arguments.json ? comparison_json : comparison_text;
     const std::string text = print(comparison, arguments.first.string(), arguments.second.string());

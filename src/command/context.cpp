@@ -6,6 +6,7 @@
 
 #include "command/error_status.h"
 #include "command/progress.h"
+#include "options/shown_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -46,8 +47,9 @@ void Context::say(LogLevel of, const std::string& text) const
         progress->clear_line();
     // At once as a whole: frames that run at the same time may share the stream.
     if (format == MessageFormat::text) {
-        err << "vdb_shell: " + (frame ? "frame " + std::to_string(*frame) + ": " : "") + text +
-                   '\n';
+        // Messages quote files, whose control characters are not for the terminal.
+        err << "vdb_shell: " + (frame ? "frame " + std::to_string(*frame) + ": " : "") +
+                   shown_lines(text) + '\n';
         return;
     }
     ordered_json json{{"event", "message"}, {"level", name_in_table(of)}};

@@ -50,9 +50,11 @@ std::vector<CoreMesh> read_cores(const std::vector<std::string>& files, const Re
         const GridName parts = split_grid_name(file);
         const std::filesystem::path path(parts.file);
         // A misspelt word looks like a file.
-        if (!std::filesystem::exists(path))
-            throw ReadError(file +
-                            ": there is no such file; --core takes free, stitched or a file");
+        std::error_code unknown;
+        if (!std::filesystem::exists(path, unknown))
+            throw ReadError(file + (unknown ? ": cannot be read: " + unknown.message()
+                                            : ": there is no such file; --core takes free, "
+                                              "stitched or a file"));
         CoreMesh core{path.filename().string(), {}};
         Placement own;
         if (lower_case_extension(path) == ".vdb") {

@@ -13,6 +13,7 @@
 #include "command/exit_code.h"
 #include "command/mapped_shell.h"
 #include "command/signals.h"
+#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -52,10 +53,11 @@ OptionSections describe(DeformArguments& a)
 /// One line a grid. What is unusual is told only where it happened.
 std::string figures_of_deform(const DeformFigures& f, bool points)
 {
+    // Names of grids are of any length, so only numbers go through the buffer.
+    std::string text = shown(f.grid) + ": " + std::to_string(f.active_after) +
+                       (points ? " points, " : " voxels, ") + std::to_string(f.active_before) +
+                       " before";
     char line[256];
-    std::snprintf(line, sizeof line, "%s: %zu %s, %zu before", f.grid.c_str(), f.active_after,
-                  points ? "points" : "voxels", f.active_before);
-    std::string text = line;
     // Vectors, whole numbers and level sets have no mass, and a change by per cent of nothing says
     // nothing.
     if (f.mass_before != 0) {
@@ -147,7 +149,8 @@ int run_deform(const DeformArguments& arguments, Context& context)
     for (const GridBasePtr& grid :
          read_volumes(arguments.call.volume, arguments.call.grids, GridKinds::volumes_and_points)) {
         DeformFigures figures;
-        made.push_back(deform(*grid, figures));
+        made.push_back(
+            with_file_of_grids(arguments.call.volume, [&] { return deform(*grid, figures); }));
         report.push_back(json_of(figures));
         text += figures_of_deform(figures, is_point_grid(*grid));
     }

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "fill/outside_program.h"
 #include "io/mesh_formats.h"
+#include "options/shown_text.h"
 
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
@@ -79,7 +80,11 @@ void print_machine(std::ostream& out)
         print_row(out, "temporary", "TMPDIR names no folder: standard input and --core-fill fail");
     else
         print_folder(out, "temporary", temporary);
-    print_folder(out, "here", fs::current_path());
+    const fs::path here = fs::current_path(none);
+    if (none)
+        print_row(out, "here", "is no folder any more: " + none.message());
+    else
+        print_folder(out, "here", here);
 }
 
 /// Grids by name and type, and whether they are a shell of ours.
@@ -96,7 +101,7 @@ void print_vdb(std::ostream& out, const fs::path& path)
     for (const openvdb::GridBase::Ptr& grid : *grids) {
         const bool is_level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
         print_row(out, "grid",
-                  '"' + grid->getName() + "\", " + grid->type() +
+                  '"' + shown(grid->getName()) + "\", " + shown(grid->type()) +
                       (is_level_set ? ", level set" : ""));
         level_set = level_set || (is_level_set && grid->isType<openvdb::FloatGrid>());
     }

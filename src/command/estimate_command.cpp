@@ -162,7 +162,7 @@ BoundOptions add_estimate_command(CLI::App& app, EstimateArguments& arguments)
 FilePlan plan_estimate(const EstimateArguments& arguments)
 {
     const BuildArguments& build = arguments.build;
-    FilePlan plan(Existing::replaced);
+    FilePlan plan(existing_files(build.outputs.no_clobber));
     if (is_call(arguments)) {
         // Options before -- are those of a build's surfaces. With a call behind it they would be
         // without effect, and -o looks as if it had one.
@@ -208,11 +208,14 @@ int run_estimate(const EstimateArguments& arguments, Context& context)
     json["seconds"] = seconds;
     json["memory_bytes"] = std::llround(memory);
     json["disk_bytes"] = std::llround(disk);
+    // Names of files may be no UTF-8, which JSON has to be.
+    const std::string text =
+        json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
     if (is_standard_output(report)) {
-        context.out << json.dump(2) << '\n';
+        context.out << text;
     } else if (!report.empty()) {
-        OutputSet files;
-        files.write_stream(report, [&](std::ostream& out) { out << json.dump(2) << '\n'; });
+        OutputSet files(existing_files(arguments.build.outputs.no_clobber));
+        files.write_stream(report, [&](std::ostream& out) { out << text; });
         files.commit();
     }
     return success;

@@ -19,6 +19,7 @@
 #include "command/shell_words.h"
 #include "command/signals.h"
 #include "fill/outside_program.h"
+#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -80,10 +81,10 @@ OptionList task_options(FarmArguments& a)
             option("", limits.memory_gib, "--memory",
                    "Largest memory of a task; without it what `estimate` says, and a margin")
                 .in(Unit::gibibytes)
-                .within(above(0)),
+                .within(above(0).at_most(FarmLimits::kMostMemoryGib)),
             option("", limits.minutes, "--minutes",
                    "Longest time of a task; without it what `estimate` says, and a margin")
-                .within(above(0)),
+                .within(above(0).at_most(FarmLimits::kMostMinutes)),
             option("", limits.at_once, "--at-once", "Tasks at the same time; 0 is as it comes")
                 .in(Unit::count)
                 .within(at_least(0)),
@@ -133,7 +134,10 @@ std::vector<std::string> words_of_line(const std::string& line, const std::strin
     try {
         return nlohmann::json::parse(line).get<std::vector<std::string>>();
     } catch (const nlohmann::json::exception& error) {
-        throw InvalidOption(place + ": is no JSON array of words: " + error.what());
+        // The parser quotes the word at which it stopped, however long it is.
+        constexpr std::size_t kMostOfReason = 200;
+        throw InvalidOption(
+            place + ": is no JSON array of words: " + shown_in_part(error.what(), kMostOfReason));
     }
 }
 
@@ -184,9 +188,35 @@ std::size_t chunk_of(const FarmArguments& arguments, const FarmJob& job,
     return std::max({least, std::size_t(1), cost ? chunk_for(*cost, steps) : 1});
 }
 
+void require_utf8(const std::string& word)
+{
+    try {
+        static_cast<void>(nlohmann::json(word).dump());
+    } catch (const nlohmann::json::type_error&) {
+        throw InvalidOption("\"" + shown(word) +
+                            "\" is no UTF-8, which a job of this engine has to be; --engine slurm "
+                            "takes any name");
+    }
+}
+
+void require_utf8(const FarmJob& job)
+{
+    for (const fs::path& path : {fs::path(job.program), job.home, job.folder})
+        require_utf8(path.string());
+    for (const FarmCall& call : job.calls) {
+        require_utf8(call.manifest.string());
+        for (const std::string& word : call.words)
+            require_utf8(word);
+    }
+}
+
 /// Also throws for what the engine's form cannot hold, which is why a plan makes the text as well.
 std::string text_of_job(const FarmArguments& arguments, const FarmJob& job)
 {
+    // A script has any bytes. The others are JSON, and with other bytes in the place of those that
+    // are no UTF-8 tasks would ask for other files.
+    if (arguments.engine != Engine::slurm)
+        require_utf8(job);
     switch (arguments.engine) {
     case Engine::slurm:
         return slurm_script(job, arguments.job.string());
@@ -207,11 +237,11 @@ FarmJob job_of(const FarmArguments& arguments, const Context& context, bool with
                   : arguments.engine == Engine::slurm ? own_program()
                                                       : "vdb_shell";
     // Where relative names of the calls are meant from: that is the folder of who writes the job.
-    job.home = fs::current_path();
+    job.home = current_folder();
     fs::path folder = arguments.folder;
     if (folder.empty())
         folder = fs::path(arguments.job).replace_extension(".tasks");
-    job.folder = fs::absolute(folder).lexically_normal();
+    job.folder = absolute_path(folder);
     require_one_line(arguments.job, "the name of the job");
     require_one_line(job.folder, "the folder");
     require_one_line(job.home, "the folder");
@@ -249,7 +279,7 @@ void submit(const FarmArguments& arguments, Context& context)
     SignalInterrupter interrupter(context);
     constexpr double kSeconds = 120;
     context.out << fill::run_program(fill::find_program("bash"),
-                                     {fs::absolute(arguments.job).string(), "submit"},
+                                     {absolute_path(arguments.job).string(), "submit"},
                                      fill::TemporaryFolder().path(), kSeconds, &interrupter);
 }
 

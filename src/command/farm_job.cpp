@@ -11,6 +11,7 @@
 #include "vdb_shell/core/words.h"
 
 #include "command/call.h"
+#include "command/file_plan.h"
 #include "command/frames.h"
 #include "command/sequence.h"
 
@@ -158,7 +159,7 @@ FarmCall plan_words(const std::vector<std::string>& words, const std::string& pl
     farm.command = call.name();
     farm.words = shared_words(words);
     if (!global.manifest.empty())
-        farm.manifest = fs::absolute(global.manifest).lexically_normal();
+        farm.manifest = absolute_path(global.manifest);
     global.resume = global.keep_going = true; // as tasks will have it
     const std::vector<Step> steps = plan_steps(words, global, context);
     // The words of one frame can be planned and estimated by themselves; those with tokens cannot.
@@ -197,7 +198,7 @@ std::string identity_of(const fs::path& path)
 {
     std::error_code unknown;
     const fs::path real = fs::weakly_canonical(path, unknown);
-    return unknown ? fs::absolute(path).lexically_normal().string() : real.string();
+    return unknown ? absolute_path(path).string() : real.string();
 }
 
 } // namespace

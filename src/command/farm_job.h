@@ -46,6 +46,9 @@ using FarmTask = std::vector<FarmRun>;
 
 /// What is asked of the engine for each task.
 struct FarmLimits {
+    /// About a pebibyte, and a year. Engines take whole mebibytes, minutes and seconds, in numbers
+    /// that have an end.
+    static constexpr double kMostMemoryGib = 1e6, kMostMinutes = 366.0 * 24 * 60;
     int cpus = 4;
     std::optional<double> memory_gib;
     std::optional<double> minutes;

@@ -30,8 +30,11 @@ std::string add_cost(const FarmCall& call, int cpus, StepCost& dearest)
     // The reason is told to the user, who then knows which of --memory and --minutes to give.
     if (!is_modelled(call.command))
         return "`" + call.command + "`";
-    if (!std::filesystem::exists(call.first_input))
-        return "an input that is not there yet";
+    std::error_code unknown;
+    if (!std::filesystem::exists(call.first_input, unknown))
+        return unknown ? "an input that cannot be read (" + call.first_input.string() + ": " +
+                             unknown.message() + ")"
+                       : "an input that is not there yet";
     Call first;
     first.parse(call.first_words);
     first.plan();
@@ -88,12 +91,15 @@ void set_limits(FarmJob& job, const StepCost& cost)
         most = std::max(most, steps);
     }
     // What was given is not touched: a person knows the machines.
+    // An estimate beyond what can be given is of a call that no machine can do.
     if (!job.limits.minutes)
         job.limits.minutes =
-            std::max(kLeastMinutes, kTimeMargin * double(most) * cost.seconds / kSecondsPerMinute);
+            std::clamp(kTimeMargin * double(most) * cost.seconds / kSecondsPerMinute, kLeastMinutes,
+                       FarmLimits::kMostMinutes);
     if (!job.limits.memory_gib)
         job.limits.memory_gib =
-            kMemoryMargin * double(at_once) * cost.memory / kGib + kMoreMemoryGib;
+            std::min(kMemoryMargin * double(at_once) * cost.memory / kGib + kMoreMemoryGib,
+                     FarmLimits::kMostMemoryGib);
 }
 
 } // namespace vdb_shell::command

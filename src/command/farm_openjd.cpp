@@ -9,6 +9,7 @@
 
 #include "vdb_shell/core/error.h"
 
+#include "command/file_plan.h"
 #include "command/frames.h"
 
 #include <nlohmann/json.hpp>
@@ -27,6 +28,8 @@ using nlohmann::ordered_json;
 
 // Limits of the specification (2023-09): elements of a range, and parameters of a job.
 constexpr std::size_t kMostInRange = 1024, kMostParameters = 50;
+/// Bytes of a file's name, on all file systems of farms.
+constexpr std::size_t kLongestName = 255;
 
 /// The folders of a job, a parameter each.
 class Folders
@@ -98,8 +101,7 @@ class Template
 {
 public:
     Template(const FarmJob& job, const fs::path& file, bool chunking)
-        : job_(job), chunking_(chunking),
-          template_folder_(fs::absolute(file).lexically_normal().parent_path()),
+        : job_(job), chunking_(chunking), template_folder_(absolute_path(file).parent_path()),
           tasks_folder_(folders_.use(checked(job.folder.string()), true))
     {
         // Read as well: --resume looks at what an earlier attempt has noted, and the join at what
@@ -216,6 +218,25 @@ private:
         return parts;
     }
 
+    /// Manifests of tasks are named by their frames, which have no pattern where somebody picked
+    /// them. A worker would find that out, a thousand times.
+    void require_names(std::size_t call) const
+    {
+        for (const FarmTask& task : job_.tasks)
+            for (const FarmRun& run : task) {
+                if (run.call != call)
+                    continue;
+                // How a scheduler parts them is up to it: the parts here stand for those.
+                const std::string frames = frames_text(run.frames),
+                                  name = std::to_string(call) + "-" + frames + ".json";
+                if (name.size() > kLongestName)
+                    throw InvalidOption("a task of the frames " + frames.substr(0, 40) +
+                                        "... would have a manifest whose name has " +
+                                        std::to_string(name.size()) + " bytes, over the limit of " +
+                                        std::to_string(kLongestName) + ": give a smaller --chunk");
+            }
+    }
+
     ordered_json parameter_space(std::size_t call) const
     {
         ordered_json frames{{"name", "Frames"}};
@@ -250,6 +271,8 @@ private:
     {
         const FarmCall& call = job_.calls[c];
         const bool frames = !call.frames.empty();
+        if (frames)
+            require_names(c);
         // By its frames, for a template does not know the number of a task.
         const std::string part = tasks_folder_ + "/" + std::to_string(c) + "-" +
                                  (frames ? "{{Task.Param.Frames}}" : "0") + ".json";

@@ -15,6 +15,8 @@
 #include "command/exit_code.h"
 #include "command/file_plan.h"
 #include "command/signals.h"
+#include "options/parse_json.h"
+#include "options/shown_text.h"
 
 #include <openvdb/openvdb.h>
 
@@ -40,11 +42,7 @@ void add_file(CLI::App& app, FileArguments& arguments)
 nlohmann::ordered_json stored_json(const std::filesystem::path& path, const char* what,
                                    const std::string& text)
 {
-    try {
-        return nlohmann::ordered_json::parse(text);
-    } catch (const nlohmann::json::exception& error) {
-        throw ReadError(path.string() + ": its " + what + " are not JSON: " + error.what());
-    }
+    return parse_json(text, path.string() + ": its " + what);
 }
 
 /// What reading has held against the file's own digests, and what it has not looked at.
@@ -59,7 +57,7 @@ void print_checks(const ShellFile& file, std::ostream& out)
 
 void print_grid(const openvdb::FloatGrid& grid, std::ostream& out)
 {
-    out << "  " << grid.getName() << ": "
+    out << "  " << shown(grid.getName()) << ": "
         << openvdb::GridBase::gridClassToString(grid.getGridClass()) << ", voxel "
         << grid.voxelSize()[0] << ", " << grid.activeVoxelCount() << " active voxels\n";
 }
@@ -122,7 +120,8 @@ int run_info(const FileArguments& arguments, Context& context)
     // Reading has thrown already for a part whose digest does not hold; so what is printed is that
     // they do.
     print_checks(file, context.out);
-    context.out << "parameters " << file.parameters_json << "\nreport " << file.report_json << '\n';
+    context.out << "parameters " << shown_lines(file.parameters_json) << "\nreport "
+                << shown_lines(file.report_json) << '\n';
     return success;
 }
 
@@ -163,8 +162,8 @@ int run_check(const FileArguments& arguments, Context& context)
     SignalInterrupter interrupter(context);
     bool all_hold = true;
     for (const Verification& entry : verify_shell(read_shell(arguments.file), &interrupter)) {
-        context.out << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": " << entry.detail
-                    << '\n';
+        context.out << (entry.holds ? "ok      " : "FAILED  ") << entry.what << ": "
+                    << shown(entry.detail) << '\n';
         // Every entry is printed even after one has failed: which of them fail together is what
         // tells the cause.
         all_hold = all_hold && entry.holds;

@@ -117,6 +117,20 @@ void FilePlan::add_output(const fs::path& path)
     outputs_.push_back({path, *identity, target.special});
 }
 
+fs::path current_folder()
+{
+    std::error_code gone;
+    fs::path folder = fs::current_path(gone);
+    if (gone)
+        throw ReadError("the folder of this call is gone, or cannot be named: " + gone.message());
+    return folder;
+}
+
+fs::path absolute_path(const fs::path& path)
+{
+    return (path.is_absolute() ? path : current_folder() / path).lexically_normal();
+}
+
 bool is_standard_input(const fs::path& path)
 {
     return path == "-";

@@ -63,6 +63,11 @@ FilePlan plan_reading(const std::filesystem::path& file);
 /// Throws InvalidOption where the path has not this extension: ".vdb".
 void require_extension(const std::filesystem::path& path, const std::string& extension);
 
+/// Whole, without "." and "..". Throws ReadError where the folder of the call, from which relative
+/// paths are meant, is gone.
+std::filesystem::path absolute_path(const std::filesystem::path& path);
+std::filesystem::path current_folder();
+
 /// "-", standard input in the place of a file.
 bool is_standard_input(const std::filesystem::path& path);
 

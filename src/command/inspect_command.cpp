@@ -50,8 +50,11 @@ FilePlan plan_inspect(const InspectArguments& arguments)
     FilePlan plan(existing_files(arguments.no_clobber));
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.preset);
-    if (!arguments.picture.empty())
+    if (!arguments.picture.empty()) {
+        // First what it would destroy, and then that no writer takes it.
         plan.add_output(arguments.picture);
+        require_extension(arguments.picture, ".ply");
+    }
     return plan;
 }
 

@@ -11,6 +11,7 @@
 #include "command/exit_code.h"
 #include "command/frames.h"
 #include "command/manifest.h"
+#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -62,20 +63,26 @@ std::vector<fs::path> parts_of(const JoinArguments& arguments)
 {
     std::vector<fs::path> parts;
     for (const fs::path& part : arguments.parts) {
-        if (!fs::is_directory(part)) {
+        std::error_code unknown;
+        if (!fs::is_directory(part, unknown)) {
             // One that is not there is what a task that never ran has left: its frames are told to
-            // be missing.
-            if (fs::exists(part))
+            // be missing. One that cannot be looked at is refused where it is read.
+            if (fs::exists(part, unknown) || unknown)
                 parts.push_back(part);
             continue;
         }
         std::vector<fs::path> inside;
-        for (const fs::directory_entry& entry : fs::directory_iterator(part))
+        fs::directory_iterator entry(part, unknown);
+        for (; !unknown && entry != fs::directory_iterator(); entry.increment(unknown)) {
+            std::error_code gone;
             // The whole manifest may stand in the folder of its parts, from an earlier join, and is
-            // none of them.
-            if (entry.path().extension() == ".json" &&
-                (!fs::exists(arguments.whole) || !fs::equivalent(entry.path(), arguments.whole)))
-                inside.push_back(entry.path());
+            // none of them. Neither are folders, pipes and links to nothing.
+            if (entry->path().extension() == ".json" && entry->is_regular_file(gone) &&
+                !fs::equivalent(entry->path(), arguments.whole, gone))
+                inside.push_back(entry->path());
+        }
+        if (unknown)
+            throw ReadError(part.string() + ": the folder cannot be read: " + unknown.message());
         // A folder is listed in no order. Where two parts know of a frame the last one holds, so
         // the order has to be the same each time.
         std::sort(inside.begin(), inside.end());
@@ -99,8 +106,10 @@ int print_findings(const JoinArguments& arguments, const Manifest& manifest, std
         }
         status = status == success ? finding.status : status;
         undone.push_back(frame.value_or(0));
+        // Names and errors are those of a file, and go to a terminal.
         out << arguments.whole.string() << ": "
-            << (frame ? "frame " + std::to_string(*frame) + ": " : "") << finding.what << '\n';
+            << (frame ? "frame " + std::to_string(*frame) + ": " : "") << shown(finding.what)
+            << '\n';
     }
     out << arguments.whole.string() << ": " << done << " of " << steps.size()
         << (arguments.expect.empty() ? " runs" : " frames") << " done";

@@ -10,10 +10,14 @@
 
 #include "command/manifest.h"
 
+#include "command/file_plan.h"
 #include "core/temporary_file.h"
+#include "options/parse_json.h"
+#include "options/shown_text.h"
 #include "vdb_shell/core/digest.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/output_set.h"
+#include "vdb_shell/io/read_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,6 +26,8 @@
 
 #include <cerrno>
 #include <fstream>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace vdb_shell::command
@@ -64,11 +70,34 @@ ordered_json json_of(const std::vector<FileMark>& files)
     return json;
 }
 
-std::vector<FileMark> marks_of(const ordered_json& json)
+/// The whole number under that key. The parser's own conversion wraps what does not fit, and a
+/// frame that became another one would be taken for done. `name` is that of the manifest.
+template <typename Number>
+Number whole_number(const ordered_json& json, const char* key, const std::string& name)
+{
+    const ordered_json& value = json.at(key);
+    constexpr Number low = std::numeric_limits<Number>::min();
+    constexpr Number high = std::numeric_limits<Number>::max();
+    bool fits = false;
+    // The order matters: an unsigned number is an integer for this library too.
+    if (value.is_number_unsigned())
+        fits = value.get<std::uint64_t>() <= std::uint64_t(high);
+    else if (value.is_number_integer())
+        fits = std::is_signed_v<Number> && value.get<std::int64_t>() >= std::int64_t(low);
+    if (!fits)
+        throw ReadError(
+            name + ": " + key + " is " +
+            shown_in_part(value.dump(-1, ' ', false, ordered_json::error_handler_t::replace)) +
+            ", must be a whole number, " + std::to_string(low) + " to " + std::to_string(high));
+    return value.get<Number>();
+}
+
+std::vector<FileMark> marks_of(const ordered_json& json, const std::string& name)
 {
     std::vector<FileMark> files;
     for (const ordered_json& file : json)
-        files.push_back({file.at("file").get<std::string>(), file.at("bytes").get<std::uint64_t>(),
+        files.push_back({file.at("file").get<std::string>(),
+                         whole_number<std::uint64_t>(file, "bytes", name),
                          file.at("xxh3").get<std::string>()});
     return files;
 }
@@ -88,32 +117,33 @@ ordered_json json_of(const ManifestEntry& entry)
     return json;
 }
 
-ManifestEntry entry_of(const ordered_json& json)
+/// `name` is that of the manifest.
+ManifestEntry entry_of(const ordered_json& json, const std::string& name)
 {
     ManifestEntry entry;
     if (!json.at("frame").is_null())
-        entry.frame = json.at("frame").get<int>();
-    entry.status = json.at("status").get<int>();
+        entry.frame = whole_number<int>(json, "frame", name);
+    entry.status = whole_number<int>(json, "status", name);
     entry.error = json.value("error", "");
     entry.fingerprint = json.at("fingerprint").get<std::string>();
     if (!json.at("voxel_size").is_null())
         entry.voxel_size = json.at("voxel_size").get<double>();
-    entry.inputs = marks_of(json.at("inputs"));
-    entry.outputs = marks_of(json.at("outputs"));
+    entry.inputs = marks_of(json.at("inputs"), name);
+    entry.outputs = marks_of(json.at("outputs"), name);
     return entry;
 }
 
-/// Throws what the parser throws; callers say of which file (with_file).
+/// Throws what values of another kind throw; callers say of which file (with_file).
 ordered_json parsed(const fs::path& file)
 {
-    std::ifstream in(file, std::ios::binary);
-    if (!in)
-        throw ReadError(file.string() + ": cannot be read");
-    ordered_json json = ordered_json::parse(in);
+    // Demands a regular file: a pipe would wait for a writer for ever.
+    ordered_json json =
+        parse_json(read_whole_file(file), file.string(), "is no manifest of vdb_shell");
     // Keys of another schema could mean something else, and a frame that is taken for done is never
     // looked at again.
-    if (json.at("schema").get<int>() != kManifestSchema)
-        throw ReadError(file.string() + ": schema is " + json.at("schema").dump() + ", must be " +
+    if (const int schema = whole_number<int>(json, "schema", file.string());
+        schema != kManifestSchema)
+        throw ReadError(file.string() + ": schema is " + std::to_string(schema) + ", must be " +
                         std::to_string(kManifestSchema));
     return json;
 }
@@ -166,7 +196,9 @@ std::string Manifest::command_in(const fs::path& file)
 /// A file that is not there yet is a manifest without entries.
 Manifest::Entries Manifest::read() const
 {
-    if (!fs::exists(file_))
+    std::error_code unknown;
+    // Where even that cannot be asked, reading it says why.
+    if (!fs::exists(file_, unknown) && !unknown)
         return {};
     return with_file(file_, [&] {
         const ordered_json json = parsed(file_);
@@ -176,7 +208,7 @@ Manifest::Entries Manifest::read() const
                             json.at("command").get<std::string>() + "`, not of `" + command_ + "`");
         Entries entries;
         for (const ordered_json& step : json.at("steps")) {
-            ManifestEntry entry = entry_of(step);
+            ManifestEntry entry = entry_of(step, file_.string());
             entries[entry.frame] = std::move(entry);
         }
         return entries;
@@ -193,8 +225,8 @@ std::optional<ManifestEntry> Manifest::find(std::optional<int> frame) const
 /// The manifest and its outputs may be moved together.
 std::string Manifest::relative(const fs::path& file) const
 {
-    const fs::path folder = fs::absolute(folder_of(file_)).lexically_normal();
-    return fs::absolute(file).lexically_normal().lexically_relative(folder).generic_string();
+    const fs::path folder = absolute_path(folder_of(file_));
+    return absolute_path(file).lexically_relative(folder).generic_string();
 }
 
 FileMark Manifest::mark_output(const fs::path& file) const

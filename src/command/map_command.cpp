@@ -10,6 +10,7 @@
 #include "command/exit_code.h"
 #include "command/mapped_shell.h"
 #include "command/signals.h"
+#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -40,10 +41,10 @@ OptionSections describe(MapArguments& a)
 
 std::string figures_of_map(const MapFigures& f)
 {
-    char line[256];
-    std::snprintf(line, sizeof line, "%s: %zu voxels; stretch %.3f (1 is none)", f.grid.c_str(),
-                  f.active, f.stretch);
-    std::string text = line;
+    char stretch[64];
+    std::snprintf(stretch, sizeof stretch, "; stretch %.3f (1 is none)", f.stretch);
+    // Names of grids are of any length, so they do not go through the buffer.
+    std::string text = shown(f.grid) + ": " + std::to_string(f.active) + " voxels" + stretch;
     const auto add = [&](std::size_t count, const char* what) {
         if (count > 0)
             text += "; " + std::to_string(count) + " voxels " + what;
@@ -90,8 +91,9 @@ int run_map(const MapArguments& arguments, Context& context)
     std::string text;
     for (const GridBasePtr& grid : read_volumes(arguments.call.volume, arguments.call.grids)) {
         MapFigures figures;
-        made.push_back(
-            map_volume(*grid, *shell.map, texture.corner, options, figures, &interrupter));
+        made.push_back(with_file_of_grids(arguments.call.volume, [&] {
+            return map_volume(*grid, *shell.map, texture.corner, options, figures, &interrupter);
+        }));
         // The map works in the frame of the mesh; a .vdb has transforms that lead to where the
         // file's surface lies.
         made.back()->transform().postTranslate(shell.file.placement.shift());

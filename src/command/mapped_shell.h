@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/core/error.h"
 #include "vdb_shell/volume/shell_map.h"
 #include "vdb_shell/volume/surface_coordinates.h"
 #include "vdb_shell/write/vdb_file.h"
@@ -9,6 +10,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace vdb_shell::command
 {
@@ -22,6 +24,21 @@ struct MappedShell {
 
 /// Reads a .vdb or Houdini geometry; `plan` gets to know the file that its points stand in.
 MappedShell map_shell(const std::filesystem::path& path, FilePlan& plan);
+
+/// Runs the body; what it throws about a grid begins with the grid, and gets the name of the file
+/// that the grid is from.
+template <typename Body>
+auto with_file_of_grids(const std::filesystem::path& path, const Body& body)
+{
+    try {
+        return body();
+    } catch (const InvalidOption& error) {
+        const std::string text = error.what();
+        if (text.rfind("grid \"", 0) != 0)
+            throw;
+        throw InvalidOption(path.string() + ": " + text);
+    }
+}
 
 /// The map of the shell at rest; null where the file's own is that.
 std::unique_ptr<ShellMap> map_at_rest(const MappedShell& shell);

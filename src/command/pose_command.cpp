@@ -15,9 +15,11 @@
 #include "command/pose_motion.h"
 #include "command/posed_surface.h"
 #include "command/signals.h"
+#include "options/parse_json.h"
 #include "report/stage_clock.h"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <mutex>
@@ -73,6 +75,11 @@ std::shared_ptr<const PreparedShell> prepare(const std::filesystem::path& path, 
 {
     const auto make = [&] {
         ShellFile file = read_shell(path);
+        // The figures of poses are put over it. Refused before the work, and by the name of its
+        // file, which the poses do not know.
+        const std::string report = path.string() + ": its report";
+        if (!parse_json(file.report_json, report).is_object())
+            throw ReadError(report + ": is no JSON object");
         RestShell rest(rest_stack(file), rest_core(file));
         return std::make_shared<const PreparedShell>(
             PreparedShell{path, std::move(file), std::move(rest)});
@@ -91,7 +98,12 @@ std::shared_ptr<const PreparedShell> prepare(const std::filesystem::path& path, 
 /// The first frame of a shot has none before it, the last one none after it.
 bool is_there(const std::filesystem::path& neighbour)
 {
-    return !neighbour.empty() && std::filesystem::exists(neighbour);
+    std::error_code unknown;
+    const bool there = !neighbour.empty() && std::filesystem::exists(neighbour, unknown);
+    // Not taken for the end of a shot: the poses would lack velocities, and nobody would know.
+    if (unknown)
+        throw ReadError(neighbour.string() + ": cannot be read: " + unknown.message());
+    return there;
 }
 
 /// Frames of a call share what they pose; each pose is the same whoever makes it.
@@ -213,7 +225,7 @@ int run_pose(const PoseArguments& arguments, Context& context)
     // A copy, for the shell is moved into its file below, and the report outlives it.
     ShellReport report = posed.report;
     OutputSet files(existing_files(arguments.outputs.no_clobber));
-    StageClock(report.stages).run("write", [&] {
+    StageClock(report.stages, &interrupter).run("write", [&] {
         const bool volumes = wants_vdb(arguments.outputs);
         write_outputs(arguments.outputs, posed_file(rest, std::move(posed), volumes, &interrupter),
                       certified, files);

@@ -50,10 +50,10 @@ constexpr std::array<StageShare, 28> kStages{{{"read", 0.0},
                                               {"taper", 0.67},
                                               {"certificate", 0.68},
                                               {"overlaps", 0.7},
-                                              {"Coverage", 0.72},
+                                              {"coverage", 0.72},
                                               {"core fill", 0.74},
                                               {"write", 0.76},
-                                              {"Shell depth", 0.78},
+                                              {"shell depth", 0.78},
                                               {"done", 1.0},
                                               {"failed", 1.0}}};
 

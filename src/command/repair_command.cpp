@@ -7,6 +7,7 @@
 
 #include "command/repair_command.h"
 
+#include "io/mesh_formats.h"
 #include "vdb_shell/core/error.h"
 
 #include "command/exit_code.h"
@@ -53,6 +54,8 @@ BoundOptions add_repair_command(CLI::App& app, RepairArguments& arguments)
 FilePlan plan_repair(const RepairArguments& arguments)
 {
     require_format(arguments.mesh, arguments.format);
+    if (!mesh_format_of(arguments.output))
+        throw InvalidOption(arguments.output.string() + ": " + no_mesh_format(arguments.output));
     FilePlan plan(existing_files(arguments.no_clobber));
     plan.add_input(arguments.mesh);
     plan.add_input(arguments.preset);
@@ -66,6 +69,8 @@ int run_repair(const RepairArguments& arguments, Context& context)
     const ReadResult read = read_surface(arguments.mesh, arguments.read, arguments.format);
     warn_of_lost_digits(arguments.mesh, read, context);
     const Placement& placement = read.report.placement;
+    // Before the work, as soon as it is known that the object is moved.
+    require_place_for(arguments.output, placement);
     const RepairResult result =
         repair_mesh(read.mesh, in_unit(arguments.repair, placement.unit), &interrupter);
     // The placement is undone here, so the output lies where the input lay, also with --recentre

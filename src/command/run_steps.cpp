@@ -16,6 +16,7 @@
 #include "command/manifest.h"
 #include "command/progress.h"
 #include "command/signals.h"
+#include "core/available_memory.h"
 #include "core/parallel.h"
 
 #include <tbb/task_arena.h>
@@ -25,12 +26,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <limits>
 #include <mutex>
 #include <sstream>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -53,17 +52,6 @@ std::string seconds_text(std::chrono::steady_clock::time_point start)
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.2f s", seconds.count());
     return text.data();
-}
-
-/// In bytes, as Linux reports it.
-double free_memory()
-{
-    std::ifstream info("/proc/meminfo");
-    for (std::string key, rest; info >> key && std::getline(info, rest);)
-        if (key == "MemAvailable:")
-            return std::strtod(rest.c_str(), nullptr) * 1024.0;
-    // Where the system does not tell, memory bounds nothing; --frames-at-once does.
-    return std::numeric_limits<double>::infinity();
 }
 
 /// Files that cannot be looked at count as none: running them will say what is wrong.
@@ -89,9 +77,23 @@ std::size_t frames_at_once(const std::vector<Step>& steps, const GlobalArguments
     if (largest > kSmallInputs)
         return 1;
     // Half of what is free, for other programs want some too.
-    const double fit = 0.5 * free_memory() / (kFrameMemory + kMemoryPerByte * double(largest));
+    const double fit = 0.5 * available_memory() / (kFrameMemory + kMemoryPerByte * double(largest));
     return fit < double(thread_count()) ? std::size_t(std::max(fit, 1.0)) : thread_count();
 }
+
+/// A thread that is not joined ends the process, so they are joined however their scope is left.
+struct Workers {
+    std::vector<std::thread> threads;
+
+    Workers() = default;
+    Workers(const Workers&) = delete;
+    Workers& operator=(const Workers&) = delete;
+    ~Workers()
+    {
+        for (std::thread& thread : threads)
+            thread.join();
+    }
+};
 
 class Runner
 {
@@ -161,39 +163,49 @@ private:
     {
         // What ran alone has printed by itself.
         printed_ = next_;
-        std::vector<std::thread> workers;
-        for (std::size_t w = 0; w < at_once; ++w)
-            workers.emplace_back([&, threads = std::max<std::size_t>(thread_count() / at_once, 1)] {
-                // A frame's parallel loops stay in its arena, so that frames do not wait for each
-                // other's.
-                tbb::task_arena arena(static_cast<int>(threads));
-                arena.execute([&] { work(); });
-            });
-        for (std::thread& worker : workers)
-            worker.join();
+        const std::size_t threads = std::max<std::size_t>(thread_count() / at_once, 1);
+        {
+            Workers workers;
+            try {
+                for (std::size_t w = 0; w < at_once; ++w)
+                    workers.threads.emplace_back([this, threads] { work(threads); });
+            } catch (const std::system_error&) {
+                // The system gives no more of them. Those that there are do all frames, if later.
+            }
+            if (workers.threads.empty())
+                work(threads);
+        }
         print_finished();
         if (thrown_)
             std::rethrow_exception(thrown_);
     }
 
-    void work()
+    void take_frames()
+    {
+        while (!stop_) {
+            const std::size_t i = next_++;
+            if (i >= steps_.size())
+                return;
+            std::ostringstream out, err;
+            // What it says is kept until all frames before it have been printed; so the text of a
+            // call is the same however many run at once.
+            Context context{out, err, context_.level, context_.format, std::nullopt};
+            run_step(i, context);
+            const std::lock_guard lock(mutex_);
+            results_[i].out = out.str();
+            results_[i].err = err.str();
+            results_[i].done = true;
+            print_finished();
+        }
+    }
+
+    void work(std::size_t threads)
     {
         try {
-            while (!stop_) {
-                const std::size_t i = next_++;
-                if (i >= steps_.size())
-                    return;
-                std::ostringstream out, err;
-                // What it says is kept until all frames before it have been printed; so the text of
-                // a call is the same however many run at once.
-                Context context{out, err, context_.level, context_.format, std::nullopt};
-                run_step(i, context);
-                const std::lock_guard lock(mutex_);
-                results_[i].out = out.str();
-                results_[i].err = err.str();
-                results_[i].done = true;
-                print_finished();
-            }
+            // A frame's parallel loops stay in its arena, so that frames do not wait for each
+            // other's.
+            tbb::task_arena arena(static_cast<int>(threads));
+            arena.execute([&] { take_frames(); });
         } catch (...) {
             const std::lock_guard lock(mutex_);
             // An exception must not leave a thread. Only what ends the whole call comes here;

@@ -12,6 +12,7 @@
 
 #include "command/frames.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -115,9 +116,9 @@ void require_repeatable(const FilePlan& plan, const GlobalArguments& global)
 }
 
 /// Fills in the files of the step as well, which a dry run prints and a manifest notes.
-FilePlan plan_of(Step& step)
+FilePlan plan_of(Step& step, const std::string& command)
 {
-    Call call;
+    Call call(command);
     call.parse(step.words);
     FilePlan plan = call.plan();
     for (const FilePlan::Entry& input : plan.inputs())
@@ -200,6 +201,32 @@ std::vector<Step> steps_of(const std::vector<std::string>& words, const GlobalAr
     return steps;
 }
 
+/// A file in a folder that may not be searched is missing too, and may well be there.
+std::string why_missing(const fs::path& path)
+{
+    std::error_code unknown;
+    const bool there = fs::exists(path, unknown);
+    return there || unknown ? "cannot be read: " + unknown.message() : "there is no such file";
+}
+
+/// For the one step of a command that gathers frames, which would read for minutes before it comes
+/// to a file that is missing: all are told before the work. One file alone is told by its reader.
+void require_gathered(const Step& step)
+{
+    const std::size_t count = step.missing.size();
+    if (count == 0 || (step.gathered.empty() && step.inputs.empty() && count == 1))
+        return;
+    constexpr std::size_t kMost = 20; // names that a line has room for
+    std::string text = step.missing.front().string() + ": " + why_missing(step.missing.front());
+    for (std::size_t i = 1; i < std::min(count, kMost); ++i)
+        text += (i == 1 ? "; nor " : ", ") + step.missing[i].string();
+    if (count > kMost)
+        text += " and " + std::to_string(count - kMost) + " more";
+    throw ReadError(text + "; " + std::to_string(count) + " of " +
+                    std::to_string(count + step.inputs.size()) +
+                    " inputs are missing, and nothing was done");
+}
+
 /// A file that is missing in a sequence is told before an hour of work, and all of them at once.
 void require_inputs(const std::vector<Step>& steps)
 {
@@ -223,9 +250,13 @@ std::vector<Step> plan_steps(const std::vector<std::string>& words, const Global
 {
     std::vector<Step> steps = steps_of(words, global, context);
     FilesOfSteps files;
+    Call first;
+    first.parse(steps.front().words);
+    // The command is the same for all frames.
+    const std::string command = first.name();
     for (Step& step : steps)
         with_name(step, [&] {
-            const FilePlan plan = plan_of(step);
+            const FilePlan plan = plan_of(step, command);
             require_repeatable(plan, global);
             if (!step.frame)
                 require_no_tokens(plan);
@@ -235,6 +266,8 @@ std::vector<Step> plan_steps(const std::vector<std::string>& words, const Global
     if (!global.manifest.empty())
         add_manifest(files, global.manifest);
     files.require_apart();
+    if (first.gathers_frames() && !global.dry_run)
+        require_gathered(steps.front());
     // With it a frame that misses an input fails when its turn comes, and the others are done.
     if (!global.keep_going)
         require_inputs(steps);

@@ -62,7 +62,9 @@ void on_signal(int number)
     // behind.
     const bool first = signal_number == 0;
     signal_number = number;
-    if (files_are_committed_now() || (first && polite_stops > 0))
+    // From here on no other thread begins to put files in their places: its temporaries would be
+    // removed in the middle of that.
+    if ((first && polite_stops > 0) || !hold_commits())
         return;
     // _exit runs no destructor, so the temporary files have to go here.
     remove_temporaries_on_signal();

@@ -13,6 +13,7 @@
 #include "vdb_shell/houdini/polygon_mesh.h"
 
 #include "command/file_plan.h"
+#include "io/mesh_formats.h"
 
 #include <openvdb/openvdb.h>
 
@@ -33,8 +34,12 @@ ReadResult read_standard_input(const ReadOptions& options, InputFormat format)
 {
     // With the extension of its format, by which readers go; readable for its owner only, as nobody
     // else was given what comes here.
-    const TemporaryFile spool(fs::temp_directory_path(), "standard-input." + name_in_table(format),
-                              0600);
+    std::error_code none;
+    const fs::path folder = fs::temp_directory_path(none);
+    if (none)
+        throw ReadError("-: standard input is kept in a file for reading, and " +
+                        no_temporary_folder(none));
+    const TemporaryFile spool(folder, "standard-input." + name_in_table(format), 0600);
     std::ofstream out(spool.path(), std::ios::binary);
     // Writing an empty stream out would set the stream to failed, and be told as a disk that is
     // full.
@@ -104,8 +109,14 @@ ReadResult read_surface(const std::filesystem::path& path, const ReadOptions& op
         require_format(path, format);
         return read_standard_input(options, format);
     }
-    return houdini::has_geometry_extension(path) ? houdini::read_polygon_mesh(path, options)
-                                                 : read_mesh(path, options);
+    if (houdini::has_geometry_extension(path))
+        return houdini::read_polygon_mesh(path, options);
+    // read_mesh would name its own formats alone.
+    if (!mesh_format_of(path))
+        throw ReadError(path.string() + ": the extension \"" + lower_case_extension(path) +
+                        "\" is none of those that are read: .obj .ply .off .stl .geo .bgeo "
+                        ".bgeo.sc, and .vdb for a level set that build is given");
+    return read_mesh(path, options);
 }
 
 FloatGridPtr in_place(const FloatGridPtr& grid, const Placement& placement)

@@ -19,8 +19,13 @@ namespace vdb_shell::command
 
 BoundOptions add_usd_command(CLI::App& app, UsdArguments& arguments)
 {
+    OptionList options = describe(arguments.usd);
+    // Other commands write one sample, which has no rate, so the flag is this command's alone.
+    for (Option& o : options)
+        if (o.key == "frames_per_second")
+            o.flag = "--frames-per-second";
     return add_frame_files(app, arguments.frames, "The stage: .usda",
-                           {{"usd", describe(arguments.usd)}});
+                           {{"usd", std::move(options)}});
 }
 
 FilePlan plan_usd(const UsdArguments& arguments)

@@ -46,7 +46,9 @@ void write_results(const VolumeCall& call, const std::vector<GridBasePtr>& volum
 {
     OutputSet files(existing_files(call.no_clobber));
     write_volumes(call.output, volumes, &files);
-    const std::string json = report.dump(2) + '\n';
+    // Names of grids may be no UTF-8, which JSON has to be.
+    const std::string json =
+        report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
     const bool to_output = is_standard_output(call.report);
     if (!call.report.empty() && !to_output)
         files.write_stream(call.report, [&](std::ostream& out) { out << json; });

@@ -37,7 +37,13 @@ namespace
 /// A folder of devices is no place for files.
 fs::path folder_of_temporary(const OutputTarget& target)
 {
-    return target.special ? fs::temp_directory_path() : target.folder();
+    if (!target.special)
+        return target.folder();
+    std::error_code none;
+    fs::path folder = fs::temp_directory_path(none);
+    if (none)
+        refuse_output(target.given, no_temporary_folder(none));
+    return folder;
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 
 #include "core/output_target.h"
 
+#include "core/temporary_file.h"
 #include "vdb_shell/core/error.h"
 
 #include <unistd.h>
@@ -72,6 +73,29 @@ void require_folder(const OutputTarget& target)
         refuse_output(target.given, std::strerror(errno));
 }
 
+/// What goes into a device or a fifo is put together there.
+void require_temporary_folder(const OutputTarget& target)
+{
+    std::error_code none;
+    const fs::path folder = fs::temp_directory_path(none);
+    if (none)
+        refuse_output(target.given, no_temporary_folder(none));
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        refuse_output(target.given, no_temporary_folder({errno, std::generic_category()}));
+}
+
+/// The temporary has another name, so only the rename after the work would find out.
+void require_short_name(const OutputTarget& target)
+{
+    // Not known (-1) where the file system has no limit, or does not say.
+    const long most = ::pathconf(target.folder().c_str(), _PC_NAME_MAX);
+    const std::size_t size = target.path.filename().native().size();
+    if (most > 0 && size > std::size_t(most))
+        refuse_output(target.given, "its name has " + std::to_string(size) +
+                                        " bytes, and its folder's limit is " +
+                                        std::to_string(most));
+}
+
 } // namespace
 
 fs::path OutputTarget::folder() const
@@ -94,8 +118,12 @@ OutputTarget find_output_target(const fs::path& path)
         target.path = without_links(path);
     if (target.existing)
         require_file_that_may_be_written(target);
-    if (!target.special)
+    if (target.special) {
+        require_temporary_folder(target);
+    } else {
         require_folder(target);
+        require_short_name(target);
+    }
     return target;
 }
 

@@ -3,6 +3,8 @@
 
 #include "core/latched_interrupter.h"
 
+#include <cstddef>
+
 namespace vdb_shell
 {
 
@@ -14,6 +16,12 @@ LatchedInterrupter* stage_stop();
 /// Throws Cancelled where the stage is to stop: for long work between loops, as sorting. From any
 /// thread that works for the stage.
 void stop_if_stage_wants();
+/// The same once in a thousand indices, for loops of one thread whose steps are short.
+inline void stop_if_stage_wants(std::size_t index)
+{
+    if (index % 1024 == 0)
+        stop_if_stage_wants();
+}
 
 /// Sets it for as long as this lives.
 class StageStopScope

@@ -20,9 +20,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <system_error>
+#include <thread>
 
 namespace vdb_shell
 {
@@ -42,6 +45,8 @@ struct Slot {
 };
 std::array<Slot, kMaxTemporaries> temporaries;
 std::atomic<int> commits{0};
+/// Handlers that are about to end the process.
+std::atomic<int> holds{0};
 
 constexpr const char* kPrefix = ".vdb_shell-";
 constexpr std::size_t kDigits = 24;
@@ -172,6 +177,13 @@ bool TemporaryFile::still_there() const
     return is_named(file_.number(), path());
 }
 
+std::string no_temporary_folder(const std::error_code& why)
+{
+    const char* given = std::getenv("TMPDIR");
+    return std::string("the folder for temporary files (TMPDIR") +
+           (given ? " is " + std::string(given) : "") + ") cannot be used: " + why.message();
+}
+
 void remove_leftovers(const fs::path& folder)
 {
     std::error_code error;
@@ -183,7 +195,13 @@ void remove_leftovers(const fs::path& folder)
 
 CommitGuard::CommitGuard()
 {
-    ++commits;
+    // First counted, then asked; a handler does it in the other order. So one of the two sees the
+    // other, and files are not put in their places while their temporaries are removed.
+    while (++commits, holds > 0) {
+        --commits;
+        // Until the process ends, or the handler has let go because of another thread's commit.
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
 }
 
 CommitGuard::~CommitGuard()
@@ -194,6 +212,15 @@ CommitGuard::~CommitGuard()
 bool files_are_committed_now() noexcept
 {
     return commits > 0;
+}
+
+bool hold_commits() noexcept
+{
+    ++holds;
+    if (commits == 0)
+        return true;
+    --holds;
+    return false;
 }
 
 void remove_temporaries_on_signal() noexcept

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 namespace vdb_shell
 {
@@ -59,6 +60,9 @@ private:
     TemporaryName name_;
     Descriptor file_;
 };
+
+/// What is to be said where the system's folder for temporary files is none.
+std::string no_temporary_folder(const std::error_code& why);
 
 /// Removes what processes that were killed have left in the folder: files with names of ours that
 /// nobody has locked.

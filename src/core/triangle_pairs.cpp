@@ -264,7 +264,7 @@ private:
         for_each_index(
             found.size(),
             [&](std::size_t i) {
-                look_from_corner(&uses[begins[i]], &uses[begins[i + 1]], found[i]);
+                look_from_corner(uses.data() + begins[i], uses.data() + begins[i + 1], found[i]);
             },
             1);
         take(found);

@@ -8,12 +8,16 @@
 
 #include "field/cavities.h"
 
+#include "core/box_pairs.h"
+#include "core/parallel.h"
 #include "mesh/components.h"
+#include "mesh/surface_defects.h"
 
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -45,16 +49,45 @@ void combine_into(openvdb::FloatGrid& out, const openvdb::FloatGrid& other, cons
     openvdb::tools::pruneLevelSet(out.tree());
 }
 
+/// Marks triangles that are no triangles, and those beyond the boxes of all other components: they
+/// cannot cross another one, and most triangles of most surfaces are such.
+std::vector<char> cannot_cross_another(const TriangleMesh& mesh,
+                                       const std::vector<std::uint32_t>& component_of)
+{
+    const std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
+    std::vector<FloatBox> box_of;
+    for (std::size_t t = 0; t < boxes.size(); ++t)
+        // Components are numbered by their first triangle.
+        if (component_of[t] == box_of.size())
+            box_of.push_back(boxes[t]);
+        else
+            box_of[component_of[t]].add(boxes[t]);
+    BoxTree tree;
+    tree.build(std::move(box_of));
+    std::vector<char> left_out = find_degenerate(mesh.points, mesh.triangles);
+    for_each_index(boxes.size(), [&](std::size_t t) {
+        bool near = false;
+        tree.for_each_overlap(boxes[t],
+                              [&](int c) { near |= std::uint32_t(c) != component_of[t]; });
+        left_out[t] |= !near;
+    });
+    return left_out;
+}
+
 } // namespace
 
-std::vector<TriangleMesh> split_by_nesting(const TriangleMesh& mesh)
+std::vector<TriangleMesh> split_by_nesting(const TriangleMesh& mesh, Interrupter* interrupter)
 {
     const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
     const std::vector<std::uint32_t> component_of =
         component_of_triangles(uses, mesh.triangles.size());
     if (std::all_of(component_of.begin(), component_of.end(), [](auto c) { return c == 0; }))
         return {mesh};
-    const std::vector<Component> components = describe_components(mesh, uses, component_of, {});
+    // Of bodies that cross no single point tells which is in which.
+    const std::vector<TrianglePair> contacts =
+        find_self_intersections(mesh, cannot_cross_another(mesh, component_of), interrupter);
+    const std::vector<Component> components =
+        describe_components(mesh, uses, component_of, crossing_components(contacts, component_of));
     std::vector<TriangleMesh> parts;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         // Components of one depth do not enclose each other, so they can share a level set. The
@@ -64,6 +97,11 @@ std::vector<TriangleMesh> split_by_nesting(const TriangleMesh& mesh)
             parts.resize(depth + 1, {mesh.points, {}});
         parts[depth].triangles.push_back(mesh.triangles[t]);
     }
+    // Two bodies of one place are each within the other, and none is outermost.
+    const auto outermost = std::find_if(parts.begin(), parts.end(), [](const TriangleMesh& part) {
+        return !part.triangles.empty();
+    });
+    parts.erase(parts.begin(), outermost);
     return parts;
 }
 

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <sstream>
 #include <vector>
 
@@ -148,6 +149,8 @@ openvdb::FloatGrid::Ptr read_level_set(const std::filesystem::path& path, const 
         grid = read_named(path.string(), name);
     } catch (const Error&) {
         throw;
+    } catch (const std::bad_alloc&) {
+        throw; // no fault of the file
     } catch (const std::exception& error) {
         throw ReadError(path.string() + ": cannot be read: " + error.what());
     }

@@ -8,6 +8,7 @@
 
 #include "vdb_shell/field/level_set.h"
 
+#include "core/available_memory.h"
 #include "core/fail.h"
 #include "core/stage_progress.h"
 #include "field/cavities.h"
@@ -22,7 +23,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string>
 
@@ -96,20 +96,11 @@ void check_voxel_size(const TriangleMesh& mesh, double voxel)
     }
 }
 
-/// Free memory in bytes as Linux reports it; infinite where it does not.
-double free_memory()
-{
-    std::ifstream info("/proc/meminfo");
-    for (std::string key, rest; info >> key && std::getline(info, rest);)
-        if (key == "MemAvailable:")
-            return std::stod(rest) * 1024.0;
-    return std::numeric_limits<double>::infinity();
-}
-
 void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions& options)
 {
     const double estimate = estimate_level_set_bytes(mesh, voxel, options);
-    const double limit = options.max_memory_gib ? *options.max_memory_gib * kGib : free_memory();
+    const double limit =
+        options.max_memory_gib ? *options.max_memory_gib * kGib : available_memory();
     if (!(estimate <= limit))
         fail<GeometryError>("level set: voxel size ", voxel, " needs an estimated ",
                             estimate / kGib, " GiB, over the limit of ", limit / kGib,
@@ -137,7 +128,7 @@ openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
                                        const openvdb::math::Transform& transform,
                                        const BandVoxels& band, Interrupter* interrupter)
 {
-    const std::vector<TriangleMesh> parts = split_by_nesting(mesh);
+    const std::vector<TriangleMesh> parts = split_by_nesting(mesh, interrupter);
     auto grid = convert(parts.front(), transform, band, interrupter);
     constexpr double kAllOfIt = std::numeric_limits<float>::max();
     for (std::size_t depth = 1; depth < parts.size(); ++depth) {

@@ -23,8 +23,12 @@ using openvdb::Vec3s;
 FloatGridPtr convert(const TriangleMesh& mesh, const openvdb::math::Transform& transform,
                      double exterior, double interior, int flags, Interrupter* interrupter)
 {
-    if (mesh.triangles.empty())
-        return openvdb::FloatGrid::create(static_cast<float>(exterior));
+    if (mesh.triangles.empty()) {
+        FloatGridPtr grid =
+            openvdb::FloatGrid::create(static_cast<float>(exterior * transform.voxelSize()[0]));
+        grid->setTransform(transform.copy());
+        return grid;
+    }
     std::vector<Vec3s> points;
     points.reserve(mesh.points.size());
     for (const Vec3s& p : mesh.points)

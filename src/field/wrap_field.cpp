@@ -49,7 +49,7 @@ openvdb::FloatGrid::Ptr unsigned_distance(const std::vector<TriangleCorners>& pi
     if (fills_voxels(mesh, band))
         return unsigned_distances_by_voxels(mesh, band);
     return unsigned_distances(mesh, *openvdb::math::Transform::createLinearTransform(1.0), band,
-                              nullptr);
+                              stage_stop());
 }
 
 /// The parts of the field at voxels. An accessor must not be shared, so each range of voxels has an

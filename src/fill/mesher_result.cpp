@@ -11,6 +11,7 @@
 #include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 #include "core/exact.h"
+#include "core/stage_stop.h"
 
 #include <algorithm>
 #include <array>
@@ -103,13 +104,16 @@ public:
         std::vector<char> moved(points_.size(), 0);
         for (int round = 0; round < kRounds; ++round) {
             bool changed = false;
-            for (const Vec4I& tet : tets_)
+            for (std::size_t t = 0; t < tets_.size(); ++t) {
+                stop_if_stage_wants(t);
+                const Vec4I& tet = tets_[t];
                 for (int corner = 0; corner < 4 && flat(tet); ++corner)
                     // Points of the surface are the shell's and must not move by a bit.
                     if (tet[corner] >= fixed_ && improve(tet[corner])) {
                         moved[tet[corner]] = 1;
                         changed = true;
                     }
+            }
             if (!changed)
                 break;
         }

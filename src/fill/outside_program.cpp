@@ -116,12 +116,18 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    /// Whether it has ended; `status` is then as waitpid gives it.
+    /// Whether it has ended; `status` is then as waitpid gives it, or 0 where nobody can tell.
     bool ended(int& status)
     {
         // Once it has been waited for, the number may belong to another process: it must not be
         // killed any more.
-        ended_ = ::waitpid(id_, &status, WNOHANG) == id_;
+        const pid_t answer = ::waitpid(id_, &status, WNOHANG);
+        // A host that ignores SIGCHLD has the system wait for its children. What the program has
+        // left is looked at in any case.
+        const bool waited_for = answer < 0 && errno == ECHILD;
+        if (waited_for)
+            status = 0;
+        ended_ = answer == id_ || waited_for;
         return ended_;
     }
 

@@ -20,19 +20,6 @@
 
 namespace vdb_shell::growth
 {
-namespace
-{
-
-bool has_common_corner(const GrowState& s, int f, int g)
-{
-    for (int k = 0; k < 3; ++k)
-        if (s.mesh->incident_to(g, s.mesh->corner(f, k)))
-            return true;
-    return false;
-}
-
-} // namespace
-
 GroupField::GroupField(GrowState& state, double least)
     : s(state),
       barrier_weight(s.schedule.groups.barrier_weight * std::abs(volume6(s.a, s.mesh->faces)) /
@@ -261,7 +248,7 @@ bool CellMoves::add_planes()
 {
     bool any = false;
     for (const Hit& hit : hits_) {
-        if (!hit.outer && has_common_corner(s_, hit.face, hit.other))
+        if (!hit.outer && s_.mesh->share_a_corner(hit.face, hit.other))
             continue;
         const Corners mine = inner_corners(s_, hit.face);
         const Corners other =

@@ -7,6 +7,7 @@
 #include "growth/face_snapshot.h"
 
 #include "core/parallel.h"
+#include "core/unit_vector.h"
 
 #include <algorithm>
 
@@ -19,11 +20,9 @@ constexpr std::size_t kFacesAtOnce = 256; // a face takes tens of nanoseconds
 
 Vec3d unit_normal(const Corners& c)
 {
-    const Vec3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
-    const double length = normal.length();
     // Zero where there is no area: such a face is beyond no plane of its own, so all its pairs are
     // looked at closely.
-    return length > 0 ? normal / length : Vec3d(0.0);
+    return unit_vector((c[1] - c[0]).cross(c[2] - c[0]));
 }
 
 void take_snapshot_of_outer(const GrowState& s, FaceSnapshot& faces)

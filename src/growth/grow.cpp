@@ -138,14 +138,12 @@ bool take_more_care(const Connectivity& connectivity, const std::vector<std::uin
     return true;
 }
 
-/// The shell, in the order that the mesh is given in.
-GrowResult grow_in_order(const Ordered& given, const std::vector<double>& cap,
-                         const GrowOptions& options, const SplitOptions& split,
-                         Interrupter* interrupter)
+/// One attempt at the shell.
+GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
+                     const std::vector<double>& cap, const GrowOptions& options,
+                     const SplitOptions& split, const StageProgress& progress)
 {
-    const StageProgress progress(interrupter, "grow");
     const TriangleMesh& mesh = given.mesh;
-    const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     GrowState s = make_state(connectivity, mesh.points, cap, options.schedule);
     GrowResult result;
     GrowReport& report = result.report;
@@ -169,17 +167,28 @@ GrowResult grow_in_order(const Ordered& given, const std::vector<double>& cap,
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
-    const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
-    // A component that crosses itself encloses as much of either sign as it likes.
-    if (std::find(turned.begin(), turned.end(), 1) == turned.end() ||
-        (options.method != Method::thickest &&
-         !find_self_intersections(mesh, {}, interrupter).empty()))
-        return result;
-    GrowOptions careful = options;
-    std::vector<double> bound = cap;
-    if (!take_more_care(connectivity, turned, careful, bound))
-        return result;
-    return grow_in_order(given, bound, careful, split, interrupter);
+    return result;
+}
+
+/// The shell, in the order that the mesh is given in.
+GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOptions options,
+                         const SplitOptions& split, Interrupter* interrupter)
+{
+    const StageProgress progress(interrupter, "grow");
+    const TriangleMesh& mesh = given.mesh;
+    const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
+    while (true) {
+        GrowResult result = grow_once(given, connectivity, cap, options, split, progress);
+        const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
+        const bool any = std::find(turned.begin(), turned.end(), 1) != turned.end();
+        // A component that crosses itself encloses as much of either sign as it likes.
+        const auto crosses_itself = [&] {
+            return options.method != Method::thickest &&
+                   !find_self_intersections(mesh, {}, interrupter).empty();
+        };
+        if (!any || crosses_itself() || !take_more_care(connectivity, turned, options, cap))
+            return result;
+    }
 }
 
 } // namespace

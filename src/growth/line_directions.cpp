@@ -7,6 +7,7 @@
 #include "growth/line_directions.h"
 
 #include "core/parallel.h"
+#include "core/unit_vector.h"
 #include "mesh/most_visible.h"
 #include "mesh/topology.h"
 
@@ -18,12 +19,6 @@ namespace
 {
 
 using openvdb::Vec3d;
-
-Vec3d unit_or_zero(const Vec3d& v)
-{
-    const double length = v.length();
-    return length > 0 ? v / length : Vec3d(0.0);
-}
 
 /// Sum of the directions of the vertices beside v, those that point elsewhere or lie far away less
 /// than others, unit length. On a closed surface each neighbour comes up twice, which cancels.
@@ -40,7 +35,7 @@ Vec3d mean_of_neighbours(const TriangleMesh& mesh, const VertexTriangles& around
             if (u != v && length > 0)
                 sum += now[u] * (weight * weight / length);
         }
-    return unit_or_zero(sum);
+    return unit_vector(sum);
 }
 
 } // namespace
@@ -77,8 +72,8 @@ void smooth_directions(const TriangleMesh& mesh, Directions& directions,
         for_each_index(mesh.points.size(), [&](std::size_t v) {
             if (given[v] <= 0)
                 return;
-            const Vec3d d = unit_or_zero(old[v] + mean_of_neighbours(mesh, around, v, start, old,
-                                                                     schedule.smoothing_cosine));
+            const Vec3d d = unit_vector(old[v] + mean_of_neighbours(mesh, around, v, start, old,
+                                                                    schedule.smoothing_cosine));
             const double visibility = smallest_dot(normals[v], d);
             if (visibility <
                 // The given visibility may be small already, at a sharp edge; then a share of it is

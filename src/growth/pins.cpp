@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/sort_unique.h"
+#include "core/stage_stop.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 #include "growth/pillars_around_pin.h"
@@ -250,8 +251,10 @@ int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBes
         longest[v] = std::min(mean_pillar(s, v), s.schedule.pins.longest * s.diagonal);
     box_in(s, longest);
     int released = 0;
-    for (const int v : pins)
+    for (const int v : pins) {
+        stop_if_stage_wants();
         released += release(s, v, longest[v], visibility, beside);
+    }
     return released;
 }
 

@@ -8,12 +8,13 @@
 
 #include "growth/separating_planes.h"
 
+#include "core/fail.h"
 #include "core/parallel.h"
 #include "growth/separation.h"
+#include "vdb_shell/core/error.h"
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -203,15 +204,24 @@ template <class Visit> void for_each_reached(const GrowState& s, const Pair& pai
     }
 }
 
+/// Sides are kept in 32 bits: moves read these lists all the time, and half the memory is read
+/// sooner.
+void require_32_bits(std::size_t sides)
+{
+    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (sides > kMost)
+        fail<GeometryError>("growth: ", sides, " sides of separating planes, over the limit of ",
+                            kMost, "; --decimate-to makes fewer triangles");
+}
+
 /// Puts the planes one after another, in the order of the chunks; gives back where each begins.
 std::vector<std::size_t> gather_planes(std::vector<Chunk>& chunks, SeparatingPlanes& planes)
 {
     std::vector<std::size_t> base(chunks.size() + 1, 0);
     for (std::size_t c = 0; c < chunks.size(); ++c)
         base[c + 1] = base[c] + chunks[c].plane.size();
-    // A side is twice the index of its plane or one more, in 32 bits: moves read these lists all
-    // the time, and half the memory is read sooner.
-    assert(base.back() < std::numeric_limits<std::uint32_t>::max() / 2);
+    // A side is twice the index of its plane or one more.
+    require_32_bits(2 * base.back());
     planes.plane.resize(base.back());
     planes.range.resize(base.back());
     for_each_index(
@@ -250,13 +260,14 @@ void sort_by_vertex(const GrowState& s, std::vector<Chunk> chunks, SeparatingPla
         for_each_side(block, [&](int v, std::uint32_t) { ++next[block][v]; });
     });
     planes.first.resize(vertices + 1);
-    std::uint32_t total = 0;
+    std::size_t total = 0;
     for (std::size_t v = 0; v < vertices; ++v) {
         planes.first[v] = total;
         // Each count gives way to the place of the first side that its block will write.
         for (std::vector<std::uint32_t>& of_block : next)
-            total += std::exchange(of_block[v], total);
+            total += std::exchange(of_block[v], static_cast<std::uint32_t>(total));
     }
+    require_32_bits(total);
     planes.first[vertices] = total;
     planes.side.resize(total);
     for_each_block([&](std::size_t block) {

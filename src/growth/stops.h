@@ -9,8 +9,8 @@ namespace vdb_shell::growth
 
 /// What holds each vertex back, tested with one short step along its pillar: thickness, prism,
 /// inner_contact, outer_contact, pinned; none where the step would be allowed, and around vertices
-/// of thousands of triangles where only the vertex's own way was looked at. Rebuilds the broad
-/// phase.
+/// of thousands of triangles where only the vertex's own way was looked at. Refits the tree
+/// of inner triangles.
 std::vector<StopReason> probe_stops(GrowState& s);
 
 } // namespace vdb_shell::growth

@@ -9,6 +9,8 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/shell/quality.h"
 
+#include "options/parse_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -46,12 +48,8 @@ PointChange change_of(const std::vector<Vec3s>& first, const Placement& first_pl
 /// null.
 json flat_options(const std::string& text)
 {
-    try {
-        const json options = json::parse(text);
-        return options.empty() ? json::object() : options.flatten();
-    } catch (const json::exception& error) {
-        throw ReadError(std::string("parameters: not JSON: ") + error.what());
-    }
+    const json options(parse_json(text, "parameters", "not JSON"));
+    return options.empty() ? json::object() : options.flatten();
 }
 
 std::string text_of(const json& options, const std::string& key)

@@ -11,6 +11,7 @@
 
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/core/words.h"
 
 #include <array>
 #include <cstring>
@@ -155,12 +156,13 @@ std::string ply_bytes(const TriangleMesh& mesh, const Marked& marked)
 } // namespace
 
 void write_defect_picture(const std::filesystem::path& path, const TriangleMesh& mesh,
-                          const InspectOptions& options, OutputSet* with)
+                          const InspectOptions& options, OutputSet* with, Interrupter* interrupter)
 {
-    if (path.extension() != ".ply")
+    if (lower_case_extension(path) != ".ply")
         throw InvalidOption(path.string() + ": the coloured mesh of the defects is a .ply, not \"" +
                             path.extension().string() + "\"");
-    const DefectMarks found = mark_defects(mesh, resolve_voxel_size(mesh, options.level_set));
+    require_well_formed(mesh, "write_defect_picture");
+    const DefectMarks found = mark_defects(mesh, voxel_size_to_inspect(mesh, options), interrupter);
     // All bytes are made before the file is opened, and the file then appears whole or not at all.
     const std::string bytes = ply_bytes(mesh, marks_of(mesh, found));
     write_stream_atomically(

@@ -96,6 +96,16 @@ std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t trian
 
 } // namespace
 
+double voxel_size_to_inspect(const TriangleMesh& mesh, const InspectOptions& options)
+{
+    if (mesh.points.empty())
+        return 0;
+    // When all points are in one place, no voxel size follows from the resolution. It is the
+    // triangles then, all without area, that tell what is wrong.
+    const bool known = options.level_set.voxel_size || diagonal_of(bounds_of(mesh.points)) > 0;
+    return known ? resolve_voxel_size(mesh, options.level_set) : 0;
+}
+
 DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "inspect");
@@ -128,11 +138,7 @@ MeshInspection inspect_mesh(const TriangleMesh& mesh, const InspectOptions& opti
     MeshInspection inspection;
     if (mesh.triangles.empty())
         return inspection;
-    const Bounds bounds = bounds_of(mesh.points);
-    // When all points are in one place, no voxel size follows from the resolution. The size is then
-    // left at 0, and it is the triangles, all without area, that tell what is wrong.
-    if (options.level_set.voxel_size || diagonal_of(bounds) > 0)
-        inspection.voxel_size = resolve_voxel_size(mesh, options.level_set);
+    inspection.voxel_size = voxel_size_to_inspect(mesh, options);
     const DefectMarks marks = mark_defects(mesh, inspection.voxel_size, interrupter);
     inspection.check = summarise(mesh, marks.uses, marks.surface);
     inspection.boundary_loops = measure_loops(mesh, marks.surface.boundary_edges);

@@ -17,6 +17,11 @@ struct DefectMarks {
     std::vector<std::uint32_t> blind;              ///< points
     std::vector<std::uint32_t> thin;               ///< triangles
 };
+
+/// What features are measured against; 0 where the mesh has no size and the options say none.
+double voxel_size_to_inspect(const TriangleMesh& mesh, const InspectOptions& options);
+
+/// The interrupter may be null; throws Cancelled.
 DefectMarks mark_defects(const TriangleMesh& mesh, double voxel_size,
                          Interrupter* interrupter = nullptr);
 

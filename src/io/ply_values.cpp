@@ -8,6 +8,7 @@
 #include "io/ply_values.h"
 
 #include "core/byte_order.h"
+#include "vdb_shell/options/option_value.h"
 
 #include <algorithm>
 #include <array>
@@ -316,7 +317,7 @@ std::size_t PlyValues::list_size(const PlyProperty& list, const Place& place)
         static_cast<double>(bytes_left()) / static_cast<double>(text ? 1 : size_of(list.type));
     // Also for lengths that are stored as floats and are not numbers.
     if (!(size >= 0 && size <= most) || size != std::floor(size))
-        refuse(name_, at.text() + ": a list \"" + list.name + "\" of " + std::to_string(size) +
+        refuse(name_, at.text() + ": a list \"" + list.name + "\" of " + text_of(size) +
                           " values, where the rest of the file can hold " +
                           std::to_string(static_cast<std::size_t>(most)));
     return static_cast<std::size_t>(size);

@@ -26,6 +26,10 @@ std::string read_whole_file(const fs::path& path)
     const std::string name = path.string();
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
+    // A file in a folder that may not be searched, say, may well be there.
+    if (error && error != std::errc::no_such_file_or_directory &&
+        error != std::errc::not_a_directory)
+        refuse(name, "it cannot be opened: " + error.message());
     if (!fs::exists(status))
         refuse(name, "there is no such file");
     if (fs::is_directory(status))
@@ -33,10 +37,13 @@ std::string read_whole_file(const fs::path& path)
     if (!fs::is_regular_file(status))
         refuse(name, "it is not a regular file");
     // A folder or a pipe can be opened as well, but has no size to read.
+    errno = 0;
     std::ifstream in(path, std::ios::binary);
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (!in || error)
+    if (!in)
         refuse(name, std::string("it cannot be opened: ") + std::strerror(errno));
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error)
+        refuse(name, "it cannot be opened: " + error.message());
     std::string bytes(size, '\0');
     in.read(bytes.data(), static_cast<std::streamsize>(size));
     if (static_cast<std::uintmax_t>(in.gcount()) != size)

@@ -19,10 +19,13 @@
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <optional>
 #include <ostream>
+#include <stdexcept>
 #include <streambuf>
 #include <string>
 #include <utility>
@@ -264,8 +267,11 @@ void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec gr
                        const openvdb::MetaMap& metadata)
 {
     const Archive archive;
+    errno = 0;
     std::ofstream out(path, std::ios::binary);
     archive.write_start(out, metadata, grids.size());
+    // The reason is known to the thread alone that met it, and only at once.
+    int reason = out ? 0 : errno;
     std::mutex writing;
     std::vector<std::optional<GridBytes>> ready(grids.size());
     std::size_t written = 0;
@@ -284,15 +290,21 @@ void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec gr
             const std::lock_guard<std::mutex> lock(writing);
             ready[last] = std::move(bytes);
             for (; written < grids.size() && ready[written]; ++written) {
+                errno = 0;
                 write_grid(out, *grids[written], *ready[written]);
+                reason = !out && reason == 0 ? errno : reason;
                 ready[written].reset();
                 done.push_back(std::move(grids[written]));
             }
         },
         1);
+    errno = 0;
     out.close();
+    reason = !out && reason == 0 ? errno : reason;
+    // Callers put the name of the output before it; not that of the temporary.
     if (!out)
-        throw openvdb::IoError("the disk is full or the file system refused the data");
+        throw std::runtime_error(reason != 0 ? std::strerror(reason)
+                                             : "the file system refused the data");
 }
 
 } // namespace vdb_shell

@@ -16,8 +16,8 @@ std::string creator_name();
 /// random UUID, on all threads: OpenVDB compresses leaf by leaf on one, and each leaf twice, the
 /// first time only to learn its size. Keeps compressed grids in memory until those before them are
 /// written, and lets go of a grid as soon as it is. Preconditions: grids are not null, their names
-/// are not empty and differ, and no two share a tree. Throws openvdb::IoError when the file cannot
-/// be written.
+/// are not empty and differ, and no two share a tree. Throws std::runtime_error with the system's
+/// reason when the file cannot be written.
 void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
                        const openvdb::MetaMap& metadata);
 

@@ -14,12 +14,13 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/read_file.h"
 
-#include <openvdb/Exceptions.h>
-
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <vector>
 
 namespace vdb_shell
@@ -143,8 +144,9 @@ void seal_vdb(const fs::path& path)
     } catch (const ReadError& error) {
         // The file is an output that is being written. As an error of a library it is told of that
         // output (core/output_set.cpp), and not of an input.
-        throw openvdb::IoError(error.what());
+        throw std::runtime_error(error.what());
     }
+    errno = 0;
     std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
     const auto put = [&](std::size_t place, const std::string& text) {
         bytes.replace(place, text.size(), text);
@@ -159,7 +161,8 @@ void seal_vdb(const fs::path& path)
     put(kUuid, uuid_of(bytes));
     file.close();
     if (!file)
-        throw openvdb::IoError("the digests of the bytes cannot be written");
+        throw std::runtime_error("the digests of the bytes cannot be written" +
+                                 (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
 }
 
 bool check_seal(std::string_view bytes, const std::string& name)

@@ -19,7 +19,7 @@ inline constexpr std::string_view kUnsealed = "0000000000000000";
 /// Makes a .vdb tell damage of any of its bytes: fills in the digests of the bytes of each part
 /// where the entry above has room for them, and puts a digest of all bytes in place of the random
 /// UUID. So a program that writes the file anew, which draws another UUID, lifts the seal. Throws
-/// openvdb::IoError when the file cannot be read or written.
+/// std::runtime_error when the file cannot be read or written.
 void seal_vdb(const std::filesystem::path& path);
 
 /// False where the bytes have no seal. Throws ReadError with the part that differs where they are

@@ -135,6 +135,13 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
 
 } // namespace
 
+void require_place_for(const std::filesystem::path& path, const Placement& placement)
+{
+    if (mesh_format_of(path) == MeshFormat::stl && placement.moves())
+        throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
+                                            "object stands; write .obj, .off or .ply");
+}
+
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                 const Placement& placement, OutputSet* with)
 {
@@ -146,9 +153,7 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                        : *format == MeshFormat::ply ? write_ply
                                                     : write_stl;
     // Before the file is opened, so that what stands there stays.
-    if (*format == MeshFormat::stl && placement.moves())
-        throw InvalidOption(path.string() + ": STL holds float32 only, which cannot say where the "
-                                            "object stands; write .obj, .off or .ply");
+    require_place_for(path, placement);
     write_stream_atomically(
         path, [&](std::ostream& out) { write(out, mesh, placement); }, with);
 }

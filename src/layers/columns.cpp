@@ -12,6 +12,7 @@
 #include "layers/columns.h"
 
 #include "core/parallel.h"
+#include "core/stage_stop.h"
 #include "growth/predicates.h"
 #include "growth/prism.h"
 
@@ -207,9 +208,11 @@ void mend_columns(Columns& c, const StageProgress& progress)
         // One point after the other in index order, in one thread: each move sees those before it,
         // and the result does not depend on threads.
         for (std::size_t j = 1; j < c.layers(); ++j)
-            for (std::uint32_t v = 0; v < corners[j].size(); ++v)
+            for (std::uint32_t v = 0; v < corners[j].size(); ++v) {
+                stop_if_stage_wants(v);
                 if (corners[j][v] && (c.fixed.empty() || !c.fixed[j][v]))
                     improved = mend_point(c, j, v) || improved;
+            }
     }
 }
 

@@ -9,7 +9,6 @@
 
 #include "vdb_shell/mesh/check_mesh.h"
 
-#include "core/sort_unique.h"
 #include "core/stage_progress.h"
 #include "mesh/components.h"
 #include "mesh/surface_defects.h"
@@ -22,28 +21,6 @@
 
 namespace vdb_shell
 {
-namespace
-{
-
-/// The pairs of different components to which the pairs of triangles belong, sorted.
-std::vector<std::array<std::uint32_t, 2>>
-crossing_components(const std::vector<TrianglePair>& pairs,
-                    const std::vector<std::uint32_t>& component_of)
-{
-    std::vector<std::array<std::uint32_t, 2>> crossing;
-    for (const TrianglePair& pair : pairs) {
-        // These are references into the vector, which stays; minmax of two temporaries would leave
-        // them without an object.
-        const auto [low, high] = std::minmax(component_of[pair[0]], component_of[pair[1]]);
-        if (low != high)
-            crossing.push_back({low, high});
-    }
-    sort_unique(crossing);
-    return crossing;
-}
-
-} // namespace
-
 std::size_t MeshCheck::inside_out_components() const
 {
     return static_cast<std::size_t>(std::count_if(components.begin(), components.end(),

@@ -311,6 +311,21 @@ Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::siz
     return component;
 }
 
+std::vector<std::array<std::uint32_t, 2>>
+crossing_components(const std::vector<TrianglePair>& pairs, const Indices& component_of)
+{
+    std::vector<std::array<std::uint32_t, 2>> crossing;
+    for (const TrianglePair& pair : pairs) {
+        // These are references into the vector, which stays; minmax of two temporaries would leave
+        // them without an object.
+        const auto [low, high] = std::minmax(component_of[pair[0]], component_of[pair[1]]);
+        if (low != high)
+            crossing.push_back({low, high});
+    }
+    sort_unique(crossing);
+    return crossing;
+}
+
 std::vector<Component>
 describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
                     const Indices& component_of,

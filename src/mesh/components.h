@@ -15,6 +15,11 @@ namespace vdb_shell
 std::vector<std::uint32_t> component_of_triangles(const std::vector<EdgeUse>& sorted_uses,
                                                   std::size_t triangle_count);
 
+/// The pairs of different components to which the pairs of triangles belong, smaller first, sorted.
+std::vector<std::array<std::uint32_t, 2>>
+crossing_components(const std::vector<TrianglePair>& pairs,
+                    const std::vector<std::uint32_t>& component_of);
+
 /// Everything that check_mesh says about the components. `crossing`: pairs of components that cross
 /// or touch, smaller first, sorted.
 std::vector<Component>

@@ -9,6 +9,7 @@
 #include "core/orient3d_filter.h"
 #include "core/parallel.h"
 #include "core/star_sight.h"
+#include "core/unit_vector.h"
 #include "mesh/topology.h"
 
 #include <algorithm>
@@ -30,12 +31,6 @@ using openvdb::Vec3s;
 // All triples of so many normals are tried; of more, only of those that matter.
 constexpr std::size_t kSmallStar = 16;
 
-Vec3d unit_or_zero(const Vec3d& v)
-{
-    const double length = v.length();
-    return length > 0 ? v / length : Vec3d(0.0);
-}
-
 /// A direction, and the one, two or three normals that have the smallest dot product with it: it is
 /// one of them, or halfway between two, or as far from each of three.
 struct Optimum {
@@ -51,7 +46,7 @@ Optimum best_of_few(const std::vector<Vec3d>& n)
     std::size_t count = 0;
     const auto consider = [&](const Vec3d& candidate, std::array<std::size_t, 3> of,
                               std::size_t size) {
-        const Vec3d d = unit_or_zero(candidate);
+        const Vec3d d = unit_vector(candidate);
         const double dot = smallest_dot(n, d);
         if (d.lengthSqr() > 0 && dot > best.least) {
             best.least = dot;
@@ -126,7 +121,7 @@ std::vector<std::vector<Vec3d>> star_normals(const TriangleMesh& mesh)
     for (const Vec3I& t : mesh.triangles) {
         const Vec3d a(mesh.points[t[0]]);
         const Vec3d n =
-            unit_or_zero((Vec3d(mesh.points[t[2]]) - a).cross(Vec3d(mesh.points[t[1]]) - a));
+            unit_vector((Vec3d(mesh.points[t[2]]) - a).cross(Vec3d(mesh.points[t[1]]) - a));
         for (int k = 0; k < 3 && n.lengthSqr() > 0; ++k)
             normals[t[k]].push_back(n);
     }
@@ -176,7 +171,7 @@ bool is_blind(const TriangleMesh& mesh, const VertexTriangles::Range& around, st
     std::vector<Vec3d> normals;
     Vec3d mean(0.0);
     for (const exact::Side& side : sides) {
-        normals.push_back(unit_or_zero(inward(apex, side)));
+        normals.push_back(unit_vector(inward(apex, side)));
         mean += normals.back();
     }
     return !surely_sees(apex, sides, mean) && !surely_sees(apex, sides, most_visible(normals)) &&

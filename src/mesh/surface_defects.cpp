@@ -136,13 +136,13 @@ std::vector<char> left_out_of_contacts(std::size_t triangles, const SurfaceDefec
 
 } // namespace
 
-std::vector<char> find_degenerate(const TriangleMesh& mesh)
+std::vector<char> find_degenerate(const std::vector<openvdb::Vec3s>& points,
+                                  const std::vector<openvdb::Vec3I>& triangles)
 {
-    std::vector<char> degenerate(mesh.triangles.size());
+    std::vector<char> degenerate(triangles.size());
     for_each_index(degenerate.size(), [&](std::size_t t) {
-        const openvdb::Vec3I& corner = mesh.triangles[t];
-        degenerate[t] = exact::collinear(mesh.points[corner[0]], mesh.points[corner[1]],
-                                         mesh.points[corner[2]]);
+        const openvdb::Vec3I& corner = triangles[t];
+        degenerate[t] = exact::collinear(points[corner[0]], points[corner[1]], points[corner[2]]);
     });
     return degenerate;
 }
@@ -177,7 +177,7 @@ SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>
     stop_if_stage_wants();
     defects.non_manifold_vertices = find_non_manifold_vertices(mesh);
     stop_if_stage_wants();
-    defects.degenerate_triangles = raised(find_degenerate(mesh));
+    defects.degenerate_triangles = raised(find_degenerate(mesh.points, mesh.triangles));
     defects.duplicate_triangles = find_duplicates(mesh);
     PairBounds wanted;
     wanted.limited = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/defect_list.h"
 #include "mesh/topology.h"
 #include "vdb_shell/core/interrupter.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -26,27 +27,13 @@ std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
                                                   const std::vector<char>& left_out,
                                                   Interrupter* interrupter = nullptr);
 
-/// Per triangle, whether its corners lie on one line.
-std::vector<char> find_degenerate(const TriangleMesh& mesh);
+/// Per triangle, whether its corners lie on one line. Exact.
+std::vector<char> find_degenerate(const std::vector<openvdb::Vec3s>& points,
+                                  const std::vector<openvdb::Vec3I>& triangles);
 
 /// The interrupter may be null; throws Cancelled.
 SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
                             Interrupter* interrupter = nullptr);
-
-template <typename Element> void add_to(Defect<Element>& defect, const Element& element)
-{
-    if (defect.count++ < Defect<Element>::kFirstShown)
-        defect.first.push_back(element);
-}
-
-/// How many, and the first of them.
-template <typename Element> Defect<Element> summary_of(const std::vector<Element>& elements)
-{
-    Defect<Element> defect;
-    for (const Element& element : elements)
-        add_to(defect, element);
-    return defect;
-}
 
 /// Throws InvalidOption unless the points are finite and the corners index them.
 void require_well_formed(const TriangleMesh& mesh, const std::string& caller);

@@ -9,6 +9,7 @@
 
 #include "vdb_shell/options/option.h"
 
+#include "options/shown_text.h"
 #include "vdb_shell/core/error.h"
 
 #include <algorithm>
@@ -44,13 +45,40 @@ std::string joined(const std::vector<std::string>& words)
     // Without an expectation it is the kind that was wrong, and the message tells all that is
     // allowed.
     const bool of_kind = expected.empty();
-    throw InvalidOption(name + " is " + value + ", must be " +
+    // "0,1" and "inf" are above 0 for anybody who reads it.
+    const bool of_number =
+        of_kind && option.kind == OptionKind::number && !option.range.text().empty();
+    throw InvalidOption(name + " is " + shown_in_part(value) + ", must be " +
+                        (of_number ? "a finite number, " : "") +
                         (of_kind ? expectation(option) : expected));
+}
+
+/// The range of whole numbers where the type of the field is narrower than it. All digits of the
+/// bound, since six of them are no limit that could be kept.
+std::string range_in_type(const Option& option)
+{
+    const std::string range = option.range.text();
+    if (option.range.high && *option.range.high <= option.largest)
+        return range;
+    // 2^64 - 1 is no double: the next one is 2^64, which would wrap around.
+    const auto largest = option.largest < std::ldexp(1.0, 63)
+                             ? static_cast<std::uint64_t>(option.largest)
+                         : option.kind == OptionKind::integer ? std::uint64_t(INT64_MAX)
+                                                              : UINT64_MAX;
+    return (range.empty() ? "" : range + " and ") + "at most " + std::to_string(largest);
 }
 
 /// What a value of the right kind is expected to be.
 std::string expected_range(const Option& option, const OptionValue& value)
 {
+    const auto* integer = std::get_if<std::int64_t>(&value);
+    const auto* count = std::get_if<std::uint64_t>(&value);
+    // Too large is met by the bound of the type alone.
+    if ((integer && static_cast<double>(*integer) > option.largest) ||
+        (count && static_cast<double>(*count) > option.largest))
+        return range_in_type(option);
+    if (integer && static_cast<double>(*integer) < -option.largest && !option.range.low)
+        return std::to_string(-static_cast<std::int64_t>(option.largest)) + " or more";
     const auto* number = std::get_if<double>(&value);
     // Infinity is "0 or more" for anybody who reads it, so the message has to say that it must be
     // finite. Between two bounds that goes without saying.
@@ -60,10 +88,17 @@ std::string expected_range(const Option& option, const OptionValue& value)
     return option.range.text();
 }
 
+/// Whether a double is a whole number that each type of whole numbers holds. Above 2^53 doubles are
+/// whole, but they stand for their neighbours as well.
+bool is_whole(double value)
+{
+    return std::abs(value) <= std::ldexp(1.0, 53) && std::trunc(value) == value;
+}
+
 /// The value as the kind that the option has, or unset where the kinds do not fit. JSON and callers
-/// write 2 for 2.0, so whole numbers are taken for numbers (above 2^53 the nearest double); numbers
-/// are never taken for whole numbers, since 2.5 would lose its half in silence. Texts are never
-/// parsed here: that is left to parsed_as().
+/// write 2 for 2.0, so whole numbers are taken for numbers (above 2^53 the nearest double).
+/// Programs without whole numbers write 2.0 for 2, so that is taken too; 2.5 is not, since it would
+/// lose its half in silence. Texts are never parsed here: that is left to parsed_as().
 OptionValue converted(OptionKind kind, const OptionValue& value)
 {
     if (const auto* integer = std::get_if<std::int64_t>(&value)) {
@@ -82,8 +117,11 @@ OptionValue converted(OptionKind kind, const OptionValue& value)
     }
     if (std::holds_alternative<bool>(value))
         return kind == OptionKind::flag ? value : OptionValue();
-    if (std::holds_alternative<double>(value))
+    if (const auto* number = std::get_if<double>(&value)) {
+        if ((kind == OptionKind::integer || kind == OptionKind::count) && is_whole(*number))
+            return converted(kind, static_cast<std::int64_t>(*number));
         return kind == OptionKind::number ? value : OptionValue();
+    }
     return kind == OptionKind::choice || kind == OptionKind::text ? value : OptionValue();
 }
 
@@ -105,6 +143,14 @@ bool allowed(const Option& option, const OptionValue& value)
         return static_cast<double>(*count) <= option.largest &&
                option.range.holds(static_cast<double>(*count));
     return true;
+}
+
+/// Whether the text is a whole number of any size.
+bool is_whole_number(const std::string& text)
+{
+    const std::size_t first = text.find_first_not_of("+-");
+    return first != std::string::npos && first <= 1 &&
+           text.find_first_not_of("0123456789", first) == std::string::npos;
 }
 
 /// The number that the text is, or unset where it is none of that type, or one that the type cannot
@@ -320,8 +366,12 @@ void assign_text(Option& option, const std::string& text, const std::string& nam
     // A text comes from a person, so it is parsed as the option's own kind, and not guessed from
     // its looks.
     const OptionValue value = parsed_as(option.kind, text);
-    if (std::holds_alternative<std::monostate>(value))
-        refuse(option, name, text, "");
+    if (std::holds_alternative<std::monostate>(value)) {
+        // A whole number that no type holds meets the bound of the option's.
+        const bool whole = option.kind == OptionKind::integer || option.kind == OptionKind::count;
+        refuse(option, name, text,
+               whole && is_whole_number(text) && text.front() != '-' ? range_in_type(option) : "");
+    }
     if (!allowed(option, value))
         refuse(option, name, text, expected_range(option, value));
     option.set(value);

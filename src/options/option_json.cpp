@@ -9,6 +9,8 @@
 
 #include "options/option_json.h"
 
+#include "options/parse_json.h"
+#include "options/shown_text.h"
 #include "vdb_shell/core/error.h"
 
 #include <algorithm>
@@ -20,6 +22,18 @@ namespace
 {
 
 using nlohmann::ordered_json;
+
+/// For messages. A file of options may have a text of many megabytes.
+std::string shown_json(const ordered_json& json)
+{
+    return shown_in_part(json.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+/// A key in a message. An empty one would not be seen.
+std::string shown_key(const std::string& key)
+{
+    return key.empty() ? "\"\"" : shown_in_part(key);
+}
 
 OptionValue value_of(const ordered_json& json, const std::string& name)
 {
@@ -37,7 +51,7 @@ OptionValue value_of(const ordered_json& json, const std::string& name)
         return json.get<double>();
     if (json.is_string())
         return json.get<std::string>();
-    throw InvalidOption(name + " is " + json.dump() + ", must be a single value");
+    throw InvalidOption(name + " is " + shown_json(json) + ", must be a single value");
 }
 
 Option* find_by_key(OptionList& options, const std::string& key)
@@ -54,17 +68,17 @@ Option* find_by_key(OptionList& options, const std::string& key)
 void set_section(const ordered_json& json, OptionSection& section, const std::string& name)
 {
     if (section.enable && !json.is_object() && !json.is_null())
-        throw InvalidOption(name + ": " + section.key + " is " + json.dump() +
+        throw InvalidOption(name + ": " + section.key + " is " + shown_json(json) +
                             ", must be an object or null");
     if (section.enable)
         section.enable->set(!json.is_null());
     if (section.enable && json.is_null())
         return;
     if (!json.is_object())
-        throw InvalidOption(name + ": " + section.key + " is " + json.dump() +
+        throw InvalidOption(name + ": " + section.key + " is " + shown_json(json) +
                             ", must be an object");
     for (const auto& entry : json.items()) {
-        const std::string full = name + ": " + section.key + "." + entry.key();
+        const std::string full = name + ": " + section.key + "." + shown_key(entry.key());
         Option* option = find_by_key(section.options, entry.key());
         if (!option)
             throw InvalidOption(full + " is no option");
@@ -192,7 +206,7 @@ void set_from_json(const ordered_json& json, OptionSections& sections, const std
 {
     for (const auto& entry : json.items())
         if (!set_entry(entry.key(), entry.value(), sections, name))
-            throw InvalidOption(name + ": " + entry.key() + " is no option");
+            throw InvalidOption(name + ": " + shown_key(entry.key()) + " is no option");
 }
 
 void set_known_from_json(const ordered_json& json, OptionSections& sections,
@@ -216,14 +230,7 @@ void set_known_from_json(const ordered_json& json, OptionSections& sections,
 
 ordered_json parse_options(const std::string& text, const std::string& name)
 {
-    ordered_json json;
-    try {
-        json = ordered_json::parse(text);
-        // The caller gets the project's own exception, with the name of the file in front. Numbers
-        // that no double holds are another error of the parser's than bad syntax.
-    } catch (const ordered_json::exception& error) {
-        throw ReadError(name + ": is no JSON: " + error.what());
-    }
+    ordered_json json = parse_json(text, name);
     if (!json.is_object())
         throw ReadError(name + ": is no JSON object of options");
     return json;

@@ -125,7 +125,7 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
                         const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
                         const std::vector<CoreMesh>& cores, Interrupter* interrupter)
 {
-    StageClock clock(r.report.stages);
+    StageClock clock(r.report.stages, interrupter);
     prepare_surface(r, mesh, options, clock, interrupter);
     resample_surface(r, options, clock, interrupter);
     require_enough_tets(r.surface, options.wanted);
@@ -193,7 +193,7 @@ ShellResult build_shell_from_level_set(const openvdb::FloatGrid& field, const Sh
     ShellResult r;
     r.report.source = name;
     TriangleMesh surface;
-    StageClock(r.report.stages).run("contour", [&] {
+    StageClock(r.report.stages, interrupter).run("contour", [&] {
         r.report.contour.emplace();
         surface = contour(field, options.contour, &*r.report.contour, interrupter);
     });

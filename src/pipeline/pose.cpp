@@ -56,7 +56,7 @@ PosedShell build_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>&
                        Interrupter* interrupter)
 {
     std::vector<StageCost> stages;
-    StageClock clock(stages);
+    StageClock clock(stages, interrupter);
     PoseResult pose;
     clock.run("pose", [&] { pose = pose_shell(rest, skin, options, interrupter); });
     PosedShell posed = finish_posed(rest, skin, std::move(pose), name, interrupter);
@@ -73,7 +73,7 @@ PosedShell finish_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>
     ShellReport& report = posed.report;
     report.pose = pose.report;
     report.source = name;
-    StageClock clock(report.stages);
+    StageClock clock(report.stages, interrupter);
     clock.run("tets", [&] { posed.tets = make_tets(posed.stack); });
     if (posed.tets.points.size() != rest.tets().points.size() ||
         posed.tets.tets != rest.tets().tets)
@@ -82,7 +82,7 @@ PosedShell finish_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>
     clock.run("check", [&] {
         report.mesh = check_mesh({skin, posed.stack.triangles()}, interrupter);
     });
-    clock.run("certify", [&] {
+    clock.run("certificate", [&] {
         report.certificate = certify_stack(posed.stack, PrismTest::chosen_tets, interrupter);
     });
     if (!report.certificate->certified())

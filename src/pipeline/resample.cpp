@@ -124,7 +124,7 @@ RefineReport refine(ShellResult& result, const ShellOptions& options,
         // The stages of a round have a clock of their own, whose costs are dropped: in the report
         // they are one stage, "refine", and would be counted twice otherwise.
         std::vector<StageCost> costs;
-        StageClock clock(costs);
+        StageClock clock(costs, interrupter);
         build_sides(result, options, thickness_grid, clock, interrupter, start);
         report.rounds.push_back(figures_of(result, options));
         // The next round goes on from this one all the same: its triangles are finer, and a later
@@ -155,7 +155,7 @@ void decimate_surface(ShellResult& result, const ShellOptions& options, Interrup
     DecimateResult decimated = decimate(result.surface, options.decimate, interrupter);
     result.surface = std::move(decimated.mesh);
     result.report.decimate = decimated.report;
-    result.report.mesh = check_mesh(result.surface);
+    result.report.mesh = check_mesh(result.surface, interrupter);
 }
 
 void remesh_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
@@ -166,7 +166,7 @@ void remesh_surface(ShellResult& result, const ShellOptions& options, Interrupte
     result.surface = std::move(remeshed.mesh);
     result.remesh_map = std::move(remeshed.map);
     result.report.remesh = remeshed.report;
-    result.report.mesh = check_mesh(result.surface);
+    result.report.mesh = check_mesh(result.surface, interrupter);
 }
 
 } // namespace
@@ -183,7 +183,7 @@ void resample_surface(ShellResult& result, const ShellOptions& options, StageClo
     clock.run("subdivide", [&] {
         result.report.subdivided_from = result.surface.triangles.size();
         result.surface = subdivide(result.surface, options.subdivide);
-        result.report.mesh = check_mesh(result.surface);
+        result.report.mesh = check_mesh(result.surface, interrupter);
         require_usable(result.report.mesh, options.check,
                        result.report.source + " after --subdivide");
     });
@@ -199,7 +199,7 @@ void build_and_refine(ShellResult& result, const ShellOptions& options, const Gr
     clock.run("refine", [&] {
         const RefineReport report = refine(result, options, thickness_grid, interrupter);
         result.report.refine = report;
-        result.report.mesh = check_mesh(result.surface);
+        result.report.mesh = check_mesh(result.surface, interrupter);
     });
 }
 

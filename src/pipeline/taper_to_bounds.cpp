@@ -3,9 +3,10 @@
 // Takes: a certified stack and what the user wants of it. Leaves: the stack tapered, by the costs
 // that came nearest. Tapering minimises a sum of costs and knows no bounds, so what falls short is
 // made dearer and it is run again, from the same stack: tets by a bisection once both sides of the
-// budget have been seen, the void and the distortion by a factor. A run that has all ends it; of
-// several that have not, the one that misses fewest bounds, and those by least, is kept. All by
-// counts and sums in index order, so the choice is the same for any number of threads.
+// budget have been seen with the same other costs, the void and the distortion by a factor. A run
+// that has all ends it; of several that have not, the one that misses fewest bounds, and those by
+// least, is kept. All by counts and sums in index order, so the choice is the same for any number
+// of threads.
 
 #include "pipeline/taper_to_bounds.h"
 
@@ -28,39 +29,47 @@ namespace
 // three times the cost of a tet, and the void's cost has to double to show at all.
 constexpr double kTetFactor = 3, kVoidFactor = 2.5, kPowerStep = 0.5, kMostPower = 4;
 
-/// The next costs to try. `few` and `many`: the largest cost of a tet that gave too many, and the
-/// smallest that gave few enough.
+/// The next costs to try. `many` and `few`: the latest cost of a tet that gave too many, and that
+/// gave few enough, with the other costs as they are now.
 struct Search {
     TaperOptions costs;
     std::optional<double> many, few;
 
-    void heed(const WantedBound& bound)
+    void heed(const BoundsReport& judged)
     {
-        switch (bound.kind) {
-        case BoundKind::tets:
-            (bound.met ? few : many) = costs.tet_cost;
-            if (!bound.met)
-                costs.tet_cost = few ? std::sqrt(*few * costs.tet_cost)
-                                     : kTetFactor * std::max(costs.tet_cost, 1.0);
-            break;
-        case BoundKind::fill:
-            if (!bound.met)
-                costs.void_cost = kVoidFactor * std::max(costs.void_cost, 1.0);
-            break;
-        default:
-            // The more the worst tets count the fewer of them are left.
-            if (!bound.met)
-                costs.shape_power = std::min(kMostPower, costs.shape_power + kPowerStep);
-        }
+        const TaperOptions before = costs;
+        for (const WantedBound& bound : judged.bounds)
+            heed_fill_or_shape(bound);
+        const bool others_changed =
+            costs.void_cost != before.void_cost || costs.shape_power != before.shape_power;
+        for (const WantedBound& bound : judged.bounds)
+            if (bound.kind == BoundKind::tets)
+                heed_tets(bound.met, others_changed);
     }
-    /// Where the tets are few enough but another bound is missed, some more of them may help.
-    void spend_what_is_left(const BoundsReport& judged)
+
+private:
+    void heed_fill_or_shape(const WantedBound& bound)
     {
-        const bool within =
-            std::any_of(judged.bounds.begin(), judged.bounds.end(),
-                        [](const WantedBound& b) { return b.kind == BoundKind::tets && b.met; });
-        if (within && many)
-            costs.tet_cost = std::sqrt(*many * costs.tet_cost);
+        if (bound.met || bound.kind == BoundKind::tets)
+            return;
+        if (bound.kind == BoundKind::fill)
+            costs.void_cost = kVoidFactor * std::max(costs.void_cost, 1.0);
+        else
+            // The more the worst tets count the fewer of them are left.
+            costs.shape_power = std::min(kMostPower, costs.shape_power + kPowerStep);
+    }
+    void heed_tets(bool met, bool others_changed)
+    {
+        // How many tets a cost gives depends on the other costs, so with others it says nothing.
+        if (others_changed)
+            many = few = std::nullopt;
+        else
+            (met ? few : many) = costs.tet_cost;
+        if (many && few)
+            // Where tets are few enough but another bound is missed, some more of them may help.
+            costs.tet_cost = std::sqrt(*many * *few);
+        else if (!met)
+            costs.tet_cost = kTetFactor * std::max(costs.tet_cost, 1.0);
     }
 };
 
@@ -101,9 +110,7 @@ void taper_to_bounds(ShellResult& r, const ShellOptions& options, const std::vec
             r.stack = std::move(stack);
             r.report.taper = report;
         }
-        for (const WantedBound& bound : judged.bounds)
-            search.heed(bound);
-        search.spend_what_is_left(judged);
+        search.heed(judged);
         more = worth_another_run(judged) && runs < kMostTaperRuns;
     }
     r.report.taper->runs = runs;

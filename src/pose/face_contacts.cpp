@@ -9,6 +9,7 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/triangle_pairs.h"
+#include "mesh/surface_defects.h"
 #include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
@@ -57,11 +58,7 @@ std::vector<FacePair> faces_not_apart(const Parts& parts, const std::vector<Vec3
                crossings.region[parts.triangle_of_face[g]] != 0;
     };
     const std::vector<Vec3s> corners = points_of_faces(free, parts.stack.triangles(), points, skin);
-    std::vector<char> degenerate(free.faces.size());
-    for_each_index(degenerate.size(), [&](std::size_t f) {
-        const Vec3I& c = free.faces[f];
-        degenerate[f] = exact::collinear(corners[c[0]], corners[c[1]], corners[c[2]]);
-    });
+    const std::vector<char> degenerate = find_degenerate(corners, free.faces);
     const TriangleContacts contacts(corners, free.faces);
     std::vector<FacePair> pairs = overlapping_triangles(
         corners, free.faces,

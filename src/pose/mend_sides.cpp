@@ -121,7 +121,9 @@ GrowState state_of(const Parts& parts, const SkinSide& side, const Connectivity&
         if (point == Parts::kFree || parts.skin_vertex[point] != Parts::kFree)
             continue;
         ends[v] = growth::rounded(state.place[point]);
-        cap[v] = side.outside ? 2 * (ends[v] - Vec3d(skin[v])).length()
+        // Outward nothing else bounds a pillar.
+        constexpr double kMostOfCarried = 2;
+        cap[v] = side.outside ? kMostOfCarried * (ends[v] - Vec3d(skin[v])).length()
                               : std::numeric_limits<double>::infinity();
     }
     GrowState s = growth::make_state(connectivity, skin, cap);

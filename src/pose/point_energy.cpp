@@ -21,6 +21,9 @@ using Parts = RestShell::Parts;
 /// Determinants are relative to rest, where they are 1. Below the first a tet counts by the measure
 /// that is finite for inverted ones, which is smoothed over the second.
 constexpr double kSound = 0.02, kSmoothing = 0.01;
+/// Smoothing grows with how far a tet is inverted, by a fifth of it, so that the slope back does
+/// not fade the farther it has turned. Of the squares.
+constexpr double kSmoothingOfInverted = 0.04;
 
 struct Jacobian {
     Vec3d row[3];
@@ -78,7 +81,7 @@ PointEnergy::CornerTet PointEnergy::corner_tet(const Parts& parts, const std::ve
                    j.row[0].cross(j.row[1]).dot(g));
     if (!(made.determinant > kSound)) {
         const double below = std::min(made.determinant, 0.0);
-        made.smoothing = kSmoothing * kSmoothing + 0.04 * below * below;
+        made.smoothing = kSmoothing * kSmoothing + kSmoothingOfInverted * below * below;
     }
     return made;
 }

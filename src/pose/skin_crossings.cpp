@@ -188,7 +188,7 @@ SkinCrossings find_skin_crossings(const RestShell::Parts& parts, const PoseState
     const std::vector<Vec3I>& triangles = parts.stack.triangles();
     const TriangleMesh mesh{skin, triangles};
     const std::vector<TrianglePair> pairs =
-        find_self_intersections(mesh, find_degenerate(mesh), interrupter);
+        find_self_intersections(mesh, find_degenerate(mesh.points, mesh.triangles), interrupter);
     SkinCrossings found;
     found.pairs = pairs.size();
     if (pairs.empty())

@@ -7,8 +7,6 @@
 // fill may cross something in its turn: therefore the cut grows from round to round, and the caller
 // bounds the number of rounds.
 
-#include "core/exact.h"
-#include "core/parallel.h"
 #include "core/triangle_pairs.h"
 #include "mesh/surface_defects.h"
 #include "mesh/triangle_contacts.h"
@@ -47,11 +45,7 @@ void add_ring(const TriangleMesh& mesh, std::vector<char>& marked)
 /// a triangle crosses something does not depend on which pair shows it first.
 std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* interrupter)
 {
-    std::vector<char> flat(mesh.triangles.size());
-    for_each_index(flat.size(), [&](std::size_t t) {
-        const Vec3I& c = mesh.triangles[t];
-        flat[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
-    });
+    const std::vector<char> flat = find_degenerate(mesh.points, mesh.triangles);
     const TriangleContacts contacts(mesh.points, mesh.triangles);
     std::vector<std::atomic<bool>> crossing(mesh.triangles.size());
     const auto marked = [&](std::uint32_t t) {

@@ -140,9 +140,9 @@ std::vector<std::uint32_t> polygon_of(const Vec3I& triangle, const std::uint32_t
 }
 
 /// Parts edges that several pairs of sides have in use although all fans have their own points,
-/// because both ends of the edge are one fan each. Returns how many such edges there were.
-std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
-                       RepairReport& report)
+/// because both ends of the edge are one fan each.
+void part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partner,
+                RepairReport& report)
 {
     TriangleMesh& mesh = surface.mesh;
     std::vector<std::uint32_t> middle_of(partner.size(), kUnpaired);
@@ -162,7 +162,6 @@ std::size_t part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>
             surface.source.push_back(kNoSource);
         }
     }
-    return edges;
 }
 
 std::size_t count_crowded(const TriangleMesh& mesh)

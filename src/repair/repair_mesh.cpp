@@ -132,6 +132,10 @@ RepairResult repair_mesh(const TriangleMesh& mesh, const RepairOptions& options,
 {
     require_in_range(options, "repair");
     require_well_formed(mesh, "repair_mesh");
+    // The steps below frame themselves where they are long; what is between them asks all the same.
+    LatchedInterrupter asked_by_loops(interrupter);
+    const StageStopScope scope(interrupter ? &asked_by_loops : stage_stop());
+    stop_if_stage_wants();
     RepairReport report;
     repair::WorkingSurface surface{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), {}};
     std::iota(surface.source.begin(), surface.source.end(), 0U);

@@ -68,9 +68,7 @@ private:
 
     static Vec3d normal(const Vec3d& a, const Vec3d& b, const Vec3d& c)
     {
-        const Vec3d cross = (b - a).cross(c - a);
-        const double length = cross.length();
-        return length > 0 ? cross / length : Vec3d(0.0);
+        return unit_vector((b - a).cross(c - a));
     }
 
     /// The normal of what lies beyond the chord from i to k, seen from the inner side.

@@ -9,6 +9,7 @@
 
 #include "repair/working_surface.h"
 
+#include "core/stage_stop.h"
 #include "mesh/equal_points.h"
 #include "mesh/surface_defects.h"
 
@@ -56,6 +57,7 @@ std::vector<std::uint32_t> first_near_point(const std::vector<openvdb::Vec3s>& p
     const double size = cell_size(points, tolerance);
     std::vector<std::uint32_t> first(points.size());
     for (std::uint32_t v = 0; v < points.size(); ++v) {
+        stop_if_stage_wants(v);
         const Cell cell = cell_of(points[v], size);
         first[v] = v;
         for (std::int64_t i = 0; i < 27; ++i) {

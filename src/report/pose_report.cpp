@@ -4,6 +4,7 @@
 
 #include "report/pose_report.h"
 
+#include "options/parse_json.h"
 #include "report/text_lines.h"
 #include "vdb_shell/core/error.h"
 
@@ -63,11 +64,12 @@ void pose_lines(std::ostringstream& out, const PoseReport& pose)
 std::string posed_report_json(const ShellReport& posed, const std::string& at_rest, bool with_costs)
 {
     // The report of the shell at rest, with what a pose changes put over it. It was read from a
-    // file and may be anything: what is no JSON gives no object here, and no exception of the
-    // parser's.
-    ordered_json json = ordered_json::parse(at_rest, nullptr, false);
+    // file and may be anything. The name of that file is not known here, and the source of the pose
+    // is another one.
+    const std::string name = "the shell at rest";
+    ordered_json json = parse_json(at_rest, name, "its report is no JSON object");
     if (!json.is_object())
-        throw ReadError(posed.source + ": the report of the shell at rest is no JSON object");
+        throw ReadError(name + ": its report is no JSON object");
     // Through its text, so that a key means the same in both reports.
     const ordered_json now = ordered_json::parse(report_json(posed, with_costs));
     for (const char* key : {"mesh", "prisms", "tets", "conformity", "quality", "volume",

@@ -147,17 +147,18 @@ void growth_line(std::ostringstream& out, const GrowReport& grow)
 
 /// What the user wanted and the stages after growth could not give: tets of the wanted quality, and
 /// pillars as long as scaling alone would have left them.
-void concession_lines(std::ostringstream& out, const ShellReport& report)
+void concession_lines(std::ostringstream& out, const std::optional<GrowReport>& grow,
+                      const std::optional<ScaleReport>& scale)
 {
-    if (report.grow && report.grow->quality_rounds > 0)
+    if (grow && grow->quality_rounds > 0)
         line(out, "min quality",
-             number(report.grow->quality_rounds, 12) +
-                 " rounds; still below: " + number(report.grow->tets_below_quality, 12) +
-                 " tets, " + number(report.grow->vertices_below_quality, 12) + " inner vertices");
-    if (report.scale)
+             number(grow->quality_rounds, 12) +
+                 " rounds; still below: " + number(grow->tets_below_quality, 12) + " tets, " +
+                 number(grow->vertices_below_quality, 12) + " inner vertices");
+    if (scale)
         line(out, "scale",
-             number(report.scale->shortened, 12) + " pillars shortened further, " +
-                 number(report.scale->pinned, 12) + " of them pinned");
+             number(scale->shortened, 12) + " pillars shortened further, " +
+                 number(scale->pinned, 12) + " of them pinned");
 }
 
 /// As many as the defect names, and a mark that there are more.
@@ -230,17 +231,20 @@ void stage_lines(std::ostringstream& out, const ShellReport& report)
     if (report.side != Side::inward)
         line(out, "side", name_in_table(report.side));
     line_figures(out, report.lines);
+    if (report.grow)
+        growth_line(out, *report.grow);
+    concession_lines(out, report.grow, report.scale);
     if (report.outside) {
         line(out, "outward", "");
         line_figures(out, report.outside->lines);
+        if (report.outside->grow)
+            growth_line(out, *report.outside->grow);
+        concession_lines(out, report.outside->grow, report.outside->scale);
     }
-    if (report.grow)
-        growth_line(out, *report.grow);
     if (report.refine)
         refine_lines(out, *report.refine);
     if (report.cores)
         cores_line(out, *report.cores);
-    concession_lines(out, report);
     layer_lines(out, report);
 }
 

@@ -4,6 +4,7 @@
 #include "vdb_shell/report/report.h"
 
 #include "core/freed_memory.h"
+#include "core/stage_stop.h"
 
 #include <sys/resource.h>
 
@@ -13,16 +14,24 @@
 namespace vdb_shell
 {
 
-/// Runs stages, notes what each of them cost, and gives back what it freed.
+/// Runs stages, notes what each of them cost, and gives back what it freed. What a stage does
+/// between calls that take the interrupter asks it too. It may be null.
 class StageClock
 {
 public:
-    explicit StageClock(std::vector<StageCost>& costs) : costs_(costs) {}
+    StageClock(std::vector<StageCost>& costs, Interrupter* interrupter)
+        : costs_(costs), interrupter_(interrupter)
+    {
+    }
 
     template <typename Stage> void run(const std::string& name, Stage&& stage)
     {
         const auto start = std::chrono::steady_clock::now();
-        std::forward<Stage>(stage)();
+        {
+            LatchedInterrupter asked_by_loops(interrupter_);
+            const StageStopScope scope(interrupter_ ? &asked_by_loops : stage_stop());
+            std::forward<Stage>(stage)();
+        }
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         costs_.push_back({name, seconds.count(), peak_memory_bytes()});
         give_back_freed_memory();
@@ -37,6 +46,7 @@ private:
         return static_cast<std::uint64_t>(usage.ru_maxrss) * kBytesPerUnit;
     }
     std::vector<StageCost>& costs_;
+    Interrupter* interrupter_;
 };
 
 } // namespace vdb_shell

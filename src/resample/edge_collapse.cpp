@@ -12,6 +12,7 @@
 #include "resample/edge_collapse.h"
 
 #include "core/parallel.h"
+#include "core/stage_stop.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_corners.h"
@@ -134,6 +135,7 @@ private:
         const std::size_t wanted = (triangles_.size() - limits_.fewest_triangles + 1) / 2;
         for (const std::uint32_t v : cheapest()) {
             const std::uint32_t u = best_[v].onto;
+            stop_if_stage_wants(done);
             if (done == wanted)
                 break;
             if (touched_[v] || touched_[u])

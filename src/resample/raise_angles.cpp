@@ -5,6 +5,7 @@
 // ones stay bad. Here each operation has to make the smallest angle around it larger, so nothing is
 // lost, and little is looked at.
 
+#include "core/stage_stop.h"
 #include "resample/remesh_rounds.h"
 #include "resample/triangle_angle.h"
 
@@ -21,10 +22,15 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-constexpr double kLargerThanBefore = -1; // as a cosine that no triangle has
+// The search for a better place asks in these directions, 45 degrees apart, with a first step of
+// this share of the wanted length, which is halved until it is a hundredth: no longer than what
+// smoothing leaves undone (kLeastMove of remesh_rounds.cpp).
 constexpr int kDirections = 8, kStepHalvings = 5;
-// The first step of the search for a better place, as a share of the wanted length.
 constexpr double kFirstStep = 0.3;
+// Of a cosine; less is no better angle but rounding.
+constexpr double kLeastGain = 1e-6;
+// Along a curve every tenth of the way between the neighbours is asked for.
+constexpr int kPlacesOnCurve = 10;
 
 /// Cosine of the smallest angle around v if it were at p; more than 1 where a triangle would turn
 /// over.
@@ -60,6 +66,7 @@ Vec3d normal_at(const RemeshSurface& surface, std::uint32_t v)
 bool move_to_larger(RemeshSurface& surface, std::uint32_t v)
 {
     const Vec3d normal = normal_at(surface, v), start = surface.point(v);
+    // Any axis that is not nearly along the normal.
     const Vec3d any = std::abs(normal[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     Vec3d u = any - normal * normal.dot(any);
     u.normalize();
@@ -70,10 +77,10 @@ bool move_to_larger(RemeshSurface& surface, std::uint32_t v)
     for (int halvings = 0; halvings < kStepHalvings;) {
         const Vec3d from = best;
         for (int k = 0; k < kDirections; ++k) {
-            const double angle = 2 * 3.14159265358979 * k / kDirections;
+            const double angle = 2 * M_PI * k / kDirections;
             const Vec3d p = from + (u * std::cos(angle) + w * std::sin(angle)) * step;
             const double there = cosine_at(surface, v, p, normal);
-            if (there < cosine - 1e-6)
+            if (there < cosine - kLeastGain)
                 cosine = there, best = p;
         }
         if (best == from)
@@ -89,10 +96,9 @@ bool move_to_larger(RemeshSurface& surface, std::uint32_t v)
 
 bool slide_to_larger(RemeshSurface& surface, std::uint32_t v)
 {
-    constexpr int kPlaces = 10;
     double best = 0, cosine = 1;
-    for (int i = 1; i < kPlaces; ++i) {
-        const double share = double(i) / kPlaces;
+    for (int i = 1; i < kPlacesOnCurve; ++i) {
+        const double share = double(i) / kPlacesOnCurve;
         double worst = -1;
         const Vec3d p = surface.point_between(v, share);
         for (const std::uint32_t t : surface.star(v)) {

@@ -9,6 +9,8 @@
 
 #include "vdb_shell/resample/remesh.h"
 
+#include "core/available_memory.h"
+#include "core/fail.h"
 #include "core/stage_progress.h"
 #include "mesh/triangle_area.h"
 #include "resample/attempts.h"
@@ -53,6 +55,11 @@ constexpr int kMostRemeshings = 5;
 constexpr double kFirstShare = 0.9;
 // Points of the input at which operations look are no farther apart than that share of the length.
 constexpr double kSpacing = 0.5;
+// As subdivide(): a shell has three tets for a triangle, and their indices are 32 bits wide.
+constexpr double kMostTriangles = 1U << 30U;
+// Of the surface at work with its neighbours, sizes and samples of the input. Less than was
+// measured, for nothing may be refused that would have gone through.
+constexpr double kLeastBytes = 250;
 
 /// The edge length at which equilateral triangles of the surface's area are so many.
 double length_for(double area, double triangles)
@@ -65,9 +72,36 @@ double default_tolerance(double length, double feature_angle)
     return 0.5 * length * std::sin(0.5 * feature_angle);
 }
 
+/// How many equilateral triangles of that edge length the area has room for.
+double triangles_for(double area, double length)
+{
+    return area * 4 / (std::sqrt(3.0) * length * length);
+}
+
 void require_sound(const TriangleMesh& mesh)
 {
     require_usable(check_mesh(mesh), {}, "remesh");
+}
+
+/// Known before the work, which would take all memory and end the process without a word.
+void require_possible(const RemeshOptions& options, double area)
+{
+    const double count =
+        options.triangles ? double(*options.triangles) : triangles_for(area, *options.edge_length);
+    const auto refuse = [&](const auto&... limit) {
+        if (options.triangles)
+            fail<InvalidOption>("remesh: triangles is ", *options.triangles, ", ", limit...);
+        fail<InvalidOption>("remesh: edge_length is ", *options.edge_length,
+                            " for a surface of area ", area, ", which are ", count, " triangles, ",
+                            limit...);
+    };
+    if (!(count < kMostTriangles))
+        refuse("must give less than 2^30 triangles");
+    const double bytes = kLeastBytes * count, free = available_memory();
+    constexpr double kGib = 1024.0 * 1024 * 1024;
+    if (bytes > free)
+        refuse("must not need more than the ", free / kGib, " GiB of memory that are free, and ",
+               "would need ", bytes / kGib, " or more");
 }
 
 /// What all attempts have in common.
@@ -135,7 +169,7 @@ double share_in_range(const TriangleMesh& mesh, double length)
             const double l =
                 (openvdb::Vec3d(mesh.points[c[k]]) - openvdb::Vec3d(mesh.points[c[(k + 1) % 3]]))
                     .length();
-            inside += l >= 0.8 * length && l <= 4.0 / 3.0 * length;
+            inside += l >= kTooShort * length && l <= kTooLong * length;
             ++all;
         }
     return double(inside) / double(all);
@@ -192,6 +226,10 @@ void require_sensible(const RemeshOptions& options)
     require_in_range(options, "remesh");
     if (options.edge_length && options.triangles)
         throw InvalidOption("remesh: edge_length and triangles are both given; one or the other");
+    // Told here as well, where no surface has been read yet.
+    if (options.triangles && !(double(*options.triangles) < kMostTriangles))
+        throw InvalidOption("remesh: triangles is " + std::to_string(*options.triangles) +
+                            ", must be less than 2^30");
 }
 
 TriangleFigures triangle_figures(const TriangleMesh& mesh)
@@ -230,8 +268,10 @@ RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
     require_sound(mesh);
     const StageProgress progress(interrupter, "remesh");
     const double diagonal = diagonal_of(bounds_of(mesh.points));
-    const double wanted = options.edge_length.value_or(length_for(
-        surface_area(mesh.points, mesh.triangles), double(options.triangles.value_or(1))));
+    const double area = surface_area(mesh.points, mesh.triangles);
+    require_possible(options, area);
+    const double wanted =
+        options.edge_length.value_or(length_for(area, double(options.triangles.value_or(1))));
     const double tolerance =
         options.tolerance.value_or(default_tolerance(wanted, options.feature_angle_radians));
     const Job job{mesh, options,

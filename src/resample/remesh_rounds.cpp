@@ -8,6 +8,7 @@
 // so the surface is fine where it has to be and nowhere else.
 
 #include "resample/remesh_rounds.h"
+#include "core/stage_stop.h"
 
 #include <algorithm>
 #include <array>
@@ -26,9 +27,6 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3I;
 
-// Botsch and Kobbelt: halving an edge of 4/3 or collapsing one of 4/5 brings its length nearer to
-// the wanted one, and neither undoes the other.
-constexpr double kTooLong = 4.0 / 3.0, kTooShort = 4.0 / 5.0;
 // Cosines of the angles that operations may not go below, unless they were smaller before: 15
 // degrees for collapses and flips, after which smoothing follows, 30 for moves.
 constexpr double kEdgesMayLeave = 0.966, kMovesMayLeave = 0.866;
@@ -66,9 +64,16 @@ std::vector<LongEdge> edges_by_ratio(const RemeshSurface& surface, const Keep& k
     return edges;
 }
 
-std::vector<LongEdge> all_edges(const RemeshSurface& surface)
+/// Flips the edges for which wanted(edge) holds; `cosine` as in RemeshSurface::flip.
+template <typename Wanted>
+void flip_edges(RemeshSurface& surface, double cosine, const Wanted& wanted)
 {
-    return edges_by_ratio(surface, [](double) { return true; });
+    const std::vector<LongEdge> edges = edges_by_ratio(surface, [](double) { return true; });
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        stop_if_stage_wants(i);
+        if (surface.has_edge(edges[i].a, edges[i].b) && wanted(edges[i]))
+            surface.flip(edges[i].a, edges[i].b, cosine);
+    }
 }
 
 double ratio_of(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
@@ -158,9 +163,11 @@ void split_long_edges(RemeshSurface& surface)
         const std::vector<LongEdge> edges =
             edges_by_ratio(surface, [](double ratio) { return ratio > kTooLong; });
         // Longest first, so that triangles are cut at their longest sides.
-        for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge)
+        for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge) {
+            stop_if_stage_wants(std::size_t(edge - edges.rbegin()));
             any |= surface.has_edge(edge->a, edge->b) &&
                    surface.split(edge->a, edge->b) == Refusal::none;
+        }
     }
 }
 
@@ -168,7 +175,9 @@ void collapse_short_edges(RemeshSurface& surface, double least_size)
 {
     const std::vector<LongEdge> edges =
         edges_by_ratio(surface, [](double ratio) { return ratio < kTooShort; });
-    for (const LongEdge& edge : edges) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        stop_if_stage_wants(i);
+        const LongEdge& edge = edges[i];
         // Collapses before may have moved or taken it.
         if (!surface.has_edge(edge.a, edge.b) || ratio_of(surface, edge.a, edge.b) >= kTooShort)
             continue;
@@ -184,9 +193,8 @@ void collapse_short_edges(RemeshSurface& surface, double least_size)
 
 void flip_to_valence(RemeshSurface& surface)
 {
-    for (const LongEdge& edge : all_edges(surface))
-        if (surface.has_edge(edge.a, edge.b) && gain_of_flip(surface, edge.a, edge.b) > 0)
-            surface.flip(edge.a, edge.b, kEdgesMayLeave);
+    flip_edges(surface, kEdgesMayLeave,
+               [&](const LongEdge& edge) { return gain_of_flip(surface, edge.a, edge.b) > 0; });
 }
 
 void flip_to_angle(RemeshSurface& surface)
@@ -194,14 +202,13 @@ void flip_to_angle(RemeshSurface& surface)
     // Each flip makes an angle larger that was the smallest of its place, as in Lawson's algorithm;
     // a few times round are enough for what is left to pay.
     for (int round = 0; round < 3; ++round)
-        for (const LongEdge& edge : all_edges(surface))
-            if (surface.has_edge(edge.a, edge.b))
-                surface.flip(edge.a, edge.b, -1);
+        flip_edges(surface, kLargerThanBefore, [](const LongEdge&) { return true; });
 }
 
 void smooth(RemeshSurface& surface)
 {
     for (std::uint32_t v = 0; v < surface.vertex_slots(); ++v) {
+        stop_if_stage_wants(v);
         if (surface.star(v).empty())
             continue;
         if (surface.kind(v) == VertexKind::free)

@@ -8,6 +8,10 @@
 namespace vdb_shell
 {
 
+// Shares of the wanted length. Botsch and Kobbelt: halving an edge of 4/3 or collapsing one of 4/5
+// brings its length nearer to the wanted one, and neither undoes the other.
+constexpr double kTooLong = 4.0 / 3.0, kTooShort = 4.0 / 5.0;
+
 // What each round of remeshing does. All of it is in the order of the edges' lengths or of the
 // vertices, one after another, so the result is determined.
 

@@ -72,8 +72,8 @@ double squared_distance(const FloatBox& box, const Vec3d& p)
 RemeshSurface::RemeshSurface(const TriangleMesh& input, const FeatureCurves& features,
                              double tolerance, double spacing)
     : input_(input), features_(features), tolerance_(tolerance), tree_(input, spacing),
-      tree_unit_(spacing), points_(input.points), kind_(points_.size(), VertexKind::free),
-      on_input_(points_.size(), 1), size_(points_.size(), 0.0), star_(points_.size())
+      points_(input.points), kind_(points_.size(), VertexKind::free), on_input_(points_.size(), 1),
+      size_(points_.size(), 0.0), star_(points_.size())
 {
     for (std::uint32_t t = 0; t < input.triangles.size(); ++t) {
         triangles_.emplace_back(0U);

@@ -21,6 +21,9 @@ enum class Refusal : std::uint8_t { none, topology, feature, length, shape, turn
 /// What a vertex may do: move over the surface, slide along its curve, nothing.
 enum class VertexKind : std::uint8_t { free, on_curve, corner };
 
+/// For the cosine of an operation: every angle has a smaller one.
+constexpr double kLargerThanBefore = -1;
+
 /// A triangle surface whose edges are split, collapsed and flipped and whose vertices are moved.
 /// Each operation is done only if the surface stays a closed manifold of the same topology,
 /// embedded (exact), near the input and turned as it is, and if feature edges stay; else nothing
@@ -60,7 +63,8 @@ public:
     }
 
     // The operations. `cosine`: no triangle may get a smaller angle than that of this cosine, but
-    // for one that is no smaller than the smallest before; -1: the smallest has to grow.
+    // for one that is no smaller than the smallest before; kLargerThanBefore: the smallest has to
+    // grow.
     Refusal split(std::uint32_t a, std::uint32_t b);
     /// `longest`: of the wanted lengths, which no new edge may be longer than.
     Refusal collapse(std::uint32_t a, std::uint32_t b, double longest, double cosine);
@@ -115,14 +119,12 @@ private:
         return a < b ? std::uint64_t(a) << 32U | b : std::uint64_t(b) << 32U | a;
     }
     const FeatureEdge* feature(std::uint32_t a, std::uint32_t b) const;
-    const FeatureEdge& feature_from(std::uint32_t v, std::uint32_t to) const;
     std::array<std::uint32_t, 2> opposite(std::uint32_t a, std::uint32_t b) const;
     std::vector<std::uint32_t> ring(std::uint32_t v) const;
     std::uint32_t new_vertex(const openvdb::Vec3d& p, double size);
 
     void place_samples(double spacing);
     Foot foot_of(const openvdb::Vec3d& p) const;
-    double facing_of(const openvdb::Vec3I& c) const;
     openvdb::Vec3d cross_of(const openvdb::Vec3I& c) const;
     std::array<openvdb::Vec3d, 3> corners_of(const openvdb::Vec3I& c) const;
 
@@ -154,7 +156,6 @@ private:
     const FeatureCurves& features_;
     double tolerance_;
     TriangleTree tree_;
-    double tree_unit_;
     mutable TriangleTree::Seed seed_ = TriangleTree::kNoSeed;
 
     std::vector<openvdb::Vec3s> points_;

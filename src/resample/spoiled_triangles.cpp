@@ -7,9 +7,8 @@
 
 #include "resample/spoiled_triangles.h"
 
-#include "core/exact.h"
-#include "core/parallel.h"
 #include "core/triangle_pairs.h"
+#include "mesh/surface_defects.h"
 #include "mesh/triangle_contacts.h"
 
 namespace vdb_shell
@@ -17,11 +16,7 @@ namespace vdb_shell
 
 std::vector<char> spoiled_triangles(const TriangleMesh& mesh)
 {
-    std::vector<char> bad(mesh.triangles.size());
-    for_each_index(bad.size(), [&](std::size_t t) {
-        const openvdb::Vec3I& c = mesh.triangles[t];
-        bad[t] = exact::collinear(mesh.points[c[0]], mesh.points[c[1]], mesh.points[c[2]]);
-    });
+    std::vector<char> bad = find_degenerate(mesh.points, mesh.triangles);
     const TriangleContacts contacts(mesh.points, mesh.triangles);
     const auto touch = [&](std::uint32_t a, std::uint32_t b) {
         return !bad[a] && !bad[b] && contacts.touch(a, b);

@@ -96,15 +96,25 @@ bool fills_cells(const Bounds& bounds, double spacing, double area)
     return area / (spacing * spacing) > cells;
 }
 
+double sum_of_edges(const TriangleMesh& mesh)
+{
+    double sum = 0;
+    for (const openvdb::Vec3I& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k)
+            sum += (Vec3d(mesh.points[t[k]]) - Vec3d(mesh.points[t[(k + 1) % 3]])).length();
+    return sum;
+}
+
 /// Where sheets lie many in one place, samples of a place are asked once: the place bounds them,
 /// and not the sheets.
 Samples sample(const TriangleMesh& mesh, double spacing)
 {
     const double area = surface_area(mesh.points, mesh.triangles);
     // An estimate before anything is made: it takes a piece for an eighth of the squared spacing,
-    // as halving at the longest edge leaves pieces smaller than the spacing allows. Narrow
-    // triangles can make more.
-    if (!(std::isfinite(spacing) && spacing > 0 && area / (spacing * spacing) * 8 < kMostSamples))
+    // as halving at the longest edge leaves pieces smaller than the spacing allows; of a triangle
+    // without width there are as many as of its edges.
+    if (!(std::isfinite(spacing) && spacing > 0 &&
+          8 * area / (spacing * spacing) + sum_of_edges(mesh) / spacing < kMostSamples))
         throw InvalidOption("surface distance: spacing is " + std::to_string(spacing) +
                             " for an area of " + std::to_string(area) +
                             ", must be positive and give less than 2^27 points");

@@ -7,6 +7,7 @@
 #include "taper/passes.h"
 
 #include "core/propose_in_blocks.h"
+#include "core/stage_stop.h"
 #include "growth/grow_state.h"
 #include "taper/inner_contacts.h"
 
@@ -272,8 +273,10 @@ std::size_t Passes::turn(int percent)
     std::size_t made = 0;
     for (int layer = 0; layer < s.levels; ++layer) {
         progress_.stop_if_interrupted(percent);
-        for (int e = 0; e < static_cast<int>(s.edges.size()); ++e)
-            made += changes_.turn(layer, e);
+        for (std::size_t e = 0; e < s.edges.size(); ++e) {
+            stop_if_stage_wants(e);
+            made += changes_.turn(layer, static_cast<int>(e));
+        }
     }
     return made;
 }

@@ -7,8 +7,10 @@
 
 #include "taper/taper_state.h"
 
+#include "core/fail.h"
 #include "growth/predicates.h"
 #include "taper/inner_contacts.h"
+#include "vdb_shell/core/error.h"
 
 #include <algorithm>
 #include <limits>
@@ -67,7 +69,7 @@ void read_diagonals(TaperState& s, const PrismSplit& split)
     }
 }
 
-/// Places of equal bits one above the other are one node: a pin.
+/// Places of equal coordinates one above the other are one node: a pin.
 void read_points(TaperState& s, const ShellStack& stack)
 {
     for (int level = 0; level <= s.levels; ++level)
@@ -119,6 +121,14 @@ const std::array<int, 8>& orders_by_diagonals()
 TaperState make_taper_state(const growth::Connectivity& mesh, const ShellStack& stack,
                             const std::vector<double>& cap, const CostWeights& weights)
 {
+    // Places and pieces have numbers of 32 bits and a sign.
+    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+    const std::size_t surfaces = stack.layers.size() + 1;
+    const std::size_t elements = std::max(std::size_t(mesh.vertices), mesh.faces.size());
+    if (surfaces * elements > kMost)
+        fail<InvalidOption>("taper: ", surfaces - 1, " layers of ", mesh.faces.size(),
+                            " triangles have more than 2^31 - 1 prisms or points; fewer layers "
+                            "(--layers) or triangles (--decimate-to) can be tapered");
     TaperState s;
     s.weights = weights;
     s.mesh = &mesh;

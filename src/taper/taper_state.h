@@ -71,7 +71,7 @@ struct TaperState {
 
     int vertices() const { return mesh->vertices; }
     int faces() const { return mesh->face_count(); }
-    int pieces() const { return levels * faces(); }
+    int pieces() const { return levels * faces(); } ///< fits: make_taper_state() sees to it
     int place(int level, int vertex) const { return level * vertices() + vertex; }
     int level_of(int place) const { return place / vertices(); }
     int vertex_of(int place) const { return place % vertices(); }
@@ -179,8 +179,6 @@ inline int order_of(const TaperState& s, int piece, const PrismNodes& n)
     }
     return -1;
 }
-
-using TetNodes = std::array<int, 4>;
 
 /// Calls visit(corners) for each tet of the piece, the corners as indices into its nodes and as its
 /// orientation wants them; false: its diagonals go round in a circle.

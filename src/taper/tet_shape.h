@@ -36,10 +36,6 @@ inline double distortion_of_amips(double amips)
     const double ratio = amips / 3;
     return ratio * std::sqrt(ratio);
 }
-inline double amips_of_distortion(double distortion)
-{
-    return 3 * std::cbrt(distortion * distortion);
-}
 
 /// SOFA's rule on one tet (shell/quality.h), without an angle or a root: the sine of the angle at
 /// an edge is six volumes times its length over the double areas of its two faces, and it is at

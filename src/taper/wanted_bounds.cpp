@@ -7,6 +7,7 @@
 
 #include "vdb_shell/taper/wanted_bounds.h"
 
+#include "core/stage_stop.h"
 #include "mesh/topology.h"
 #include "vdb_shell/options/option.h"
 #include "vdb_shell/shell/quality.h"
@@ -43,7 +44,7 @@ Place look_around(const ShellStack& stack, const TetMesh& tets, const TriangleMe
                   Side side, const std::vector<double>& cap, const WantedBounds& wanted)
 {
     Place place{stack, tets, surface, cap, {}};
-    if (!wanted.dihedral)
+    if (!wanted.min_dihedral_radians)
         return place;
     for (const EdgeAngle& at : edge_angles(surface, side))
         // The smaller vertex first, as corners_on_skin gives them.
@@ -185,23 +186,24 @@ const NameTable<ShortCause>& names(ShortCause)
 OptionList describe(WantedBounds& o)
 {
     constexpr double kRegularDihedral = 1.2309594173407747; // arccos(1/3)
-    return in_group("Bounds", {option("dihedral", o.dihedral, "--want-dihedral",
-                                      "Want no dihedral angle smaller than this, radians")
-                                   .in(Unit::radians)
-                                   .within(above(0).at_most(kRegularDihedral)),
-                               option("amips", o.amips, "--want-amips",
-                                      "Want no tet of a larger AMIPS, 3 for a regular tet")
-                                   .within(at_least(3)),
-                               option("edge_ratio", o.edge_ratio, "--want-edge-ratio",
-                                      "Want no tet whose longest edge is more times its shortest")
-                                   .within(at_least(1)),
-                               option("fill", o.fill, "--want-fill",
-                                      "Want this share of the solid filled, 0 to 1")
-                                   .in(Unit::share)
-                                   .within(above(0).at_most(1)),
-                               option("tets", o.tets, "--want-tets", "Want no more tets than this")
-                                   .in(Unit::count)
-                                   .within(at_least(4))});
+    return in_group(
+        "Bounds",
+        {option("min_dihedral_radians", o.min_dihedral_radians, "--want-dihedral",
+                "Want no dihedral angle smaller than this, radians")
+             .in(Unit::radians)
+             .within(above(0).at_most(kRegularDihedral)),
+         option("amips", o.amips, "--want-amips",
+                "Want no tet of a larger AMIPS, 3 for a regular tet")
+             .within(at_least(3)),
+         option("edge_ratio", o.edge_ratio, "--want-edge-ratio",
+                "Want no tet whose longest edge is more times its shortest")
+             .within(at_least(1)),
+         option("fill", o.fill, "--want-fill", "Want this share of the solid filled, 0 to 1")
+             .in(Unit::share)
+             .within(above(0).at_most(1)),
+         option("tets", o.tets, "--want-tets", "Want no more tets than this")
+             .in(Unit::count)
+             .within(at_least(4))});
 }
 
 bool BoundsReport::met() const
@@ -225,13 +227,15 @@ BoundsReport judge_bounds(const ShellStack& stack, const TetMesh& tets, const Tr
 {
     const Place at = look_around(stack, tets, surface, side, cap, wanted);
     std::vector<TetShape> shapes;
-    for (std::size_t t = 0; t < tets.tets.size(); ++t)
+    for (std::size_t t = 0; t < tets.tets.size(); ++t) {
+        stop_if_stage_wants(t);
         shapes.push_back(shape_of(tets, t));
+    }
     BoundsReport report;
     const auto add = [&](WantedBound bound) { report.bounds.push_back(std::move(bound)); };
-    if (wanted.dihedral)
+    if (wanted.min_dihedral_radians)
         add(judge_shapes(at, shapes, BoundKind::dihedral, &TetShape::min_dihedral_radians,
-                         *wanted.dihedral, true));
+                         *wanted.min_dihedral_radians, true));
     if (wanted.amips)
         add(judge_shapes(at, shapes, BoundKind::amips, &TetShape::amips, *wanted.amips, false));
     if (wanted.edge_ratio)

@@ -13,6 +13,7 @@
 #include "vdb_shell/options/option.h"
 #include "volume/ramp.h"
 #include "volume/tet_index_grid.h"
+#include "volume/voxel_budget.h"
 #include "volume/voxel_leaves.h"
 
 #include <algorithm>
@@ -81,6 +82,34 @@ Grids wanted_grids(const std::vector<Coordinate>& wanted, std::size_t leaves, st
             break;
         }
     return grids;
+}
+
+/// Of all grids, with that of the tets.
+double voxel_bytes(const std::vector<Coordinate>& wanted, std::size_t layers)
+{
+    constexpr double kNumber = 4, kVector = 12;
+    double bytes = kNumber;
+    for (const Coordinate coordinate : wanted)
+        switch (coordinate) {
+        case Coordinate::rest:
+        case Coordinate::uvw:
+            bytes += kVector;
+            break;
+        case Coordinate::prism:
+        case Coordinate::nearest:
+            bytes += kNumber + kVector;
+            break;
+        case Coordinate::layer:
+            // The masks of all layers have the leaves of the whole shell while they are made.
+            bytes += kNumber * double(1 + layers);
+            break;
+        case Coordinate::depth:
+        case Coordinate::thickness:
+        case Coordinate::density:
+            bytes += kNumber;
+            break;
+        }
+    return bytes;
 }
 
 /// What is the same for all voxels.
@@ -232,9 +261,12 @@ std::vector<GridBasePtr> coordinate_grids(const CoordinateInputs& inputs,
     const std::vector<Coordinate> wanted = coordinates_of(options);
     if (has(wanted, Coordinate::uvw) && !inputs.texture)
         throw InvalidOption("--volumes uvw: there are no texture coordinates");
-    const StageProgress progress(interrupter, "Shell coordinates");
+    require_voxels_fit(inputs.map->tets(), options.voxel_size,
+                       voxel_bytes(wanted, inputs.map->layers()), "volumes");
+    const StageProgress progress(interrupter, "shell coordinates");
     const Int32Grid::Ptr tets =
         tet_index_grid(inputs.map->tets(), options.voxel_size, "volumes", progress);
+    require_voxels_inside(*tets, inputs.map->tets(), "volumes");
     Grids grids = wanted_grids(wanted, tets->tree().leafCount(), inputs.map->layers());
     const Coordinates coordinates(inputs, ramp_of(options.density_ramp, "--density-ramp"),
                                   has(wanted, Coordinate::nearest));

@@ -255,7 +255,7 @@ GridBasePtr deform_points(const openvdb::GridBase& source, const ShellMap& rest,
                           DeformFigures& figures, const ShellMap* velocity,
                           Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Deform points");
+    const StageProgress progress(interrupter, "deform points");
     figures = {};
     figures.grid = source.getName();
     if (!is_point_grid(source))

@@ -215,7 +215,7 @@ GridBasePtr deform_volume(const GridBase& source, const ShellMap& rest, const Sh
                           const Vec3d& shift, const DeformOptions& options, DeformFigures& figures,
                           Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Deform volume");
+    const StageProgress progress(interrupter, "deform volume");
     figures = {};
     figures.grid = source.getName();
     GridBasePtr made;

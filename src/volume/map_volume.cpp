@@ -8,12 +8,14 @@
 
 #include "vdb_shell/volume/map_volume.h"
 
+#include "core/fail.h"
 #include "field/level_set_again.h"
 #include "io/volume_types.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 #include "volume/sample_volume.h"
 #include "volume/tet_index_grid.h"
+#include "volume/voxel_budget.h"
 #include "volume/voxel_leaves.h"
 
 #include <openvdb/math/Mat3.h>
@@ -147,6 +149,13 @@ public:
         // The chain rule: d index / d place, times d place / d world.
         found.by_world = texture * by_place.inverse(0.0);
         return true;
+    }
+
+    /// Of the two axes that texture coordinates go along.
+    double farthest_voxel(const Vec2d& uv) const
+    {
+        const Vec3d at = low_ + Vec3d(uv[0], uv[1], 0) * tiles_ * size_;
+        return std::max(std::abs(at[0]), std::abs(at[1]));
     }
 
 private:
@@ -296,6 +305,20 @@ void add_up(const std::vector<Sums>& sums, MapFigures& figures)
         figures.stretch = std::sqrt(all.stretch / all.texture) / std::cbrt(all.shell / all.texture);
 }
 
+/// Beyond that voxels have no numbers that differences of them fit into.
+void require_voxels(const ToTexture& to_texture, const std::string& grid,
+                    const std::vector<std::array<Vec2d, 3>>& corner)
+{
+    constexpr double kMost = 1 << 30;
+    for (std::size_t t = 0; t < corner.size(); ++t)
+        for (const Vec2d& uv : corner[t])
+            if (const double voxel = to_texture.farthest_voxel(uv); !(voxel < kMost))
+                fail<InvalidOption>(
+                    "grid \"", grid, "\": triangle ", t, " has the texture coordinates ", uv[0],
+                    ", ", uv[1], ", which with the tiles of --repeat-u and --repeat-v are voxel ",
+                    voxel, ", over the limit of 2^30");
+}
+
 template <typename Grid>
 GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
                      const std::vector<std::array<Vec2d, 3>>& corner, const MapOptions& options,
@@ -311,7 +334,12 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
     const Mapping<Grid> mapping{
         texture, tile,     {map, corner, tile, options}, axes_of(texture.transform()),
         options, level_set};
+    require_voxels(mapping.to_texture, texture.getName(), corner);
+    // The texture's value, and the tet that a voxel is in.
+    require_voxels_fit(map.tets(), options.voxel_size,
+                       sizeof(typename Grid::ValueType) + sizeof(std::int32_t), "map");
     const Int32Grid::Ptr tets = tet_index_grid(map.tets(), options.voxel_size, "map", progress);
+    require_voxels_inside(*tets, map.tets(), "map");
     const auto background = level_set
                                 ? typename Grid::ValueType(kHalfWidth * float(options.voxel_size))
                                 : texture.background();
@@ -335,11 +363,11 @@ void require_sensible(const MapOptions& o)
 {
     for (const double number : {o.repeat_u, o.repeat_v, o.repeat_depth, o.voxel_size})
         if (!(number > 0) || !std::isfinite(number))
-            throw InvalidOption("map: " + std::to_string(number) +
+            throw InvalidOption("map: " + text_of(number) +
                                 " is not positive and finite (tiles, voxel size)");
     if (!(o.from_depth < o.to_depth) || !(o.from_depth >= 0) || !(o.to_depth <= 1))
-        throw InvalidOption("map: depths from " + std::to_string(o.from_depth) + " to " +
-                            std::to_string(o.to_depth) + " are no range within 0 and 1");
+        throw InvalidOption("map: depths from " + text_of(o.from_depth) + " to " +
+                            text_of(o.to_depth) + " are no range within 0 and 1");
     if (o.most_samples == 0)
         throw InvalidOption("map: the most samples are 0, must be 1 or more");
 }
@@ -377,7 +405,7 @@ GridBasePtr map_volume(const GridBase& texture, const ShellMap& map,
                        const std::vector<std::array<Vec2d, 3>>& corner, const MapOptions& options,
                        MapFigures& figures, Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Map volume");
+    const StageProgress progress(interrupter, "map volume");
     figures = {};
     figures.grid = texture.getName();
     require_sensible(options);

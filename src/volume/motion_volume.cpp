@@ -38,7 +38,7 @@ ShellMap velocity_map(ShellStack stack, TetMesh tets,
 GridBasePtr motion_volume(const openvdb::GridBase& volume, const ShellMap& posed,
                           const ShellMap& velocity, const Vec3d& shift, Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Motion of a volume");
+    const StageProgress progress(interrupter, "motion of a volume");
     const VoxelLattice lattice = plain_lattice(volume, shift);
     const openvdb::Int32Grid::Ptr tets = tet_index_grid(posed.tets(), lattice, "motion", progress);
     VoxelLeaves<openvdb::Vec3SGrid> leaves("v", Vec3s(0.0f), tets->tree().leafCount());

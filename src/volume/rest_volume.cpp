@@ -40,15 +40,15 @@ openvdb::Vec3SGrid::Ptr vector_volume(const TetMesh& posed,
     auto grid = openvdb::Vec3SGrid::create();
     grid->setTransform(part[0]->transform().copy());
     using Leaf = openvdb::Vec3STree::LeafNodeType;
-    std::vector<Leaf*> made(leaves[0].size());
+    std::vector<std::unique_ptr<Leaf>> made(leaves[0].size());
     for_each_index(made.size(), [&](std::size_t i) {
-        made[i] = new Leaf(leaves[0][i]->origin(), Vec3f(0.0f), false);
+        made[i] = std::make_unique<Leaf>(leaves[0][i]->origin(), Vec3f(0.0f), false);
         for (auto voxel = leaves[0][i]->cbeginValueOn(); voxel; ++voxel)
             made[i]->setValueOn(voxel.pos(), Vec3f(*voxel, leaves[1][i]->getValue(voxel.pos()),
                                                    leaves[2][i]->getValue(voxel.pos())));
     });
-    for (Leaf* leaf : made)
-        grid->tree().addLeaf(leaf);
+    for (std::unique_ptr<Leaf>& leaf : made)
+        grid->tree().addLeaf(leaf.release());
     return grid;
 }
 
@@ -57,7 +57,7 @@ openvdb::Vec3SGrid::Ptr vector_volume(const TetMesh& posed,
 GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>& rest,
                         double voxel_size, Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Shell rest");
+    const StageProgress progress(interrupter, "shell rest");
     const auto grid = vector_volume(posed, rest, voxel_size, "rest volume", progress);
     grid->setName("rest");
     return grid;
@@ -66,7 +66,7 @@ GridBasePtr rest_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>&
 GridBasePtr velocity_volume(const TetMesh& posed, const std::vector<openvdb::Vec3s>& velocity,
                             double voxel_size, Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Shell velocity");
+    const StageProgress progress(interrupter, "shell velocity");
     const auto grid = vector_volume(posed, velocity, voxel_size, "velocity volume", progress);
     grid->setName("v");
     grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);

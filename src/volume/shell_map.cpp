@@ -3,6 +3,7 @@
 #include "vdb_shell/volume/shell_map.h"
 
 #include "core/parallel.h"
+#include "core/stage_stop.h"
 #include "mesh/topology.h"
 #include "vdb_shell/shell/core_tets.h"
 #include "volume/wedge.h"
@@ -130,6 +131,7 @@ ShellMap::ShellMap(const ShellStack& stack, TetMesh tets)
     });
     corner_bits_.resize(tets_.tets.size());
     for (std::size_t t = 0; t < tets_.tets.size(); ++t) {
+        stop_if_stage_wants(t);
         if (tets_.prism[t] == kCorePrism)
             continue;
         const std::size_t p = tets_.prism_layer[t] * triangles_ + tets_.prism[t];

@@ -70,7 +70,7 @@ struct ShellSampler::Parts {
 ShellSampler::ShellSampler(const ShellMap& map, double voxel_size) : map_(map)
 {
     const double size = voxel_size > 0 ? voxel_size : sensible_voxel_size(map.tets());
-    const StageProgress progress(nullptr, "Shell sampler");
+    const StageProgress progress(nullptr, "shell sampler");
     parts_ = std::make_unique<const Parts>(
         Parts{tree_of(map.tets()), tet_index_grid(map.tets(), size, "sampler", progress), size});
 }

@@ -4,6 +4,7 @@
 
 #include "core/bucket_sort.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option_value.h"
 
 #include <cmath>
 #include <functional>
@@ -141,16 +142,16 @@ void require_voxels_in_range(const TetMesh& mesh, const VoxelLattice& lattice,
 {
     const double voxel_size = lattice.voxel_size;
     if (!(voxel_size > 0.0) || !std::isfinite(voxel_size))
-        throw InvalidOption(name + ": voxel size " + std::to_string(voxel_size) +
+        throw InvalidOption(name + ": voxel size " + text_of(voxel_size) +
                             " is not positive and finite");
     for (std::size_t i = 0; i < mesh.points.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
             if (!(std::abs((mesh.points[i][axis] - lattice.origin[axis]) / voxel_size) <
                   kLargestCoordinate))
                 throw InvalidOption(name + ": point " + std::to_string(i) + ", coordinate " +
-                                    std::to_string(mesh.points[i][axis]) +
+                                    text_of(double(mesh.points[i][axis])) +
                                     ": too far from the origin for voxel size " +
-                                    std::to_string(voxel_size));
+                                    text_of(voxel_size));
 }
 
 /// The jobs of each part come in the same order whichever thread does which part.

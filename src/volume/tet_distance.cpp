@@ -92,7 +92,7 @@ public:
         }
         for (auto voxel = index.beginValueOn(); voxel; ++voxel) {
             const openvdb::Index at = voxel.pos();
-            const std::size_t tet = std::size_t(*voxel);
+            const auto tet = static_cast<std::uint32_t>(*voxel);
             const auto d = float(found_.distance[at]);
             // Cores have the largest number, so they are below any skin.
             distance.setValueOnly(at, d == 0 || tets_.prism_layer[tet] < stack_.skin ? d : -d);
@@ -172,7 +172,7 @@ TetDistances scan(const ShellStack& stack, const TetMesh& tets, const TetDistanc
                   const Previous* previous, Interrupter* interrupter)
 {
     assert(tets.prism.size() == tets.tets.size() && tets.prism_layer.size() == tets.tets.size());
-    const StageProgress progress(interrupter, "Distance by tets");
+    const StageProgress progress(interrupter, "distance by tets");
     const auto nearest = tet_index_grid(tets, options.voxel_size, "distance by tets", progress);
     nearest->setName("nearest_triangle");
     // The topology is copied once and values are written into it, so both grids have the same

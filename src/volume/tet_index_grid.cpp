@@ -2,6 +2,11 @@
 
 #include "volume/tet_index_grid.h"
 
+#include "core/fail.h"
+#include "vdb_shell/core/error.h"
+
+#include <limits>
+
 namespace vdb_shell
 {
 
@@ -9,6 +14,9 @@ openvdb::Int32Grid::Ptr tet_index_grid(const TetMesh& tets, const VoxelLattice& 
                                        const char* name, const StageProgress& progress,
                                        const std::vector<std::uint8_t>& wanted)
 {
+    // Grids of whole numbers have 32 bits and a sign, which says that there is none.
+    if (tets.tets.size() > std::size_t(std::numeric_limits<std::int32_t>::max()))
+        fail<InvalidOption>(name, ": ", tets.tets.size(), " tets, over the limit of 2^31 - 1");
     const TetColumns columns = tet_columns(tets, {}, lattice, name, wanted);
     auto grid = openvdb::Int32Grid::create(-1);
     grid->setTransform(transform_of(lattice));

@@ -29,7 +29,7 @@ double layers_of(const TetMesh& tets)
 openvdb::FloatGrid::Ptr shell_depth_grid(const TetMesh& tets, double voxel_size,
                                          Interrupter* interrupter)
 {
-    const StageProgress progress(interrupter, "Shell depth");
+    const StageProgress progress(interrupter, "shell depth");
     const double layers = layers_of(tets);
     std::vector<double> depth;
     depth.reserve(tets.layer.size());

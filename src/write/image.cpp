@@ -20,7 +20,7 @@ namespace vdb_shell
 namespace
 {
 
-std::string encode_png(const Image& picture)
+std::string encode_png(const Image& picture, const std::filesystem::path& path)
 {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -36,7 +36,7 @@ std::string encode_png(const Image& picture)
         // The message lives inside of the image, which the next call releases.
         const std::string why = image.message;
         png_image_free(&image);
-        throw WriteError("the picture cannot be encoded: " + why);
+        throw WriteError(path.string() + ": the picture cannot be encoded: " + why);
     }
     bytes.resize(size);
     return bytes;
@@ -64,7 +64,7 @@ Image beside(const Image& left, const Image& right)
 
 void write_png(const std::filesystem::path& path, const Image& image, OutputSet* with)
 {
-    const std::string png = encode_png(image);
+    const std::string png = encode_png(image, path);
     write_stream_atomically(
         path, [&](std::ostream& out) { out.write(png.data(), std::streamsize(png.size())); }, with);
 }

@@ -11,6 +11,7 @@
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
+#include "vdb_shell/options/option_value.h"
 
 #include "core/parallel.h"
 #include "core/point_grid_instances.h"
@@ -47,15 +48,15 @@ constexpr const char* kDepthGrid = "depth";
 
 /// Half floats beyond 65504 become infinite without a word. All values are looked at, tiles and
 /// inactive voxels too, because those may be written as well.
-void require_half_range(const FloatGrid& grid)
+void require_half_range(const FloatGrid& grid, const fs::path& path)
 {
     constexpr double kLargestHalf = 65504.0;
     double largest = std::abs(double(grid.background()));
     for (auto value = grid.cbeginValueAll(); value; ++value)
         largest = std::max(largest, std::abs(double(*value)));
     if (largest > kLargestHalf)
-        throw InvalidOption("grid \"" + grid.getName() + "\" has a value of magnitude " +
-                            std::to_string(largest) +
+        throw InvalidOption(path.string() + ": grid \"" + grid.getName() +
+                            "\" has a value of magnitude " + text_of(largest) +
                             "; half floats end at 65504, write it without --half");
 }
 
@@ -78,18 +79,18 @@ void put_in_place(GridBase& grid, const openvdb::Vec3d& shift)
 /// A copy with its own name, metadata and transform that shares the voxels with the caller's grid:
 /// it costs no memory to speak of, and the caller's grid stays as it is.
 FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, bool half,
-                          const Placement& placement)
+                          const Placement& placement, const fs::path& path)
 {
     if (!grid)
-        throw InvalidOption(std::string("the shell cannot be written as .vdb: grid \"") + name +
-                            "\" is missing");
+        throw InvalidOption(path.string() + ": the shell cannot be written as .vdb: grid \"" +
+                            name + "\" is missing");
     FloatGrid::Ptr copy = openvdb::ConstPtrCast<FloatGrid>(grid)->copy();
     copy->setName(name);
     copy->setCreator(creator_name());
     copy->setSaveFloatAsHalf(half);
     put_in_place(*copy, placement.shift());
     if (half)
-        require_half_range(*copy);
+        require_half_range(*copy, path);
     return copy;
 }
 
@@ -227,10 +228,10 @@ AllPoints find_points(OpenFile& main, const ShellInfo& info, std::size_t& digest
 }
 
 /// The volumes of a file as they are written, in their order there.
-openvdb::GridPtrVec volumes_of(const ShellFile& file, bool half)
+openvdb::GridPtrVec volumes_of(const ShellFile& file, bool half, const fs::path& path)
 {
-    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, half, file.placement),
-                                named_copy(file.depth, kDepthGrid, half, file.placement)};
+    openvdb::GridPtrVec volumes{named_copy(file.surface, kSurfaceGrid, half, file.placement, path),
+                                named_copy(file.depth, kDepthGrid, half, file.placement, path)};
     // Whoever made the grid may have left it without a class, and tools pick volumes by it.
     volumes[1]->setGridClass(openvdb::GRID_FOG_VOLUME);
     for (const GridBase::Ptr& vectors : {file.rest_volume, file.velocity_volume}) {
@@ -281,7 +282,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
     run_together(
         [&] { metadata = shell_metadata(path, file, options.points); },
         [&] { made = make_point_grids(file.stack, file.tets, file.core_feet, file.rest); });
-    openvdb::GridPtrVec volumes = volumes_of(file, options.half);
+    openvdb::GridPtrVec volumes = volumes_of(file, options.half, path);
     openvdb::GridPtrVec points{made.points, made.prisms, made.tets};
     if (!file.core.empty()) {
         const CoreGrids core =

@@ -8,6 +8,7 @@
 
 #include "vdb_shell/write/verify_clearance.h"
 
+#include "options/parse_json.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/obstacles/core_feet.h"
@@ -54,7 +55,7 @@ bool certified_with(const ShellStack& stack, const TriangleMesh& kept_out, Inter
 Verification verify_clearance(const ShellFile& file, std::vector<CoreMesh> cores,
                               Interrupter* interrupter)
 {
-    const json report = json::parse(file.report_json, nullptr, false);
+    const json report = parse_json_if_any(file.report_json);
     CoreOptions options;
     // The claim is taken from the file, and the cores from the user.
     options.distance = stated_of_cores(report, "distance").value_or(0);

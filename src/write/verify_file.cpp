@@ -10,6 +10,7 @@
 
 #include "vdb_shell/write/verify_file.h"
 
+#include "options/parse_json.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/core_certificate.h"
 #include "vdb_shell/certify/overlaps.h"
@@ -279,7 +280,7 @@ std::vector<Verification> verify_shell(const ShellFile& file, Interrupter* inter
 {
     // A report that is no JSON makes a discarded value, which has no claims; the findings then say
     // so instead of an exception.
-    const json report = json::parse(file.report_json, nullptr, false);
+    const json report = parse_json_if_any(file.report_json);
     const json claim = certificate_claim(report);
     const PrismTest test = claimed_test(claim);
     const StackCertificate certificate = certify_stack(file.stack, test, interrupter);

@@ -6,6 +6,7 @@
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/shell/tessellate.h"
 
+#include "support/cancelled.h"
 #include "support/certificates.h"
 #include "support/tapered.h"
 
@@ -236,6 +237,12 @@ TEST(ComplexCertificate, SameFindingsForAnyNumberOfThreads)
     const std::vector<std::string> all = certify_complex(stack).failures();
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(certify_complex(stack).failures(), all);
+}
+
+TEST(ComplexCertificate, CanBeCancelled)
+{
+    const ShellStack stack = test::coned(icosphere(1, 1), Vec3s(0));
+    test::expect_cancelled([&](Interrupter* interrupter) { certify_complex(stack, interrupter); });
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 
 #include "core/exact.h"
 #include "support/broken_shells.h"
+#include "support/cancelled.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -324,6 +325,12 @@ TEST(Overlaps, SameForAnyNumberOfThreads)
         EXPECT_EQ(again.pairs.count, first.pairs.count);
         EXPECT_EQ(again.pairs.first, first.pairs.first);
     }
+}
+
+TEST(Overlaps, CanBeCancelled)
+{
+    const TetMesh tets = tets_of(test::scaled_shell(test::icosphere(1, 2), 0.5f));
+    test::expect_cancelled([&](Interrupter* interrupter) { find_overlaps(tets, interrupter); });
 }
 
 } // namespace

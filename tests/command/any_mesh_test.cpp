@@ -122,7 +122,11 @@ TEST_F(AnyMesh, FarFromTheOriginIsRefusedByNameUnlessRecentred)
     EXPECT_EQ(looked.status, ExitCode::check_failed);
     EXPECT_NE(looked.out.find("--recentre keeps the digits that the file has"), std::string::npos)
         << looked.out;
-    expect_refusal("build " + far + kCoarse, ExitCode::geometry_error, {"far.obj", "--recentre"});
+    // Before it is refused, what reading has lost is told.
+    const Outcome refused = run("build " + far + kCoarse);
+    EXPECT_EQ(refused.status, ExitCode::geometry_error);
+    for (const char* said : {"far.obj: rounding", "voxel index", "over the limit", "--recentre"})
+        EXPECT_NE(refused.err.find(said), std::string::npos) << refused.err;
     expect_refusal("build " + placed_file("farther.obj", icosphere(1.0, 3), Vec3d(1e8, 2e8, 5e7)) +
                        kCoarse,
                    ExitCode::read_error, {"farther.obj", "--recentre"});

@@ -10,6 +10,8 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -48,14 +50,30 @@ protected:
     void expect_refusal(const std::string& arguments, int status,
                         const std::vector<std::string>& words)
     {
-        const Outcome result = run(arguments);
-        EXPECT_EQ(result.status, status) << arguments << '\n' << result.err;
-        for (const std::string& word : words)
-            EXPECT_NE(result.err.find(word), std::string::npos)
-                << '"' << word << "\" is not in: " << result.err;
+        expect_lines(arguments, status, words, 1);
+    }
+
+    /// The same of a call that is no call of this command: a second line points to the help.
+    void expect_no_call(const std::string& arguments, const std::vector<std::string>& words)
+    {
+        expect_lines(arguments, command::usage_error, words, 2);
     }
 
     TemporaryFolder folder;
+
+private:
+    void expect_lines(const std::string& arguments, int status,
+                      const std::vector<std::string>& words, std::ptrdiff_t lines)
+    {
+        const Outcome result = run(arguments);
+        const std::string& said = result.err;
+        EXPECT_EQ(result.status, status) << arguments << '\n' << said;
+        for (const std::string& word : words)
+            EXPECT_NE(said.find(word), std::string::npos)
+                << '"' << word << "\" is not in: " << said;
+        EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), lines) << arguments << '\n' << said;
+        EXPECT_TRUE(!said.empty() && said.back() == '\n') << arguments << '\n' << said;
+    }
 };
 
 inline constexpr const char* kCoarse = " --resolution 24 --samples 1000 ";

@@ -119,6 +119,20 @@ TEST_F(Estimate, WhatItDoesNotKnowIsSaid)
                    {"--thickness"});
 }
 
+TEST_F(Estimate, ItsReportIsAnOutputAsOthersAre)
+{
+    const std::string sphere = mesh_file("s.obj", icosphere(1.0, 2));
+    write_bytes(folder / "r.json", "old");
+    expect_refusal("estimate " + sphere + " --no-clobber --report " + file("r.json"),
+                   ExitCode::write_error, {"r.json", "--no-clobber"});
+    EXPECT_EQ(read_bytes(folder / "r.json"), "old");
+    std::filesystem::rename(folder / "s.obj", folder / "caf\xe9.obj");
+    EXPECT_EQ(of(file("caf\xe9.obj")).at("triangles"), 320);
+    EXPECT_EQ(run("estimate " + file("caf\xe9.obj") + " --report " + file("r.json")).status,
+              ExitCode::success);
+    EXPECT_EQ(json::parse(read_bytes(folder / "r.json")).at("meshes").size(), 1u);
+}
+
 TEST_F(Estimate, WholeCallsStandBehindTwoDashes)
 {
     const TriangleMesh sphere = icosphere(1.0, 4);

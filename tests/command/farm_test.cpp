@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -46,11 +48,11 @@ protected:
                file("t.#.vtu") + " --frames " + frames + " " + more;
     }
 
-    /// The job's own shell, where no Slurm is.
-    Outcome job(const std::string& words)
+    /// The job's own shell, where no Slurm is; what Slurm would set is given.
+    Outcome job(const std::string& words, const std::string& variables = "")
     {
-        const std::string line =
-            "bash " + file("j.sbatch") + " " + words + " >" + file("out") + " 2>" + file("err");
+        const std::string line = "env " + variables + " bash " + file("j.sbatch") + " " + words +
+                                 " >" + file("out") + " 2>" + file("err");
         const int status = std::system(line.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_bytes(folder / "out"),
                 read_bytes(folder / "err")};
@@ -246,6 +248,86 @@ TEST_F(Farm, WhatWouldFailOnTheFarmIsRefusedHere)
     EXPECT_FALSE(there("j"));
 }
 
+TEST_F(Farm, AsManyTasksRunAtOnceAsIsSaid)
+{
+    spheres(1, 5);
+    const auto array_of = [&](const std::string& more) {
+        EXPECT_EQ(run(farm(more) + build("1-5")).status, ExitCode::success);
+        const std::string text = read_bytes(folder / "j.sbatch"), begin = "#SBATCH --array=";
+        const std::size_t at = text.find(begin);
+        EXPECT_NE(at, std::string::npos);
+        return text.substr(at + begin.size(), text.find('\n', at) - at - begin.size());
+    };
+    EXPECT_EQ(array_of("--at-once 2"), "0-2%2");
+    EXPECT_EQ(array_of("--at-once 0"), "0-2");
+    EXPECT_EQ(array_of(""), "0-2");
+    expect_refusal(farm("--at-once -1") + build("1-5"), ExitCode::usage_error, {"--at-once is -1"});
+}
+
+TEST_F(Farm, AKilledTaskGoesBackIntoTheQueueAsOftenAsIsSaid)
+{
+    spheres(1, 3);
+    const auto program = [&](const std::string& name, const std::string& script) {
+        write_bytes(folder / name, "#!/bin/sh\n" + script + "\n");
+        fs::permissions(folder / name, fs::perms::owner_all);
+    };
+    program("killed", "kill -9 $$");
+    program("stopped", "exit 143");
+    program("scontrol", "echo \"$@\" >>" + file("asked"));
+    // How often the queue is asked, of a task that ends so after each start.
+    const auto asked = [&](const std::string& how, const std::string& more, int status) {
+        fs::remove(folder / "asked");
+        EXPECT_EQ(run(farm("--program " + file(how) + " " + more) + build("1-3")).status,
+                  ExitCode::success);
+        for (int restarts = 0; restarts < 5; ++restarts)
+            EXPECT_EQ(job("", "PATH=" + folder.path().string() +
+                                  ":\"$PATH\" SLURM_ARRAY_JOB_ID=5 SLURM_ARRAY_TASK_ID=1 "
+                                  "SLURM_RESTART_COUNT=" +
+                                  std::to_string(restarts))
+                          .status,
+                      status);
+        return there("asked") ? read_bytes(folder / "asked") : "";
+    };
+    const std::string once = "requeue 5_1\n";
+    EXPECT_EQ(asked("killed", "--retries 3", 137), once + once + once);
+    EXPECT_EQ(asked("killed", "", 137), once + once);
+    EXPECT_EQ(asked("killed", "--retries 0", 137), "");
+    EXPECT_EQ(asked("stopped", "--retries 3", 143), "");
+    expect_refusal(farm("--retries -1") + build("1-3"), ExitCode::usage_error, {"--retries is -1"});
+}
+
+TEST_F(Farm, MessagesAndManifestsLieInTheFolderThatIsSaid)
+{
+    spheres(1, 3);
+    ASSERT_EQ(run(farm("--directory \"" + file("it's here") + "\"") + build("1-3")).status,
+              ExitCode::success);
+    EXPECT_FALSE(there("it's here")) << "the job is written and not run";
+    for (const char* task : {"task 0", "task 1"})
+        EXPECT_EQ(job(task).status, ExitCode::success) << task;
+    EXPECT_EQ(job("join").status, ExitCode::success);
+    for (const char* name : {"0-0.json", "0-1.json", "call-0.json"})
+        EXPECT_TRUE(there(std::string("it's here/") + name)) << name;
+    EXPECT_FALSE(there("j.tasks"));
+    // Slurm's own messages go there too.
+    write_bytes(folder / "sbatch", "#!/bin/sh\necho \"$@\" >>" + file("asked") + "\necho 5\n");
+    fs::permissions(folder / "sbatch", fs::perms::owner_all);
+    EXPECT_EQ(job("submit", "PATH=" + folder.path().string() + ":\"$PATH\"").status,
+              ExitCode::success);
+    for (const char* log : {"%a.log", "join.log"})
+        EXPECT_NE(read_bytes(folder / "asked").find("--output=" + file("it's here/") + log),
+                  std::string::npos)
+            << log;
+    for (const std::string engine : {"tops", "openjd"}) {
+        ASSERT_EQ(run("farm --engine " + engine + " -o " + file("j.json") + " --directory " +
+                      file("logs") + " -- " + build("1-3"))
+                      .status,
+                  ExitCode::success);
+        const std::string text = read_bytes(folder / "j.json");
+        EXPECT_NE(text.find(file("logs")), std::string::npos) << engine;
+        EXPECT_EQ(text.find("j.tasks"), std::string::npos) << engine;
+    }
+}
+
 TEST_F(Farm, AnotherJobMayMakeTheFramesFirst)
 {
     spheres(1, 1);
@@ -287,6 +369,59 @@ TEST_F(Farm, OtherEnginesAreWrittenTheSameCalls)
     expect_refusal(openjd + " -- " + build("1-5", "-o " + file("{{x}}.#.vtu")),
                    ExitCode::usage_error, {"{{x}}", "Open Job Description"});
     EXPECT_FALSE(there("o.json"));
+}
+
+TEST_F(Farm, NamesThatAreNoUtf8AreRefusedWhereAJobIsJson)
+{
+    mesh_file("s.1.obj", icosphere(1.0, 2));
+    fs::rename(folder / "s.1.obj", folder / "caf\xe9.1.obj");
+    const std::string call =
+        " -- build " + file("caf\xe9.#.obj") + " --voxel-size 0.1 --frames 1 -o " + file("t.#.vtu");
+    for (const std::string engine : {"tops", "openjd"})
+        expect_refusal("farm --engine " + engine + " -o " + file("j.json") + call,
+                       ExitCode::usage_error, {"caf\xe9.#.obj", "no UTF-8"});
+    EXPECT_EQ(run("farm --engine slurm -o " + file("j.sbatch") + call).status, ExitCode::success);
+}
+
+TEST_F(Farm, AJoinTakesFilesAndNothingElse)
+{
+    spheres(1, 1);
+    fs::create_directories(folder / "parts" / "x.json");
+    fs::create_symlink("nowhere", folder / "parts" / "d.json");
+    ASSERT_EQ(::mkfifo(file("parts/f.json").c_str(), 0600), 0);
+    ASSERT_EQ(run(build("1", "--manifest " + file("parts/m.json"))).status, ExitCode::success);
+    const std::string whole = " --expect 1 -o " + file("w.json");
+    const Outcome joined = run("join " + file("parts") + whole);
+    EXPECT_EQ(joined.status, ExitCode::success) << joined.err;
+    expect_refusal("join " + file("parts/f.json") + whole, ExitCode::read_error,
+                   {"f.json", "not a regular file"});
+    // What a file says goes to a terminal.
+    json noted = json::parse(read_bytes(folder / "parts" / "m.json"));
+    noted["steps"][0]["status"] = 3;
+    noted["steps"][0]["error"] = "\x1b[2J";
+    write_bytes(folder / "parts" / "m.json", noted.dump());
+    EXPECT_EQ(run("join " + file("parts") + whole).out.find('\x1b'), std::string::npos);
+    write_bytes(folder / "parts" / "foreign.json", "{}");
+    expect_refusal("join " + file("parts") + whole, ExitCode::read_error,
+                   {"foreign.json: is no manifest"});
+}
+
+TEST_F(Farm, LimitsAndNamesHaveAnEnd)
+{
+    spheres(1, 3);
+    expect_refusal(farm("--memory 1e300") + build("1-3"), ExitCode::usage_error,
+                   {"--memory is 1e300"});
+    expect_refusal(farm("--minutes 1e300") + build("1-3"), ExitCode::usage_error,
+                   {"--minutes is 1e300"});
+    // Without a pattern, so that a text of them names each.
+    std::string frames = "1";
+    for (int frame = 2; frame < 45; ++frame)
+        frames += "," + std::to_string(10000 * frame * frame * frame);
+    const std::string openjd = "farm --engine openjd -o " + file("o.json") + " --chunk ";
+    expect_refusal(openjd + "44 -- " + build(frames), ExitCode::usage_error,
+                   {"manifest", "limit of 255", "--chunk"});
+    EXPECT_FALSE(there("o.json"));
+    EXPECT_EQ(run(openjd + "10 -- " + build(frames)).status, ExitCode::success);
 }
 
 TEST_F(Farm, WithoutSlurmNothingIsSubmitted)

@@ -74,6 +74,10 @@ def require(condition, text):
         raise Violation(text)
 
 
+def is_one_line(text):
+    return text.endswith("\n") and text.count("\n") == 1 and len(text) > 1
+
+
 def run(line, environment):
     done = subprocess.run(line, env={**os.environ, **environment}, capture_output=True, text=True, errors="replace", timeout=120)
     return done.returncode, done.stderr
@@ -92,9 +96,10 @@ def calls(args, folder, log, more):
         happened = log.read_text() if log.exists() else ""
         at = f"call {n} ({happened}): status {status}, {folder.state()}, {error!r}"
         if not happened:
-            require(status == 0 and folder.state() == "new", at)
+            require(status == 0 and folder.state() == "new" and not error, at)
+            require(n > 1, "no call failed: the library that fails them does nothing")
             return n - 1
-        require(status == WRITE_ERROR and folder.state() == "old" and error.count("\n") == 1, at)
+        require(status == WRITE_ERROR and folder.state() == "old" and is_one_line(error), at)
 
 
 def allocations(args, line, folder, log):
@@ -113,7 +118,11 @@ def allocations(args, line, folder, log):
         # Some are asked for by code that can do without: then all is as if nothing had been.
         require(not folder.names or state == ("new" if status == 0 else "old"), at)
         require(status in (0, OUT_OF_MEMORY), at)
+        require(is_one_line(error) if status == OUT_OF_MEMORY else not error, at)
         n += max(1, n // args.sparse)
+    # Every command allocates, so without these two nothing was tested.
+    require(tried > 0, "no allocation failed: the library that fails them does nothing")
+    require(OUT_OF_MEMORY in statuses, f"none of {tried} allocations that failed ended with status {OUT_OF_MEMORY}")
     return tried, statuses
 
 
@@ -140,6 +149,7 @@ def signals(line, folder, count):
         stopped = status in (128 + number, -number)
         require(stopped or status == 0, at)
         require(state == "new" if status == 0 and folder.names else state in ("old", "new"), at)
+        require(is_one_line(error) if status == 128 + number else not error, at)
         if status == 128 + number:
             worst = max(worst, latency)
         seen[state if stopped else "finished"] = seen.get(state if stopped else "finished", 0) + 1

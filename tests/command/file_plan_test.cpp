@@ -253,5 +253,89 @@ TEST_F(FilePlans, UnsignedOptionsAreNotNegative)
     EXPECT_FALSE(fs::exists(folder / "a.vtu"));
 }
 
+TEST_F(FilePlans, WhatCannotBeLookedAtIsToldByName)
+{
+    // Longer than a file's name can be: asking for it fails, as in a folder without permission.
+    const std::string name(300, 'n'), shape = file(name + ".obj");
+    expect_refusal(build + "--core " + shape + out("a.vtu"), ExitCode::read_error,
+                   {name, "File name too long"});
+    ASSERT_EQ(run(build + out("g.vdb")).status, ExitCode::success);
+    expect_refusal("pose " + file("g.vdb") + " " + box + " --frame-seconds 1 --mesh-before " +
+                       shape + out("a.vtu"),
+                   ExitCode::read_error, {name, "File name too long"});
+    expect_refusal("join " + file(name + ".json") + out("whole.json"), ExitCode::read_error,
+                   {name, "File name too long"});
+    // Not told as a file that is not there.
+    fs::create_symlink("round.obj", folder / "round.obj");
+    expect_refusal("inspect " + file("round.obj"), ExitCode::read_error,
+                   {"round.obj", "symbolic links"});
+}
+
+TEST_F(FilePlans, LongNamesOfOutputsAreRefusedBeforeTheWork)
+{
+    const std::string name(260, 'n');
+    for (const std::string& words :
+         {out(name + ".vtu"), out("a.vtu") + " --report " + file(name + ".json"),
+          out("a.vtu") + " --manifest " + file(name + ".json")})
+        expect_refusal(build + "--dry-run" + words, ExitCode::write_error,
+                       {name, "bytes", "limit is 255"});
+    EXPECT_EQ(run(build + out(std::string(250, 'n') + ".vtu")).status, ExitCode::success);
+}
+
+TEST_F(FilePlans, AFolderForTemporariesThatIsNoneIsNamed)
+{
+    ::setenv("TMPDIR", file("none").c_str(), 1);
+    expect_refusal("inspect - --input-format obj <" + box, ExitCode::read_error,
+                   {"-: standard input", file("none")});
+    expect_refusal(build + "--dry-run --report /dev/null", ExitCode::write_error,
+                   {"/dev/null", file("none")});
+    ::unsetenv("TMPDIR");
+}
+
+TEST_F(FilePlans, ACallInAFolderThatIsGoneEndsWithAStatusOfItsOwn)
+{
+    const std::string begin = "mkdir " + file("d") + " && cd " + file("d") +
+                              " && rmdir ../d && " VDB_SHELL_COMMAND " ",
+                      end = " >" + file("out") + " 2>" + file("err");
+    EXPECT_EQ(WEXITSTATUS(shell(begin + "doctor" + end)), ExitCode::success);
+    EXPECT_NE(read_bytes(folder / "out").find("here"), std::string::npos);
+    EXPECT_EQ(WEXITSTATUS(shell(begin + "farm --engine slurm" + out("j.sbatch") + " -- " + build +
+                                "--voxel-size 0.1 --frames 1" + out("a.#.vtu") + end)),
+              ExitCode::read_error);
+    EXPECT_NE(read_bytes(folder / "err").find("folder"), std::string::npos);
+}
+
+TEST_F(FilePlans, FormatsAreRefusedBeforeTheWork)
+{
+    expect_refusal("repair " + box + " --dry-run" + out("x.xyz"), ExitCode::usage_error,
+                   {"x.xyz", ".obj"});
+    expect_refusal("inspect " + box + " --dry-run" + out("x.obj"), ExitCode::usage_error,
+                   {"x.obj", ".ply"});
+    // As soon as it is known, and before what else there is to say of this surface.
+    TriangleMesh open = gridded_box({0, 0, 0}, {1, 1, 1}, 2);
+    open.triangles.pop_back();
+    write_mesh(folder / "far.obj", open, {{1e6, 0, 0}, 1.0});
+    for (const std::string command : {"build", "repair"})
+        expect_refusal(command + " --recentre " + file("far.obj") + out("x.stl"),
+                       ExitCode::usage_error, {"x.stl", "STL holds float32 only"});
+}
+
+TEST_F(FilePlans, VoxelsThatDoNotFitAreRefused)
+{
+    ASSERT_EQ(run(build + out("g.vdb")).status, ExitCode::success);
+    const std::string volumes = "volumes " + file("g.vdb") + out("v.vdb") + " --voxel-size ";
+    expect_refusal(volumes + "1e-6", ExitCode::geometry_error, {"voxel size 1e-06", "GiB"});
+    expect_refusal(volumes + "1e300", ExitCode::geometry_error, {"voxel size 1e+300", "longest"});
+    expect_refusal(volumes + "1e-300", ExitCode::usage_error, {"voxel size 1e-300"});
+    EXPECT_FALSE(fs::exists(folder / "v.vdb"));
+}
+
+TEST_F(FilePlans, MessagesAboutGridsNameTheirFiles)
+{
+    const std::string large = mesh_file("large.obj", gridded_box({0, 0, 0}, {1e6, 1e6, 1e6}, 2));
+    expect_refusal("build " + large + kCoarse + "-q --half" + out("h.vdb"), ExitCode::usage_error,
+                   {"h.vdb: grid \"surface\"", "65504"});
+}
+
 } // namespace
 } // namespace vdb_shell::test

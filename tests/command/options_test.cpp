@@ -189,6 +189,24 @@ TEST_F(Options, AFileOfOptionsServesAllCommands)
     EXPECT_EQ(run("repair " + sphere + some + "-o " + file("r.obj")).status, ExitCode::success);
 }
 
+TEST_F(Options, AFileOfOptionsSaysHowPosesAreMended)
+{
+    const std::string sphere = mesh_file("sphere.obj", icosphere(1.0, 1));
+    const std::string shell = file("s.vdb");
+    ASSERT_EQ(run("build " + sphere + kCoarse + " -o " + shell).status, ExitCode::success);
+    const std::string pose = "pose " + shell + " " + sphere + " --report - ";
+    EXPECT_EQ(run(pose + preset(R"({"pose": {"rounds": 3}})")).status, ExitCode::success);
+    expect_refusal(pose + preset(R"({"pose": {"rounds": -1}})"), ExitCode::usage_error,
+                   {"preset.json: pose.rounds is -1, must be 0 or more"});
+    expect_refusal(pose + preset(R"({"pose": {"round": 3}})"), ExitCode::usage_error,
+                   {"preset.json: pose.round is no option"});
+    // The file serves `build` too, which has no use for it.
+    EXPECT_EQ(
+        run("build " + sphere + kCoarse + " -o " + shell + preset(R"({"pose": {"rounds": 3}})"))
+            .status,
+        ExitCode::success);
+}
+
 TEST_F(Options, AFileOfOptionsIsHeldToWhatThereIs)
 {
     const std::string build = "build none.obj -o " + file("x.vdb");
@@ -200,6 +218,50 @@ TEST_F(Options, AFileOfOptionsIsHeldToWhatThereIs)
                    {"preset.json: colour is no option"});
     expect_refusal(build + preset("{"), ExitCode::read_error, {"preset.json"});
     expect_refusal(build + " --options " + file("none.json"), ExitCode::read_error, {"none.json"});
+}
+
+TEST_F(Options, AFileOfOptionsMayBeAnything)
+{
+    const std::string build = "build none.obj -o " + file("x.vdb");
+    const auto refused = [&](const std::string& text, int status, const std::string& said) {
+        expect_refusal(build + preset(text), status, {"preset.json: " + said});
+        EXPECT_LT(read_bytes(folder / "err").size(), 1000u);
+    };
+    constexpr std::size_t kDeep = 200000, kLarge = 400000;
+    std::string objects;
+    for (std::size_t i = 0; i < kDeep; ++i)
+        objects += R"({"a":)";
+    // Copies and texts of such values are recursive.
+    refused(std::string(kDeep, '[') + std::string(kDeep, ']'), ExitCode::read_error, "its JSON");
+    refused(objects + "1" + std::string(kDeep, '}'), ExitCode::read_error, "its JSON has more");
+    const std::string large(kLarge, 'x');
+    refused(R"({"line_step": {"thickness": ")" + large + "\"}}", ExitCode::usage_error,
+            "line_step.thickness is xxx");
+    refused(R"({"line_step": ")" + large + "\"}", ExitCode::usage_error, "line_step is \"xxx");
+    refused(R"({"vdb": {"half": [")" + large + "\"]}}", ExitCode::usage_error, "vdb.half is [");
+    refused("{\"" + large + "\": 1}", ExitCode::usage_error, "xxx");
+    refused("{\"" + large, ExitCode::read_error, "is no JSON");
+    refused(R"({"parameters": 3})", ExitCode::usage_error, "parameters is 3, must be an object");
+    refused(R"({"": 3})", ExitCode::usage_error, "\"\" is no option");
+    refused(R"({"level_set": {"resolution": 20.5}})", ExitCode::usage_error,
+            "level_set.resolution is 20.5, must be a whole number");
+    expect_refusal("build none.obj -o x.vdb" + preset(R"({"level_set": {"resolution": 20.0}})"),
+                   ExitCode::read_error, {"none.obj"});
+    // It is read for the plan and again for the run, and a pipe is empty then.
+    expect_refusal(build + " --options /dev/fd/3 3</dev/null", ExitCode::read_error,
+                   {"not a regular"});
+}
+
+TEST_F(Options, UnknownWordsAreNamed)
+{
+    for (const char* words : {"bogus", "--threads 1 bogus"}) {
+        const Outcome result = run(words);
+        EXPECT_EQ(result.status, ExitCode::usage_error);
+        EXPECT_EQ(result.err.rfind("bogus is no command\n", 0), 0u) << result.err;
+    }
+    for (const std::string& command :
+         {"build cube -o " + file("x.vdb"), std::string("inspect cube")})
+        expect_refusal(command, ExitCode::read_error, {"cube: ", ".obj", ".bgeo.sc", ".vdb"});
 }
 
 TEST_F(Options, TheToleranceOfDecimationIsRescaledToo)

@@ -110,12 +110,12 @@ TEST_F(Pose, FramesComeIntoOneStage)
     const std::string frames = " --frames 12-8x2 ";
     ASSERT_EQ(pose_frames({12, 10, 8}, frames), ExitCode::success);
     const std::string call = "usd " + file("p.#.vdb") + frames;
-    const Outcome made = run(call + "--up-axis z -o " + file("p.usda"));
+    const Outcome made = run(call + "--up-axis z --frames-per-second 30 -o " + file("p.usda"));
     ASSERT_EQ(made.status, ExitCode::success) << made.err;
     const std::string stage = read_bytes(folder / "p.usda");
     // Times are the frames, in their order.
     for (const char* said : {"startTimeCode = 8\n", "endTimeCode = 12\n", "upAxis = \"Z\"",
-                             "@./p.10.vdb@", "points.timeSamples"})
+                             "timeCodesPerSecond = 30\n", "@./p.10.vdb@", "points.timeSamples"})
         EXPECT_NE(stage.find(said), std::string::npos) << said;
     EXPECT_LT(stage.find("@./p.8.vdb@"), stage.find("@./p.12.vdb@"));
     // The tets are those at rest at all times, so they are written once.
@@ -324,6 +324,57 @@ TEST_F(Pose, ASkinThatCrossesItselfIsWarnedOfAndNoFailure)
     EXPECT_EQ(posed.status, ExitCode::success);
     EXPECT_NE(posed.err.find("the skin crosses itself"), std::string::npos) << posed.err;
     EXPECT_EQ(run("check " + file("x.vdb")).status, ExitCode::success);
+}
+
+TEST_F(Pose, ASkinThatLeavesNoPlaceGivesAShellThatIsToldToBeNotValid)
+{
+    TriangleMesh ball = icosphere(1.0, 2);
+    ASSERT_EQ(
+        run("build " + mesh_file("ball.obj", ball) + kCoarse + " -q -o " + file("ball.vdb")).status,
+        ExitCode::success);
+    // A cup: the upper half is pushed almost onto the lower one, and crosses nothing.
+    for (openvdb::Vec3s& p : ball.points)
+        if (p[2] > 0)
+            p[2] *= -0.9F;
+    const Outcome posed = run("pose " + file("ball.vdb") + " " + mesh_file("cup.obj", ball) +
+                              " --report " + file("cup.json") + " -o " + file("cup.vdb"));
+    EXPECT_EQ(posed.status, ExitCode::check_failed);
+    EXPECT_NE(posed.err.find("cup.obj: the shell is NOT VALID: "), std::string::npos) << posed.err;
+    EXPECT_EQ(posed.err.find('\n') + 1, posed.err.size()) << posed.err;
+    EXPECT_NE(posed.out.find("verdict     NOT VALID"), std::string::npos) << posed.out;
+    // It is written all the same, and its file claims no more than that.
+    const auto report = nlohmann::json::parse(read_bytes(folder / "cup.json"));
+    EXPECT_FALSE(report.at("certificate").at("certified").get<bool>());
+    EXPECT_EQ(report.at("mesh").at("self_intersections"), 0);
+    EXPECT_EQ(run("check " + file("cup.vdb")).status, ExitCode::success);
+}
+
+TEST_F(Pose, TextsOfAShellMayBeAnything)
+{
+    ShellFile file_at_rest = read_shell_vdb(folder / "rest.vdb");
+    const std::string skin = mesh_file("bent.obj", bent(0.5)), odd = file("odd.vdb");
+    const auto with = [&](const std::string& parameters, const std::string& report) {
+        file_at_rest.parameters_json = parameters;
+        file_at_rest.report_json = report;
+        write_shell_vdb(odd, file_at_rest);
+    };
+    constexpr std::size_t kDeep = 200000;
+    std::string deep =
+        R"({"certificate": )" + std::string(kDeep, '[') + std::string(kDeep, ']') + "}";
+    with("{}", deep);
+    const auto refused = [&](const std::string& call, const std::string& said) {
+        expect_refusal(call, ExitCode::read_error, {"odd.vdb: its " + said});
+    };
+    refused("pose " + odd + " " + skin + " --report -", "report: its JSON has more than 100");
+    refused("info --json " + odd, "report: its JSON has more than 100");
+    EXPECT_EQ(run("check " + odd).status, ExitCode::check_failed)
+        << "a report of that depth is none";
+    with("nothing", "nothing");
+    refused("pose " + odd + " " + skin + " --report -", "report: is no JSON");
+    with(deep, "{}");
+    refused("compare --json " + odd + " " + file("rest.vdb"), "parameters: its JSON has more than");
+    with("\x1b[2J\nnothing", "{}");
+    EXPECT_NE(run("info " + odd).out.find("parameters ?[2J\nnothing"), std::string::npos);
 }
 
 TEST_F(Pose, WhatCannotBeIsRefused)

@@ -5,9 +5,13 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <sys/resource.h>
+#include <sys/stat.h>
+
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 // Frames, the manifest and what a host is told: docs/frames.md.
@@ -141,10 +145,10 @@ TEST_F(Sequence, PlansThatContradictThemselvesAreRefused)
                    ExitCode::usage_error, {"r.json", "frame token"});
     expect_refusal("repair " + file("s.0001.obj") + " --frames 1 -o " + file("s.000#.obj"),
                    ExitCode::usage_error, {"is the input"});
-    expect_refusal("repair " + file("s.####.obj") + " --frames 1-2 -o " + file("s.'$F'.obj"),
-                   ExitCode::success, {});
-    expect_refusal("repair " + file("s.'$F'.obj") + " --frames 2 -o " + file("s.0001.####.obj"),
-                   ExitCode::success, {});
+    for (const std::string& other :
+         {file("s.####.obj") + " --frames 1-2 -o " + file("s.'$F'.obj"),
+          file("s.'$F'.obj") + " --frames 2 -o " + file("s.0001.####.obj")})
+        EXPECT_EQ(run("repair " + other).status, ExitCode::success) << other;
     // What one frame writes another one reads.
     fs::rename(folder / "s.2.obj", folder / "s.11.obj");
     expect_refusal("repair " + file("s.#.obj") + " --frames 1,11 -o " + file("s.#1.obj"),
@@ -223,6 +227,47 @@ TEST_F(Sequence, ResumeLeavesOutWhatIsUpToDate)
     expect_refusal(call + " --no-clobber", ExitCode::write_error, {});
 }
 
+TEST_F(Sequence, ResumeKnowsAllDigitsOfAnOption)
+{
+    spheres(1, 1);
+    const std::string call = build("1", "--resume --manifest " + file("m.json") + " --thickness ");
+    ASSERT_EQ(run(call + "0.1234561").status, ExitCode::success);
+    EXPECT_NE(run(call + "0.1234561").err.find("left out: 1"), std::string::npos);
+    const Outcome other = run(call + "0.1234564");
+    EXPECT_NE(other.err.find("1 of 1 frames done"), std::string::npos) << other.err;
+}
+
+TEST_F(Sequence, AManifestMayBeAnything)
+{
+    spheres(1, 1);
+    const std::string call = build("1", "--manifest " + file("m.json"));
+    ASSERT_EQ(run(call).status, ExitCode::success);
+    const json sound = json::parse(bytes("m.json"));
+    const auto refused = [&](const std::string& text, const std::string& said) {
+        write_bytes(folder / "m.json", text);
+        expect_refusal(call, ExitCode::read_error, {"m.json: " + said});
+        EXPECT_EQ(bytes("m.json"), text);
+    };
+    // A number that wraps would be another frame, or a success.
+    for (const auto& [place, value, said] : std::vector<std::tuple<std::string, json, std::string>>{
+             {"/steps/0/frame", 4294967297, "frame is 4294967297, must be a whole number, "},
+             {"/steps/0/frame", 1.5, "frame is 1.5, "},
+             {"/steps/0/status", 4294967296, "status is 4294967296, "},
+             {"/steps/0/outputs/0/bytes", -1, "bytes is -1, must be a whole number, 0 to "},
+             {"/schema", 4294967297, "schema is 4294967297, "},
+             {"/schema", 2, "schema is 2, must be 1"}}) {
+        json wrong = sound;
+        wrong[json::json_pointer(place)] = value;
+        refused(wrong.dump(), said);
+    }
+    constexpr std::size_t kDeep = 200000;
+    refused(R"({"schema": )" + std::string(kDeep, '[') + std::string(kDeep, ']') + "}", "its JSON");
+    refused("[1]", "is no manifest of vdb_shell");
+    fs::remove(folder / "m.json");
+    ASSERT_EQ(::mkfifo(file("m.json").c_str(), 0600), 0);
+    expect_refusal(call, ExitCode::read_error, {"m.json", "not a regular file"});
+}
+
 TEST_F(Sequence, ResumeGivesWhatOneCallGives)
 {
     // The first frame fixes the voxels of the others: once it can be built, they are stale.
@@ -286,6 +331,43 @@ TEST_F(Sequence, KilledAndResumedNothingIsLostOrDoneTwice)
         EXPECT_EQ(bytes("t.000" + std::to_string(frame) + ".vtu"), whole[std::size_t(frame - 1)]);
     for (const auto& entry : fs::directory_iterator(folder / ""))
         EXPECT_NE(entry.path().filename().string().rfind(".vdb_shell-", 0), 0u) << entry.path();
+}
+
+TEST_F(Sequence, CommandsThatGatherFramesTellAllThatAreMissing)
+{
+    spheres(1, 1);
+    ASSERT_EQ(
+        run("build " + file("s.0001.obj") + " -q" + kCoarse + "-o " + file("t.0001.vdb")).status,
+        ExitCode::success);
+    fs::copy_file(folder / "t.0001.vdb", folder / "t.0003.vdb");
+    for (const std::string& words :
+         {"page --frames 1-4 " + file("t.####.vdb") + " -o " + file("t.html"),
+          "usd --frames 1-4 " + file("t.####.vdb") + " -o " + file("t.usda"),
+          "page " + file("t.0001.vdb") + " " + file("t.0002.vdb") + " " + file("t.0003.vdb") + " " +
+              file("t.0004.vdb") + " -o " + file("t.html")})
+        expect_refusal(words, ExitCode::read_error,
+                       {"t.0002.vdb: there is no such file", "t.0004.vdb", "2 of 4"});
+    EXPECT_FALSE(there("t.html") || there("t.usda"));
+}
+
+TEST_F(Sequence, AFrameIsPlannedWithTheParserOfItsOwnCommand)
+{
+    const auto user_seconds = [] {
+        struct rusage used {
+        };
+        ::getrusage(RUSAGE_CHILDREN, &used);
+        return double(used.ru_utime.tv_sec) + 1e-6 * double(used.ru_utime.tv_usec);
+    };
+    const auto seconds_of = [&](const std::string& words) {
+        const double before = user_seconds();
+        EXPECT_EQ(run(words).status, ExitCode::success);
+        return user_seconds() - before;
+    };
+    const std::string options = "--dry-run --keep-going";
+    const double many = seconds_of(build("1-500", options));
+    // `inspect` has a tenth of the options. With those of all commands both took the same time.
+    EXPECT_LT(seconds_of("inspect " + file("s.####.obj") + " --frames 1-500 " + options),
+              0.5 * many);
 }
 
 } // namespace

@@ -70,10 +70,10 @@ TEST_F(Volumes, AreWrittenAndCarriedToThePose)
     EXPECT_EQ(grids_in(out).size(), 4u);
     const auto figures = nlohmann::json::parse(all.out)["grids"];
     ASSERT_EQ(figures.size(), 4u);
-    for (const auto& grid : figures)
-        if (grid["grid"] == "density") {
-            EXPECT_NEAR(double(grid["mass_after"]) / double(grid["mass_before"]), 1, 0.02);
-        }
+    const auto density = std::find_if(figures.begin(), figures.end(),
+                                      [](const auto& grid) { return grid["grid"] == "density"; });
+    ASSERT_NE(density, figures.end());
+    EXPECT_NEAR(double((*density)["mass_after"]) / double((*density)["mass_before"]), 1, 0.02);
 
     EXPECT_EQ(run("deform " + fog + " --rest " + rest + " --posed " + posed +
                   " --grid density -q -o " + out)

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/core/atomic_file.h"
 
+#include "core/temporary_file.h"
 #include "support/files.h"
 #include "vdb_shell/core/error.h"
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
 
 namespace vdb_shell
 {
@@ -90,6 +96,30 @@ TEST(atomic_file, is_refused_where_none_can_be)
         write_atomically(folder / "missing/a.obj", [&](const fs::path&) { called = true; }),
         WriteError);
     EXPECT_FALSE(called);
+}
+
+TEST(atomic_file, nothing_comes_into_its_place_once_a_handler_ends_the_process)
+{
+    const test::TemporaryFolder folder;
+    {
+        const CommitGuard guard;
+        EXPECT_FALSE(hold_commits()) << "files are put in their places now";
+    }
+    write_atomically(folder / "a.txt", [](const fs::path& t) { test::write_bytes(t, "a"); });
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        const bool held = hold_commits();
+        std::thread([&] {
+            write_atomically(folder / "b.txt",
+                             [](const fs::path& t) { test::write_bytes(t, "b"); });
+        }).detach();
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        ::_exit(held && !fs::exists(folder / "b.txt") ? 0 : 1);
+    }
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
 }
 
 TEST(atomic_file, temporaries_go_when_a_signal_asks)

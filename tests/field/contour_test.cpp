@@ -9,6 +9,7 @@
 #include "core/grid_instances.h"
 #include "field/marching_tets.h"
 #include "resample/simplify.h"
+#include "support/cancelled.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -109,13 +110,17 @@ TEST(MarchingTets, ALinearFieldIsMetExactly)
     const auto grid = cube_field(12, [&](const Coord& c) {
         return static_cast<float>(normal.dot(c.asVec3d() - Vec3d(5.5)));
     });
+    std::size_t looked_at = 0;
     for (const Vec3d& p : marching_tets(*grid).points) {
         const bool near_rim = std::min({p[0], p[1], p[2]}) < 0 || std::max({p[0], p[1], p[2]}) > 11;
         if (near_rim)
             continue;
         // Moved along an edge of up to sqrt(3) by the clearance of 0.05.
         EXPECT_LT(std::abs(normal.dot(p - Vec3d(5.5))), 0.05 * std::sqrt(3.0) + 1e-6);
+        ++looked_at;
     }
+    // The plane cuts an edge of each column of voxels along z, of two just at its end.
+    EXPECT_GE(looked_at, 12u * 12u - 2u);
 }
 
 TEST(Contour, IsSoundWhereVolumeToMeshIsNot)
@@ -211,6 +216,16 @@ TEST(Simplify, TurbulentSurfacesStayEmbedded)
     const Simplified simple = simplify(turbulent, {1.0, 10.0}, nullptr);
     expect_sound(simple.mesh);
     EXPECT_LT(simple.mesh.triangles.size(), turbulent.triangles.size());
+}
+
+TEST(Contour, CanBeCancelled)
+{
+    const auto sphere = sphere_by_formula(1.0, 0.1);
+    // Done by tetrahedra, after the first way has failed.
+    const auto signs = random_signs(5, 1e-7f);
+    for (const FloatGrid* field : {sphere.get(), signs.get()})
+        expect_cancelled(
+            [&](Interrupter* interrupter) { contour(*field, {}, nullptr, interrupter); });
 }
 
 } // namespace

@@ -9,6 +9,7 @@
 #include <openvdb/tools/Interpolation.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -97,12 +98,16 @@ TEST(LevelSet, KeepsItsAccuracyFarFromTheOrigin)
     const TriangleMesh mesh = test::translated(test::icosphere(1, 4), Vec3d(350, -350, 350));
     const auto grid = mesh_to_level_set(mesh, at_resolution(32));
     const double voxel = grid->voxelSize()[0];
+    std::size_t looked_at = 0;
     for (auto value = grid->cbeginValueOn(); value; ++value) {
         const double r = (grid->indexToWorld(value.getCoord()) - Vec3d(350, -350, 350)).length();
         if (r < 0.2)
             continue;
         EXPECT_NEAR(*value, r - 1, 0.1 * voxel);
+        ++looked_at;
     }
+    // 32 voxels across, the ball without its middle has 17,000 of them.
+    EXPECT_GT(looked_at, 15000u);
 }
 
 TEST(LevelSet, SameBitsForAnyNumberOfThreads)
@@ -256,6 +261,43 @@ TEST(LevelSet, SeesASolidInsideACavity)
     EXPECT_LT(on_axis(*grid, 0.0), -0.2);
     EXPECT_GT(on_axis(*grid, 0.45), 0.0);
     EXPECT_LT(on_axis(*grid, 0.8), -0.1);
+}
+
+TEST(LevelSet, BodiesThatCrossAreOneSolidWhicheverPointIsFirst)
+{
+    // Of either box one corner lies in the other.
+    TriangleMesh low = test::box({0, 0, 0}, {2, 2, 2}), high = test::box({1, 1, 1}, {3, 3, 3});
+    const auto inside = [](const TriangleMesh& mesh, const Vec3d& point) {
+        const auto grid = mesh_to_level_set(mesh, at_resolution(24));
+        return openvdb::tools::BoxSampler::sample(grid->tree(), grid->worldToIndex(point)) < 0;
+    };
+    for (int turn = 0; turn < 2; ++turn) {
+        const TriangleMesh both = test::joined(low, high);
+        EXPECT_TRUE(inside(both, Vec3d(0.5))) << turn;
+        EXPECT_TRUE(inside(both, Vec3d(1.5))) << turn;
+        EXPECT_TRUE(inside(both, Vec3d(2.5))) << turn;
+        EXPECT_FALSE(inside(both, Vec3d(2.5, 2.5, 0.5))) << turn;
+        // The corner within the other box becomes the first point, by which nesting would go.
+        const auto first = [](TriangleMesh& mesh, std::uint32_t point) {
+            std::swap(mesh.points[0], mesh.points[point]);
+            for (openvdb::Vec3I& t : mesh.triangles)
+                for (int k = 0; k < 3; ++k)
+                    t[k] = t[k] == 0 ? point : t[k] == point ? 0 : t[k];
+        };
+        const auto at = [](const TriangleMesh& mesh, const openvdb::Vec3s& p) {
+            return std::uint32_t(std::find(mesh.points.begin(), mesh.points.end(), p) -
+                                 mesh.points.begin());
+        };
+        first(low, at(low, {2, 2, 2}));
+        first(high, at(high, {1, 1, 1}));
+    }
+}
+
+TEST(LevelSet, TwoBodiesInOnePlaceAreASolid)
+{
+    const TriangleMesh ball = test::icosphere(1.0, 2);
+    const auto grid = mesh_to_level_set(test::joined(ball, ball), at_resolution(24));
+    EXPECT_LT(on_axis(*grid, 0.0), 0.0);
 }
 
 TEST(NegateLevelSet, GivesExactlyTheNegative)

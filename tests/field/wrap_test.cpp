@@ -5,6 +5,7 @@
 #include "vdb_shell/mesh/check_mesh.h"
 #include "vdb_shell/resample/surface_distance.h"
 
+#include "support/cancelled.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -376,6 +377,13 @@ TEST(Wrap, BadOptionsAndEmptyMeshesAreRefused)
     EXPECT_THROW(wrap_mesh(mesh, options), InvalidOption);
     EXPECT_THROW(wrap_mesh({}, {}), GeometryError);
     EXPECT_THROW(wrap_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}}, {}), GeometryError);
+}
+
+TEST(Wrap, CanBeCancelled)
+{
+    const TriangleMesh mesh = icosphere(1.0, 2);
+    expect_cancelled(
+        [&](Interrupter* interrupter) { wrap_mesh(mesh, with_voxel(0.1), interrupter); });
 }
 
 } // namespace

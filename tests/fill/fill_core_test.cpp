@@ -387,5 +387,16 @@ TEST(FillCore, AMissingProgramIsNamed)
     EXPECT_NO_THROW(require_program({}));
 }
 
+TEST(FillCore, CanBeCancelled)
+{
+    ProgramsOnPath programs;
+    programs.add("gmsh", "exec /bin/sleep 60");
+    const ShellStack stack = test::hollow_ball();
+    const TetMesh tets = make_tets(stack);
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        fill_core(stack, tets, by(CoreFillProgram::gmsh), interrupter);
+    });
+}
+
 } // namespace
 } // namespace vdb_shell

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 
 // Programs that end well, badly, and not at all.
@@ -94,6 +95,17 @@ TEST(OutsideProgram, ACallerWhoStopsEndsTheProgram)
     test::StopAtOnce stop;
     EXPECT_THROW(fill::run_program(kShell, {"-c", "sleep 60"}, folder.path(), 60, &stop),
                  Cancelled);
+}
+
+TEST(OutsideProgram, EndsAlsoWhereTheHostLeavesItsChildrenToTheSystem)
+{
+    const fill::TemporaryFolder folder;
+    const auto before = std::signal(SIGCHLD, SIG_IGN);
+    std::string said;
+    EXPECT_NO_THROW(said =
+                        fill::run_program(kShell, {"-c", "echo done"}, folder.path(), 60, nullptr));
+    std::signal(SIGCHLD, before);
+    EXPECT_EQ(said, "done\n");
 }
 
 TEST(OutsideProgram, TheFolderIsPrivateAndGoesWithAllThatIsInIt)

@@ -67,9 +67,16 @@ TEST(GroupCells, DomainsOfATurnHaveNoCommonPoint)
 
 TEST(GroupCells, GroupsOfACellAreInOrder)
 {
+    std::size_t looked_at = 0, most = 0;
     for (const GroupTurn& turn : turns_of_groups(random_boxes(500)))
-        for (const GroupCell& cell : turn)
+        for (const GroupCell& cell : turn) {
             EXPECT_TRUE(std::is_sorted(cell.groups.begin(), cell.groups.end()));
+            looked_at += cell.groups.size();
+            most = std::max(most, cell.groups.size());
+        }
+    EXPECT_EQ(looked_at, 500u);
+    // A group that is alone in its cell is in order whatever is done.
+    EXPECT_GT(most, 1u);
 }
 
 } // namespace

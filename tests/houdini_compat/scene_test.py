@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 import xml.etree.ElementTree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -200,6 +201,31 @@ class Scene(unittest.TestCase):
         with self.assertRaisesRegex(tool.ShellError, "open.obj.*boundary") as caught:
             tool.build(file.name, [os.path.join(self.folder, "a.vtu")], {})
         self.assertEqual(caught.exception.status, 4)
+
+    def test_a_bound_that_is_not_met_is_a_warning(self):
+        output = os.path.join(self.folder, "wanted.vtu")
+        values = {"resolution": 32, "want_amips": 3.0}
+        with self.assertWarnsRegex(tool.ShellWarning, rf"^{os.path.basename(MESH)}: wanted amips 3, reached [\d.]+$"):
+            report = tool.build(MESH, [output], values)
+        self.assertGreater(os.path.getsize(output), 0)
+        self.assertEqual([(bound["bound"], bound["met"]) for bound in report["wanted"]["bounds"]], [("amips", False)])
+        self.assertRegex(tool.summary(report), r"certified, wanted amips 3, reached [\d.]+$")
+        # The node has its shell all the same.
+        node = self.node(**values)
+        node.geometry().mesh_file = MESH
+        self.addCleanup(setattr, tool, "MESH_EXTENSION", tool.MESH_EXTENSION)
+        tool.MESH_EXTENSION = ".obj"
+        with self.assertWarns(tool.ShellWarning):
+            sop.cook(node)
+        self.assertEqual([name for name, _ in node.geometry()._contents], ["shell.bgeo.sc"])
+
+    def test_a_shell_that_is_not_valid_is_there_all_the_same(self):
+        output = os.path.join(self.folder, "raw.vtu")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            report = tool.build(MESH, [output], {"resolution": 32, "method": "raw", "stop_test": "none", "thickness": 3.0})
+        self.assertGreater(os.path.getsize(output), 0)
+        self.assertRegex(tool.summary(report), "not certified$")
 
     def test_a_program_that_is_not_there(self):
         os.environ["VDB_SHELL_COMMAND"] = os.path.join(self.folder, "none")

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/houdini/vdb_conventions.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/write/vdb_file.h"
 
+#include "command/command_fixture.h"
 #include "command/exit_code.h"
 #include "support/files.h"
+#include "support/filled.h"
 #include "support/grids.h"
 #include "support/shapes.h"
 #include "write/hand_made.h"
@@ -14,6 +17,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -294,6 +298,108 @@ TEST(VdbConventions, TheyHoldForEveryFileThatWeWrite)
             }
         }
     }
+}
+
+/// Of every other kind, as the command writes them.
+class WrittenFiles : public Command
+{
+protected:
+    /// Runs the call, which writes the file, and holds that against the rules.
+    void write(const std::string& call, const std::string& name, const std::string& more = "")
+    {
+        const Outcome made = run(call + " -o " + file(name) + " " + more);
+        ASSERT_EQ(made.status, command::success) << call << '\n' << made.err;
+        expect_kept(name);
+    }
+
+    void expect_kept(const std::string& name)
+    {
+        for (const VdbViolation& violation : check_vdb_conventions(folder / name))
+            ADD_FAILURE() << name << ": " << to_text(violation);
+    }
+
+    /// Writes a shell of the mesh, as the options say.
+    ShellInfo built(const std::string& mesh, const std::string& name, const std::string& options)
+    {
+        write("build " + mesh + " --resolution 24 --samples 0 -q " + options, name);
+        return read_shell_info(folder / name);
+    }
+
+    static std::size_t count_of(const ShellInfo& info, const std::string& grid)
+    {
+        return std::size_t(std::count(info.grids.begin(), info.grids.end(), grid));
+    }
+
+    const TriangleMesh sphere = icosphere(1.0, 2);
+    const std::string ball = mesh_file("ball.obj", sphere);
+};
+
+TEST_F(WrittenFiles, OfShellsOfEveryKindKeepThem)
+{
+    const ShellInfo both = built(ball, "both.vdb", "--layers 2 --side both");
+    EXPECT_EQ(both.layers, 4);
+    EXPECT_EQ(both.skin, 2);
+    const ShellInfo tapered = built(ball, "tapered.vdb", "--layers 2 --taper");
+    EXPECT_TRUE(tapered.tapered);
+    EXPECT_EQ(tapered.layers, 2);
+    const std::string core = mesh_file("core.obj", icosphere(0.4, 1));
+    built(ball, "cores.vdb", "--core " + core + " --core-distance 0.05");
+    EXPECT_FALSE(read_shell_vdb(folder / "cores.vdb").core_feet.empty());
+    EXPECT_GT(built(ball, "remeshed.vdb", "--remesh-to 200").input_points, 0);
+    const std::string far = mesh_file("far.obj", translated(sphere, {1000, 0, 0}));
+    EXPECT_NE(built(far, "far.vdb", "--recentre --rescale").placement.origin, Vec3d(0));
+    const ShellInfo halves = built(ball, "two.vdb", "--layers 2 --half --points beside");
+    EXPECT_EQ(halves.points_at, folder / "two.points.vdb");
+    expect_kept("two.points.vdb");
+
+    // The outside programs that fill a void may not be there.
+    const ShellStack hollow = hollow_ball();
+    ShellFile filled = hand_made_file({hollow.layers[0], hollow.splits[0], make_tets(hollow)}, 0.1);
+    filled.core = cone_core(hollow, filled.tets, Vec3s(0.01F, 0.02F, 0.03F));
+    write_shell_vdb(folder / "filled.vdb", filled);
+    EXPECT_GT(read_shell_info(folder / "filled.vdb").core_tets, 0);
+    expect_kept("filled.vdb");
+}
+
+TEST_F(WrittenFiles, OfPosesAndVolumesKeepThem)
+{
+    // u and v are x and y, so that texture coordinates can be asked for.
+    std::string text;
+    for (const Vec3s& p : sphere.points)
+        for (const char* const kind : {"v", "vt"})
+            text += std::string(kind) + " " + std::to_string(p[0]) + " " + std::to_string(p[1]) +
+                    (kind[1] ? "" : " " + std::to_string(p[2])) + "\n";
+    for (const Vec3I& t : sphere.triangles) {
+        text += "f";
+        for (int k = 0; k < 3; ++k)
+            text += " " + std::to_string(t[k] + 1) + "/" + std::to_string(t[k] + 1);
+        text += "\n";
+    }
+    const std::string textured = file("textured.obj"), rest = file("rest.vdb");
+    write_bytes(textured, text);
+    built(textured, "rest.vdb", "--layers 2");
+    const auto stretched = [&](float factor, const char* name) {
+        TriangleMesh skin = read_mesh(folder / "textured.obj").mesh;
+        for (Vec3s& p : skin.points)
+            p[0] *= factor;
+        return mesh_file(name, skin);
+    };
+    const std::string long_ball = stretched(1.5F, "long.obj"),
+                      longer = stretched(1.6F, "longer.obj");
+    write("pose " + rest + " " + long_ball + " -q --mesh-after " + longer, "posed.vdb");
+    const ShellInfo posed = read_shell_info(folder / "posed.vdb");
+    EXPECT_TRUE(posed.posed);
+    EXPECT_EQ(count_of(posed, "rest") + count_of(posed, "v"), 2u);
+
+    write("volumes " + rest + " --volumes rest,depth,thickness,uvw,prism,nearest,layer,density " +
+              "--texture-from " + textured,
+          "coordinates.vdb");
+    write("volumes " + rest + " --volumes depth,density --half", "half.vdb");
+    const std::string to_pose = " --posed " + file("posed.vdb") + " -q --velocity";
+    write("deform " + file("coordinates.vdb") + to_pose, "deformed.vdb");
+    write("deform " + rest + " --grid shell_tets" + to_pose, "points.vdb");
+    write("map " + file("half.vdb") + " --shell " + rest + " --mesh " + textured + " -q",
+          "mapped.vdb");
 }
 
 TEST(VdbConventions, WhatCannotBeReadIsSaid)

@@ -3,6 +3,7 @@
 
 #include "vdb_shell/core/error.h"
 
+#include "support/cancelled.h"
 #include "support/faulty_shapes.h"
 #include "support/files.h"
 
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace vdb_shell::test
 {
@@ -234,6 +236,20 @@ TEST(InspectMesh, PaintsTheDefects)
     EXPECT_THROW(write_defect_picture(folder / "d.obj", mesh), InvalidOption);
 }
 
+TEST(InspectMesh, PaintsWhatItInspectsAndNothingElse)
+{
+    const TemporaryFolder folder;
+    TriangleMesh mesh = icosphere(1.0, 1);
+    mesh.triangles[3][1] = 1000;
+    EXPECT_THROW(write_defect_picture(folder / "d.ply", mesh), InvalidOption);
+    // Without a size there is no voxel to measure against, and all triangles are bad all the same.
+    TriangleMesh point;
+    point.points = {{1, 2, 3}, {1, 2, 3}, {1, 2, 3}};
+    point.triangles = {{0, 1, 2}};
+    EXPECT_NO_THROW(write_defect_picture(folder / "d.ply", point));
+    EXPECT_TRUE(std::filesystem::exists(folder / "d.ply"));
+}
+
 TEST(InspectMesh, ReportsTheRealFaultyMeshes)
 {
     VDB_SHELL_NEEDS_REAL_MESHES();
@@ -249,6 +265,12 @@ TEST(InspectMesh, ReportsTheRealFaultyMeshes)
     EXPECT_EQ(look("artist/cow.obj").check.self_intersections.count, 81u);
     EXPECT_EQ(look("paper/dragon_small_resolution.obj").blind_vertices.count, 2u);
     EXPECT_EQ(look("paper/lamp.obj").blind_vertices.count, 1u);
+}
+
+TEST(InspectMesh, CanBeCancelled)
+{
+    const TriangleMesh mesh = icosphere(1.0, 3);
+    expect_cancelled([&](Interrupter* interrupter) { inspect_mesh(mesh, {}, interrupter); });
 }
 
 } // namespace

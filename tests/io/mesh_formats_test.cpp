@@ -246,7 +246,7 @@ TEST_F(MeshFormats, refuses_a_list_of_ply_whose_length_is_no_whole_number)
     bytes.append(reinterpret_cast<const char*>(points), sizeof points);
     bytes.append(reinterpret_cast<const char*>(&size), sizeof size);
     bytes.append(16, '\0');
-    EXPECT_SAYS(complaint("a.ply", bytes), "a list \"vertex_indices\" of 3.5");
+    EXPECT_SAYS(complaint("a.ply", bytes), "a list \"vertex_indices\" of 3.5 values");
 }
 
 TEST_F(MeshFormats, names_what_is_wrong_in_obj)

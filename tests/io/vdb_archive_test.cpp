@@ -125,10 +125,17 @@ TEST(VdbArchive, WritesTheSameBytesForAnyNumberOfThreads)
 TEST(VdbArchive, SaysWhenTheFileCannotBeWritten)
 {
     const test::TemporaryFolder folder;
-    EXPECT_THROW(write_vdb_archive(folder / "none" / "a.vdb", grids_to_write(), {}),
-                 openvdb::IoError);
+    const auto said = [](const fs::path& path) -> std::string {
+        try {
+            write_vdb_archive(path, grids_to_write(), {});
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+        return "nothing";
+    };
+    EXPECT_EQ(said(folder / "none" / "a.vdb"), "No such file or directory");
     if (fs::exists("/dev/full")) {
-        EXPECT_THROW(write_vdb_archive("/dev/full", grids_to_write(), {}), openvdb::IoError);
+        EXPECT_EQ(said("/dev/full"), "No space left on device");
     }
 }
 

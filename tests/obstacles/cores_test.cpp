@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/obstacles/cores.h"
 
+#include "support/cancelled.h"
 #include "support/cores.h"
 #include "support/shapes.h"
 #include "vdb_shell/certify/stack_certificate.h"
@@ -319,6 +320,14 @@ TEST(Cores, AreForGrownShellsInside)
     refused([](ShellOptions& o) { o.grow.method = Method::raw; }, "--method");
     refused([](ShellOptions& o) { o.check.allow_self_intersections = true; },
             "--allow-self-intersections");
+}
+
+TEST(Cores, LookingAtThemCanBeCancelled)
+{
+    const TriangleMesh skin = test::icosphere(1, 2);
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        prepare_cores(skin, "skin", {ball(0.5)}, {}, interrupter);
+    });
 }
 
 } // namespace

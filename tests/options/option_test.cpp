@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "options/shown_text.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 
@@ -104,9 +105,17 @@ TEST(Option, WhatIsImpossibleIsRefusedByTheNameGiven)
     EXPECT_EQ(said_of("--length", "3x"), "--length is 3x, must be a finite number");
     EXPECT_EQ(said_of("--length", ""), "--length is , must be a finite number");
     EXPECT_EQ(said_of("--colour", "blue"), "--colour is blue, must be one of red, green");
-    EXPECT_NE(said_of("--rounds", "2147483648"), "accepted");
-    EXPECT_NE(said_of("--rounds", "99999999999999999999"), "accepted");
-    EXPECT_NE(said_of("--most", "18446744073709551616"), "accepted");
+    for (const char* large : {"2147483648", "99999999999999999999"})
+        EXPECT_EQ(said_of("--rounds", large), std::string("--rounds is ") + large +
+                                                  ", must be 1 or more and at most 2147483647");
+    EXPECT_EQ(said_of("--most", "18446744073709551616"),
+              "--most is 18446744073709551616, must be at most 18446744073709551615");
+    for (const char* none : {"inf", "0,1"})
+        EXPECT_EQ(said_of("--depth", none),
+                  std::string("--depth is ") + none + ", must be a finite number, above 0");
+    // A message goes to a terminal, and a value may be a whole file.
+    EXPECT_EQ(said_of("--colour", "\x1b[2J"), "--colour is ?[2J, must be one of red, green");
+    EXPECT_LT(said_of("--colour", std::string(400000, 'x')).size(), 200u);
 }
 
 TEST(Option, ARefusedValueLeavesTheFieldAlone)
@@ -118,6 +127,29 @@ TEST(Option, ARefusedValueLeavesTheFieldAlone)
     EXPECT_THROW(assign(*find_by_flag(options, "--most"), OptionValue(), "x"), InvalidOption);
     EXPECT_EQ(fields.share, 0.5);
     EXPECT_EQ(fields.most, 5u);
+}
+
+TEST(Option, WholeNumbersMayHaveAPoint)
+{
+    Fields fields;
+    OptionList options = describe(fields);
+    assign(*find_by_flag(options, "--rounds"), 7.0, "x");
+    assign(*find_by_flag(options, "--most"), 9.0, "x");
+    EXPECT_EQ(fields.rounds, 7);
+    EXPECT_EQ(fields.most, 9u);
+    for (const double none : {7.5, 1e300, double(NAN), double(INFINITY)})
+        EXPECT_THROW(assign(*find_by_flag(options, "--rounds"), none, "x"), InvalidOption) << none;
+    EXPECT_THROW(assign(*find_by_flag(options, "--most"), -1.0, "x"), InvalidOption);
+    EXPECT_EQ(fields.rounds, 7);
+}
+
+TEST(Option, TextOfFilesIsCutWhereACharacterEnds)
+{
+    EXPECT_EQ(shown("caf\xc3\xa9\x1b\x7f\n\xc2\x9b"), "caf\xc3\xa9????");
+    EXPECT_EQ(shown_lines("a\nb\t"), "a\nb?");
+    EXPECT_EQ(shown_in_part("abc", 3), "abc");
+    EXPECT_EQ(shown_in_part("ab\xe2\x82\xac-", 4), "ab...");
+    EXPECT_EQ(shown_in_part("ab\xe2\x82\xac-", 5), "ab\xe2\x82\xac...");
 }
 
 TEST(Option, FieldsSetInTheProgramAreRefusedByTheirOwnNames)

@@ -3,6 +3,7 @@
 
 #include "core/exact.h"
 #include "core/grid_instances.h"
+#include "support/cancelled.h"
 #include "support/files.h"
 #include "support/grids.h"
 #include "support/shapes.h"
@@ -207,6 +208,43 @@ TEST(PipelineOfLevelSet, RefusesAWrap)
     ShellOptions options = quick_options();
     options.wrap.wanted = true;
     EXPECT_THROW(build_shell_from_level_set(*test::sphere_field(0.3), options), InvalidOption);
+}
+
+TEST(PipelineOfLevelSet, CanBeCancelled)
+{
+    const auto field = test::sphere_field(0.3);
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        build_shell_from_level_set(*field, quick_options(), "ball", nullptr, interrupter);
+    });
+}
+
+struct StopAfter : Interrupter {
+    explicit StopAfter(int questions) : left(questions) {}
+    void start(const char*) override { begun_late += left < 0; }
+    void end() override {}
+    bool wasInterrupted(int) override { return --left < 0; }
+    int left, begun_late = 0;
+};
+
+// Whichever stage is told to stop, what comes after it must not begin.
+TEST(Pipeline, CanBeCancelledAtEveryStage)
+{
+    const TriangleMesh mesh = test::icosphere(1.0, 2);
+    ShellOptions options = quick_options();
+    options.layers.layers = 2;
+    for (int questions = 0; questions < 1 << 30; questions = 2 * questions + 1) {
+        StopAfter interrupter(questions);
+        try {
+            build_shell(mesh, options, "ball", nullptr, &interrupter);
+        } catch (const Cancelled&) {
+            EXPECT_EQ(interrupter.begun_late, 0) << questions;
+            continue;
+        }
+        EXPECT_GE(interrupter.left, 0) << "told to stop, and not stopped";
+        EXPECT_GT(questions, 100);
+        return;
+    }
+    FAIL() << "never at an end";
 }
 
 } // namespace

@@ -25,7 +25,7 @@ ShellResult mended(const TriangleMesh& mesh, ShellOptions options = {})
 {
     options.mend = true;
     ShellResult result;
-    StageClock clock(result.report.stages);
+    StageClock clock(result.report.stages, nullptr);
     prepare_surface(result, mesh, options, clock, nullptr);
     // Whatever it took: what is left is usable, by a check of its own.
     EXPECT_EQ(why_not_usable(check_mesh(result.surface), options.check), "");
@@ -176,7 +176,7 @@ TEST(PrepareSurface, OfNothingNothingIsMended)
 TEST(PrepareSurface, WithoutMendingAFaultySurfaceIsRefused)
 {
     ShellResult result;
-    StageClock clock(result.report.stages);
+    StageClock clock(result.report.stages, nullptr);
     EXPECT_THROW(prepare_surface(result, dented_sphere(), {}, clock, nullptr), GeometryError);
     EXPECT_TRUE(result.report.mend.empty());
 }

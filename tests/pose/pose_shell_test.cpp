@@ -5,6 +5,8 @@
 #include "vdb_shell/pipeline.h"
 
 #include "support/bends.h"
+#include "support/cancelled.h"
+#include "support/grids.h"
 #include "support/tapered.h"
 
 #include <gtest/gtest.h>
@@ -259,6 +261,27 @@ TEST(PoseShell, WhatCannotBeIsRefused)
     options = {};
     options.most_distortion = 1;
     EXPECT_THROW(pose_shell(rest, sphere.points, options), InvalidOption);
+}
+
+TEST(PoseShell, CanBeCancelled)
+{
+    const TriangleMesh rod = test::round_rod();
+    const RestShell rest(built(rod));
+    const Points skin = elbow_of(rod, 1.0);
+    test::expect_cancelled(
+        [&](Interrupter* interrupter) { pose_shell(rest, skin, {}, interrupter); });
+    test::expect_cancelled(
+        [&](Interrupter* interrupter) { build_posed(rest, skin, {}, "pose", interrupter); });
+    const PoseResult made = pose_shell(rest, skin);
+    test::expect_cancelled(
+        [&](Interrupter* interrupter) { finish_posed(rest, skin, made, "pose", interrupter); });
+    ShellFile file;
+    file.stack = rest.stack();
+    file.tets = rest.tets();
+    file.surface = test::sphere_level_set(1.0f, 0.2f);
+    const PosedShell posed = finish_posed(rest, skin, made);
+    test::expect_cancelled(
+        [&](Interrupter* interrupter) { posed_file(file, posed, true, interrupter); });
 }
 
 } // namespace

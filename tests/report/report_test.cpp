@@ -140,7 +140,14 @@ TEST(Report, SaysWhatGrowthScalingAndCuttingDid)
     report.grow->vertices_below_quality = 17;
     report.scale = ScaleReport{6, 2};
     report.cut = LayerReport{8, 5, 2};
+    report.outside.emplace();
+    report.outside->grow = GrowReport();
+    report.outside->grow->released = 5;
+    report.outside->scale = ScaleReport{7, 1};
     const std::string text = report_text(report);
+    // Of shells on both sides each side tells its own.
+    EXPECT_NE(text.find("5 pins released"), std::string::npos) << text;
+    EXPECT_NE(text.find("7 pillars shortened further, 1 of them pinned"), std::string::npos);
     EXPECT_NE(text.find("3 pins released"), std::string::npos) << text;
     EXPECT_NE(text.find("4 rounds; still below: 51 tets, 17 inner vertices"), std::string::npos);
     EXPECT_NE(text.find("6 pillars shortened further, 2 of them pinned"), std::string::npos);

@@ -64,6 +64,8 @@ TEST(Coarsen, MakesNoSliversOfWhatIsFlat)
 {
     const TriangleMesh fine = test::gridded_box(Vec3d(0.0), Vec3d(1.0), 16);
     const Coarsened coarse = coarsen(fine, 200);
+    EXPECT_LE(coarse.mesh.triangles.size(), 200U);
+    EXPECT_GE(coarse.mesh.triangles.size(), 190U);
     for (const openvdb::Vec3I& t : coarse.mesh.triangles) {
         const Vec3d p(coarse.mesh.points[t[0]]), q(coarse.mesh.points[t[1]]),
             r(coarse.mesh.points[t[2]]);
@@ -117,6 +119,12 @@ TEST(Coarsen, IsTheSameForAnyNumberOfThreads)
     const Coarsened one = coarsen(fine, fine.triangles.size() / 8);
     EXPECT_EQ(many.from, one.from);
     EXPECT_EQ(many.mesh.triangles, one.mesh.triangles);
+}
+
+TEST(Coarsen, CanBeCancelled)
+{
+    const TriangleMesh fine = test::icosphere(1.0, 2);
+    test::expect_cancelled([&](Interrupter* interrupter) { coarsen(fine, 100, interrupter); });
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include "resample/sound.h"
+#include "support/cancelled.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -95,6 +96,14 @@ TEST(Decimate, RefusesOptionsByName)
     EXPECT_NE(message({3, std::nullopt}).find("triangles is 3"), std::string::npos);
     for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_NE(message({100, bad}).find("tolerance is"), std::string::npos);
+}
+
+TEST(Decimate, CanBeCancelled)
+{
+    const TriangleMesh sphere = icosphere(1.0, 2);
+    expect_cancelled([&](Interrupter* interrupter) {
+        decimate(sphere, {100, std::nullopt}, interrupter);
+    });
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include "vdb_shell/mesh/check_mesh.h"
 
 #include "resample/sound.h"
+#include "support/cancelled.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -274,6 +275,10 @@ TEST(Remesh, RefusesOptionsByName)
     RemeshOptions options;
     options.triangles = 3;
     said(options, "triangles is 3");
+    // Known beforehand; to make them would take all memory.
+    options.triangles = 4294967295U;
+    said(options, "triangles is 4294967295");
+    said(to_length(1e-6), "2^30");
     options.edge_length = 0.1;
     options.triangles = 100;
     said(options, "both given");
@@ -296,6 +301,13 @@ TEST(Remesh, RefusesSurfacesThatAreOpenOrCross)
     EXPECT_NE(message(joined(sphere, translated(sphere, {0.5, 0.1, 0}))).find("cross or touch"),
               std::string::npos);
     EXPECT_NE(message({}).find("no triangles"), std::string::npos);
+}
+
+TEST(Remesh, CanBeCancelled)
+{
+    const TriangleMesh sphere = icosphere(1.0, 2);
+    expect_cancelled(
+        [&](Interrupter* interrupter) { remesh(sphere, to_length(0.3), interrupter); });
 }
 
 } // namespace

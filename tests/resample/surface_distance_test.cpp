@@ -100,5 +100,15 @@ TEST(SurfaceDistance, RefusesEmptySurfacesAndBadSpacings)
         EXPECT_THROW(surface_distance(mesh, mesh, spacing), InvalidOption) << spacing;
 }
 
+TEST(SurfaceDistance, CountsTrianglesWithoutWidthByTheirLength)
+{
+    // No area, and as many pieces as it is long.
+    TriangleMesh needle;
+    needle.points = {{0, 0, 0}, {1e6F, 0, 0}, {2e6F, 0, 0}};
+    needle.triangles = {{0, 1, 2}};
+    EXPECT_THROW(surface_distance(needle, unit_tetrahedron(), 1e-3), InvalidOption);
+    EXPECT_NO_THROW(surface_distance(needle, unit_tetrahedron(), 1e3));
+}
+
 } // namespace
 } // namespace vdb_shell::test

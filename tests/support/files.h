@@ -30,9 +30,6 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes);
 /// What a reader says as it refuses; empty when it does not.
 std::string complaint_of(const std::function<void()>& read);
 
-/// What a reader says as it refuses; empty when it does not.
-std::string complaint_of(const std::function<void()>& read);
-
 /// The folder of real meshes, empty when it is not there.
 std::filesystem::path real_meshes();
 

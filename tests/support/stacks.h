@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "support/cancelled.h"
 #include "support/shapes.h"
 
 #include "vdb_shell/certify/conformity.h"
@@ -118,13 +119,6 @@ inline void expect_joined(const ShellStack& stack)
     }
 }
 
-/// Ends a stage at its first question.
-struct StopAtOnce : Interrupter {
-    void start(const char*) override {}
-    void end() override {}
-    bool wasInterrupted(int) override { return true; }
-};
-
 /// What an InvalidOption says.
 template <typename Call> std::string refusal_of(const Call& call)
 {
@@ -146,13 +140,6 @@ template <typename Call> void expect_positive_finite(const std::string& name, co
         EXPECT_EQ(said.find(name + " is " + shown + ", must be "), 0U) << said;
         EXPECT_NE(said.find("above 0"), std::string::npos) << said;
     }
-}
-
-/// call(interrupter) ends when the interrupter wants it.
-template <typename Call> void expect_cancelled(const Call& call)
-{
-    StopAtOnce interrupter;
-    EXPECT_THROW(call(&interrupter), Cancelled);
 }
 
 } // namespace vdb_shell::test

@@ -2,6 +2,8 @@
 #include "vdb_shell/taper/taper.h"
 
 #include "core/exact.h"
+#include "support/broken_shells.h"
+#include "support/cancelled.h"
 #include "support/files.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
@@ -236,6 +238,17 @@ TEST(Taper, RealMeshesAreCertified)
             EXPECT_LT(result.report.signs.tets,
                       2 * read.mesh.triangles.size() * std::size_t(layers));
         }
+}
+
+TEST(Taper, CanBeCancelled)
+{
+    const test::SplitShell made = test::scaled_shell(test::icosphere(1, 1), 0.5f);
+    ShellStack stack = one_layer(made.shell, made.split);
+    const std::vector<double> cap(stack.surface(0).size(), 1.0);
+    TaperOptions options;
+    options.wanted = true;
+    test::expect_cancelled(
+        [&](Interrupter* interrupter) { taper_shell(stack, cap, options, interrupter); });
 }
 
 } // namespace

@@ -44,8 +44,8 @@ TEST(TetShape, IsAPowerOfTheMeanRatioAndOfAmips)
     EXPECT_NEAR(value,
                 std::pow(vdb_shell::mean_ratio(kSome[0], kSome[1], kSome[2], kSome[3]), -1.5),
                 1e-12 * value);
-    EXPECT_NEAR(distortion_of_amips(amips_of_distortion(value)), value, 1e-12 * value);
-    EXPECT_NEAR(amips_of_distortion(1), 3, 1e-12);
+    EXPECT_NEAR(distortion_of_amips(3 * std::pow(value, 2.0 / 3)), value, 1e-12 * value);
+    EXPECT_NEAR(distortion_of_amips(3), 1, 1e-12); // of the regular tet
 }
 
 /// Differences of the value, in each corner.

@@ -47,13 +47,13 @@ TEST(WantedBounds, AConedBoxHasTheShapesThatItsGeometrySays)
     const ShellResult box = build_shell(test::box(Vec3d(-1), Vec3d(1)), tapered_with_samples());
     ASSERT_EQ(box.tets.tets.size(), 12U);
     WantedBounds wanted;
-    wanted.dihedral = M_PI / 4 - 2e-3;
+    wanted.min_dihedral_radians = M_PI / 4 - 2e-3;
     wanted.fill = 1 - 1e-9;
     wanted.tets = 12;
     EXPECT_TRUE(judge(box, wanted).met());
 
     wanted = {};
-    wanted.dihedral = 50 * M_PI / 180;
+    wanted.min_dihedral_radians = 50 * M_PI / 180;
     const BoundsReport report = judge(box, wanted);
     ASSERT_EQ(report.bounds.size(), 1U);
     const WantedBound& bound = report.bounds[0];
@@ -75,9 +75,9 @@ TEST(WantedBounds, FewerMissedBoundsAreBetterAndThenTheSmallerShare)
     wanted.tets = 4;
     // Eight of the twelve are too many, where a budget may be missed by many times itself.
     EXPECT_DOUBLE_EQ(judge(box, wanted).bounds[0].shortfall, 8.0 / 12);
-    wanted.dihedral = 50 * M_PI / 180; // that none of them has
+    wanted.min_dihedral_radians = 50 * M_PI / 180; // that none of them has
     const BoundsReport both = judge(box, wanted);
-    wanted.dihedral = 10 * M_PI / 180;
+    wanted.min_dihedral_radians = 10 * M_PI / 180;
     const BoundsReport one = judge(box, wanted);
     EXPECT_EQ(both.bounds[0].shortfall, 1);
     EXPECT_LT(one.shortfall(), both.shortfall());
@@ -119,7 +119,7 @@ TEST(WantedBounds, ThicknessIsTheCauseWhereItHoldsThePillars)
     ShellOptions options = tapered_with_samples();
     options.taper.wanted = false;
     options.line_step.thickness = 0.02;
-    options.wanted.dihedral = 0.3;
+    options.wanted.min_dihedral_radians = 0.3;
     options.wanted.fill = 0.9;
     const ShellResult thin = build_shell(test::icosphere(1, 2), options);
     ASSERT_TRUE(thin.report.wanted);
@@ -157,7 +157,7 @@ TEST(WantedBounds, WhatNoShellHasIsRefused)
     EXPECT_THROW(build_shell(sphere, options), InvalidOption);
 
     options = tapered_with_samples();
-    options.wanted.dihedral = 71 * M_PI / 180; // a regular tet has 70.53 degrees
+    options.wanted.min_dihedral_radians = 71 * M_PI / 180; // a regular tet has 70.53 degrees
     EXPECT_THROW(require_sensible(options), InvalidOption);
     options = {};
     options.wanted.amips = 5;

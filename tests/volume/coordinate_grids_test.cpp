@@ -2,6 +2,7 @@
 #include "vdb_shell/volume/coordinate_grids.h"
 
 #include "core/grid_instances.h"
+#include "support/cancelled.h"
 #include "support/shapes.h"
 #include "vdb_shell/core/error.h"
 #include "volume/ramp.h"
@@ -23,6 +24,8 @@ using openvdb::Vec3d;
 using openvdb::Vec3SGrid;
 
 constexpr double kVoxel = 0.04, kInner = 0.5;
+// The round shell has 57,000; facets cut less than a tenth off.
+constexpr std::size_t kFewestVoxels = 50000;
 
 struct CoordinateBall {
     ShellStack stack;
@@ -63,7 +66,7 @@ TEST(CoordinateGrids, DepthThicknessAndPlaceOfABall)
     auto grids = grids_of(ball, "rest,depth,thickness,density,layer");
     EXPECT_EQ(grids.size(), 6u); // layer_0 too
     const auto& depth = as<FloatGrid>(grids["depth"]);
-    EXPECT_GT(depth.activeVoxelCount(), 40000u);
+    EXPECT_GT(depth.activeVoxelCount(), kFewestVoxels);
     for (const auto& [name, grid] : grids)
         EXPECT_EQ(grid->activeVoxelCount(), depth.activeVoxelCount()) << name;
     auto rest = as<Vec3SGrid>(grids["rest"]).getConstAccessor();
@@ -98,7 +101,8 @@ TEST(CoordinateGrids, PrismAndNearestTriangleGiveBackThePoint)
                 double(weight[k]) * Vec3d(points[ball.stack.triangles()[std::size_t(triangle)][k]]);
         return sum;
     };
-    for (auto voxel = prism.cbeginValueOn(); voxel; ++voxel) {
+    std::size_t looked_at = 0;
+    for (auto voxel = prism.cbeginValueOn(); voxel; ++voxel, ++looked_at) {
         const openvdb::Coord at = voxel.getCoord();
         const Vec3d point = kVoxel * at.asVec3d();
         const PrismShell& shell = ball.stack.layers[0];
@@ -114,6 +118,7 @@ TEST(CoordinateGrids, PrismAndNearestTriangleGiveBackThePoint)
         EXPECT_LE(distance, 1 - point.length() + 1e-6);
         EXPECT_GE(distance, 0.985 - point.length());
     }
+    EXPECT_GT(looked_at, kFewestVoxels);
 }
 
 TEST(CoordinateGrids, TextureCoordinatesAreInterpolatedInTheirTriangle)
@@ -128,12 +133,14 @@ TEST(CoordinateGrids, TextureCoordinatesAreInterpolatedInTheirTriangle)
     auto weights = as<Vec3SGrid>(grids["prism_weights"]).getConstAccessor();
     auto depth = as<FloatGrid>(grids["depth"]).getConstAccessor();
     const auto& prism = as<Int32Grid>(grids["prism"]);
-    for (auto voxel = prism.cbeginValueOn(); voxel; ++voxel) {
+    std::size_t looked_at = 0;
+    for (auto voxel = prism.cbeginValueOn(); voxel; ++voxel, ++looked_at) {
         const openvdb::Coord at = voxel.getCoord();
         EXPECT_NEAR(uvw.getValue(at)[0], double(*voxel) + weights.getValue(at)[1], 1e-3);
         EXPECT_NEAR(uvw.getValue(at)[1], weights.getValue(at)[2], 1e-6);
         EXPECT_EQ(uvw.getValue(at)[2], depth.getValue(at));
     }
+    EXPECT_GT(looked_at, kFewestVoxels);
     EXPECT_THROW(grids_of(ball, "uvw"), InvalidOption);
 }
 
@@ -150,6 +157,40 @@ TEST(CoordinateGrids, RefusesListsAndRampsThatAreNone)
     EXPECT_EQ(ramp.at(0.25), 0.5);
     EXPECT_EQ(ramp.at(0.75), 2);
     EXPECT_EQ(ramp.at(2), 4);
+}
+
+TEST(CoordinateGrids, CanBeCancelled)
+{
+    const CoordinateBall ball;
+    CoordinateOptions options;
+    options.voxel_size = kVoxel;
+    CoordinateInputs inputs;
+    inputs.map = &ball.map;
+    inputs.stack = &ball.stack;
+    for (const char* volumes : {"depth", "rest", "nearest"}) {
+        SCOPED_TRACE(volumes);
+        options.volumes = volumes;
+        test::expect_cancelled(
+            [&](Interrupter* interrupter) { coordinate_grids(inputs, options, interrupter); });
+    }
+}
+
+TEST(CoordinateGrids, VoxelsThatDoNotFitAreRefused)
+{
+    const CoordinateBall ball;
+    CoordinateInputs inputs;
+    inputs.map = &ball.map;
+    inputs.stack = &ball.stack;
+    CoordinateOptions options;
+    // Far more than any machine has; larger than the shell; between its voxels' centres.
+    for (const double size : {1e-8, 1e-6, 2.5, 1e300, 1.9}) {
+        options.voxel_size = size;
+        EXPECT_THROW(coordinate_grids(inputs, options), GeometryError) << size;
+    }
+    for (const double size : {0.0, -1.0, std::nan("")}) {
+        options.voxel_size = size;
+        EXPECT_THROW(coordinate_grids(inputs, options), InvalidOption) << size;
+    }
 }
 
 } // namespace

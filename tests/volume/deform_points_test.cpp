@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/volume/deform_points.h"
 
+#include "support/cancelled.h"
 #include "support/grids.h"
 #include "vdb_shell/core/error.h"
 #include "volume/ball.h"
@@ -221,6 +222,17 @@ TEST(DeformPoints, RefuseWhatTheyCannotTake)
     mixed->tree().addLeaf(other->tree().stealNode<PointDataGrid::TreeType::LeafNodeType>(
         other->tree().cbeginLeaf()->origin(), other->background(), false));
     EXPECT_THROW(carried(*mixed, rest, rest, figures), InvalidOption);
+}
+
+TEST(DeformPoints, CanBeCancelled)
+{
+    openvdb::initialize();
+    const ShellMap rest = ball(as_it_is).map(), posed = ball(turned_long).map();
+    const PointDataGrid::Ptr source = points_at(places());
+    DeformFigures figures;
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        deform_points(*source, rest, posed, Vec3d(0.0), {}, figures, nullptr, interrupter);
+    });
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "vdb_shell/volume/deform_volume.h"
 
 #include "core/grid_instances.h"
+#include "support/cancelled.h"
 #include "vdb_shell/core/error.h"
 #include "volume/ball.h"
 
@@ -240,6 +241,16 @@ TEST(DeformVolume, RefusesWhatItCannotDo)
     EXPECT_NE(refused(*stretched).find("transform"), std::string::npos);
     EXPECT_NE(refused(*openvdb::BoolGrid::create(true)).find("values of type bool"),
               std::string::npos);
+}
+
+TEST(DeformVolume, CanBeCancelled)
+{
+    const ShellMap rest = map_of(as_it_is), posed = map_of(test::turned_long);
+    const auto source = fog(kLow, kHigh);
+    DeformFigures figures;
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        deform_volume(*source, rest, posed, Vec3d(0.0), {}, figures, interrupter);
+    });
 }
 
 } // namespace

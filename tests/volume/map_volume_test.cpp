@@ -2,6 +2,7 @@
 #include "vdb_shell/volume/map_volume.h"
 
 #include "core/grid_instances.h"
+#include "support/cancelled.h"
 #include "support/shapes.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
@@ -81,6 +82,13 @@ MapOptions voxels_of(double size)
     return options;
 }
 
+/// That many voxels lie inside the slab at the least, whether or not its faces belong to it.
+std::size_t voxels_in_slab(double size)
+{
+    const auto along = [&](double length) { return std::size_t(std::ceil(length / size)) - 1; };
+    return along(2) * along(2) * along(0.5);
+}
+
 const FloatGrid& floats(const GridBasePtr& grid)
 {
     return dynamic_cast<const FloatGrid&>(*grid);
@@ -116,9 +124,11 @@ TEST(MapVolume, TilesWithoutASeam)
     const GridBasePtr made =
         map_volume(*texture_of([&](double u, double, double) { return wave(u); }), slab.map(),
                    slab.texture, options, figures);
-    for (auto value = floats(made).cbeginValueOn(); value; ++value)
+    std::size_t looked_at = 0;
+    for (auto value = floats(made).cbeginValueOn(); value; ++value, ++looked_at)
         // A sine sampled twenty times a period: the chord's error is (pi / 20)^2 / 2.
         ASSERT_NEAR(*value, wave(3 * made->indexToWorld(value.getCoord())[0] / 2), 0.0125);
+    EXPECT_GE(looked_at, voxels_in_slab(0.03));
 }
 
 TEST(MapVolume, LiesBetweenTheDepthsThatAreAskedFor)
@@ -154,9 +164,11 @@ TEST(MapVolume, AFineCheckerboardBecomesGreyAndNotNoise)
     options.most_samples = 20;
     const GridBasePtr full = map_volume(*texture, slab.map(), slab.texture, options, figures);
     EXPECT_EQ(figures.limited_samples, 0U);
-    for (auto value = floats(full).cbeginValueOn(); value; ++value)
+    std::size_t looked_at = 0;
+    for (auto value = floats(full).cbeginValueOn(); value; ++value, ++looked_at)
         // Of nineteen voxels a field may be left without its counterpart, along each axis.
         ASSERT_NEAR(*value, 1.5, 0.01);
+    EXPECT_GE(looked_at, voxels_in_slab(0.093));
     options.most_samples = 1;
     const GridBasePtr point = map_volume(*texture, slab.map(), slab.texture, options, figures);
     double farthest = 0;
@@ -189,8 +201,10 @@ TEST(MapVolume, MassIsThatOfTheTilesWhereItIsKept)
     MapFigures figures;
     const GridBasePtr made = map_volume(*texture_of([](double, double, double) { return 3.0; }),
                                         slab.map(), slab.texture, options, figures);
-    for (auto value = floats(made).cbeginValueOn(); value; ++value)
+    std::size_t looked_at = 0;
+    for (auto value = floats(made).cbeginValueOn(); value; ++value, ++looked_at)
         ASSERT_NEAR(*value, 6, 1e-4);
+    EXPECT_GE(looked_at, voxels_in_slab(0.02));
 }
 
 TEST(MapVolume, VectorsAreTurnedAndStretched)
@@ -208,10 +222,13 @@ TEST(MapVolume, VectorsAreTurnedAndStretched)
     };
     const auto turned = vectors();
     EXPECT_EQ(turned->getVectorType(), openvdb::VEC_CONTRAVARIANT_RELATIVE);
-    for (auto value = turned->cbeginValueOn(); value; ++value)
+    std::size_t looked_at = 0;
+    for (auto value = turned->cbeginValueOn(); value; ++value, ++looked_at)
         ASSERT_LT((*value - Vec3s(1, 2, 2)).length(), 1e-4);
+    EXPECT_GE(looked_at, voxels_in_slab(0.07));
     texture->setVectorType(openvdb::VEC_INVARIANT);
     const auto kept = vectors();
+    EXPECT_EQ(kept->activeVoxelCount(), turned->activeVoxelCount());
     for (auto value = kept->cbeginValueOn(); value; ++value)
         ASSERT_LT((*value - Vec3s(1, 2, 4)).length(), 1e-5);
 }
@@ -439,6 +456,10 @@ TEST(MapVolume, RefusesWhatHasNoTiles)
     MapOptions options = voxels_of(0.1);
     options.from_depth = 0.5, options.to_depth = 0.5;
     refused(*texture, options, slab.texture);
+    for (const double size : {1e-8, 1e3, 1e300})
+        EXPECT_THROW(map_volume(*texture, map, slab.texture, voxels_of(size), figures),
+                     GeometryError)
+            << size;
     options = voxels_of(0.1);
     options.repeat_v = 0;
     refused(*texture, options, slab.texture);
@@ -446,6 +467,17 @@ TEST(MapVolume, RefusesWhatHasNoTiles)
         openvdb::BBoxd(Vec3d(0), Vec3d(100)), 0.5, 10);
     texture->setTransform(frustum);
     refused(*texture, voxels_of(0.1), slab.texture);
+}
+
+TEST(MapVolume, CanBeCancelled)
+{
+    const Slab slab;
+    const ShellMap map = slab.map();
+    const auto texture = texture_of([](double, double, double) { return 1.0; });
+    MapFigures figures;
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        map_volume(*texture, map, slab.texture, voxels_of(0.07), figures, interrupter);
+    });
 }
 
 } // namespace

@@ -280,5 +280,18 @@ TEST(TetDistance, RefusesWhatDoesNotFit)
     EXPECT_THROW(next_tet_distances(stack, tets, tets, *wrong, {kDistanceVoxel}), InvalidOption);
 }
 
+TEST(TetDistance, CanBeCancelled)
+{
+    const ShellStack stack = stack_of(test::icosphere(1.0, 1));
+    const TetMesh tets = make_tets(stack);
+    const TetDistances last = tet_distances(stack, tets, {kDistanceVoxel});
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        tet_distances(stack, tets, {kDistanceVoxel}, interrupter);
+    });
+    test::expect_cancelled([&](Interrupter* interrupter) {
+        next_tet_distances(stack, tets, tets, *last.nearest, {kDistanceVoxel}, interrupter);
+    });
+}
+
 } // namespace
 } // namespace vdb_shell

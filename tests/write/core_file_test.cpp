@@ -3,6 +3,7 @@
 
 #include "support/files.h"
 #include "support/filled.h"
+#include "support/verifications.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
@@ -10,12 +11,9 @@
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/write/shell_points.h"
 #include "vdb_shell/write/tet_file.h"
-#include "vdb_shell/write/verify_file.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 // Shells with a filled core, to a .vdb and back, and as one list of tets.
 
@@ -95,26 +93,24 @@ TEST(CoreFile, WithoutACoreNothingIsSaidOfIt)
     EXPECT_TRUE(read_shell_vdb(folder / "shell.vdb").core.empty());
 }
 
-const Verification& entry_of_core(const std::vector<Verification>& all)
+Verification entry_of_core(const ShellFile& file)
 {
-    return *std::find_if(all.begin(), all.end(), [](const Verification& entry) {
-        return entry.what == "core fills the shell";
-    });
+    return test::verification_of(file, "core fills the shell");
 }
 
 TEST(CoreFile, CheckProvesTheSolidAnew)
 {
     for (const ShellStack& stack : core_samples()) {
         ShellFile file = core_file_of(stack);
-        const std::vector<Verification> sound = verify_shell(file);
-        EXPECT_TRUE(entry_of_core(sound).holds) << entry_of_core(sound).detail;
+        const Verification sound = entry_of_core(file);
+        EXPECT_TRUE(sound.holds) << sound.detail;
         file.core.points.back() = Vec3s(0.9f, 0.9f, 0.9f);
-        const std::vector<Verification> moved = verify_shell(file);
-        EXPECT_FALSE(entry_of_core(moved).holds);
-        EXPECT_NE(entry_of_core(moved).detail.find("bad_tets"), std::string::npos);
+        const Verification moved = entry_of_core(file);
+        EXPECT_FALSE(moved.holds);
+        EXPECT_NE(moved.detail.find("bad_tets"), std::string::npos) << moved.detail;
         // The report still tells of one.
         file.core = {};
-        EXPECT_FALSE(entry_of_core(verify_shell(file)).holds);
+        EXPECT_FALSE(entry_of_core(file).holds);
     }
 }
 

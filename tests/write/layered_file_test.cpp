@@ -3,10 +3,10 @@
 
 #include "support/broken_shells.h"
 #include "support/files.h"
+#include "support/verifications.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/layers/cut_layers.h"
 #include "vdb_shell/report/report.h"
-#include "vdb_shell/write/verify_file.h"
 #include "write/hand_made.h"
 
 #include <gtest/gtest.h>
@@ -20,6 +20,7 @@ namespace
 
 using openvdb::Vec3d;
 using test::same_bits;
+using test::verification_of;
 
 /// Three layers of a ball; vertex 0 is pinned in the first layer, vertex 5 in the second, vertex 9
 /// in all.
@@ -49,15 +50,6 @@ ShellFile layered_file_of(const ShellStack& stack)
     report.certificate = certify_stack(stack, PrismTest::twelve_tets);
     file.report_json = report_json(report);
     return file;
-}
-
-Verification about_certificate(const ShellFile& file)
-{
-    for (const Verification& entry : verify_shell(file))
-        if (entry.what == "certificate is as stated")
-            return entry;
-    ADD_FAILURE() << "the certificate was not looked at";
-    return {};
 }
 
 TEST(LayeredFile, ReadsBackBitForBit)
@@ -108,12 +100,12 @@ TEST(LayeredFile, OneLayerBelowTheSurfaceIsSchemaOne)
 TEST(LayeredFile, CheckNamesTheLayerThatFails)
 {
     ShellStack stack = pinned_layers();
-    EXPECT_TRUE(about_certificate(layered_file_of(stack)).holds);
+    EXPECT_TRUE(verification_of(layered_file_of(stack)).holds);
     std::swap(stack.splits[1].order[40][0], stack.splits[1].order[40][1]);
     ShellFile file = layered_file_of(pinned_layers()); // claims to be certified
     file.stack = stack;
     file.tets = make_tets(stack);
-    const Verification entry = about_certificate(file);
+    const Verification entry = verification_of(file);
     EXPECT_FALSE(entry.holds);
     EXPECT_NE(entry.detail.find("layer 1: non_conforming_edges"), std::string::npos)
         << entry.detail;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/write/verify_clearance.h"
 
+#include "support/cancelled.h"
 #include "support/cores.h"
 #include "support/filled.h"
 #include "vdb_shell/obstacles/core_feet.h"
@@ -83,6 +84,13 @@ TEST_F(Clearance, ACoreThatCannotBeInsideIsAFailureWithItsReason)
     EXPECT_FALSE(crossing.holds);
     EXPECT_NE(crossing.detail.find("crosses or touches"), std::string::npos) << crossing.detail;
     EXPECT_FALSE(verify_clearance(file, {ball(0.1, Vec3d(3, 0, 0))}).holds);
+}
+
+TEST_F(Clearance, CanBeCancelled)
+{
+    file.report_json = "{}";
+    test::expect_cancelled(
+        [&](Interrupter* interrupter) { verify_clearance(file, {ball(0.3)}, interrupter); });
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "support/broken_shells.h"
 #include "support/files.h"
+#include "support/verifications.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/report/report.h"
 #include "write/hand_made.h"
@@ -36,11 +37,7 @@ Verification verdict(const ShellFile& file, const char* what = "certificate is a
 {
     const test::TemporaryFolder folder;
     write_shell_vdb(folder / "shell.vdb", file);
-    for (const Verification& entry : verify_shell(read_shell_vdb(folder / "shell.vdb")))
-        if (entry.what == what)
-            return entry;
-    ADD_FAILURE() << "not looked at whether " << what;
-    return {};
+    return test::verification_of(read_shell_vdb(folder / "shell.vdb"), what);
 }
 
 void claim(ShellFile& file, const char* what, const nlohmann::json& value)

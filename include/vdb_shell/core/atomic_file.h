@@ -34,4 +34,9 @@ void remove_temporaries_on_signal() noexcept;
 /// milliseconds. Async-signal-safe.
 bool files_are_committed_now() noexcept;
 
+/// For a handler that is about to end the process: from then on whoever wants to put files in their
+/// places waits for ever. False, and nobody waits, while that is being done already.
+/// Async-signal-safe.
+bool hold_commits() noexcept;
+
 } // namespace vdb_shell

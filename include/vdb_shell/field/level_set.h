@@ -49,9 +49,11 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
 /// The signed distance to a closed mesh: negative inside, name "surface", class level set, world
 /// units, background = exterior band width; the interior band reaches as deep as the options say.
 /// What lies in a cavity (a component of odd nesting depth) is outside.
-/// Throws InvalidOption (see above), GeometryError when no voxel centre lies inside ("voxel larger
-/// than the object") or when the estimated memory is over the limit, Cancelled. Same bits for any
-/// number of threads.
+/// Bodies that cross are one solid. Throws InvalidOption (see above); GeometryError for a mesh
+/// without points or triangles, for voxels larger than the object, smaller than OpenVDB's
+/// transforms can hold or too small for the coordinates' voxel indices, when no voxel centre lies
+/// inside, or when the estimated memory is over the limit; Cancelled. Same bits for any number of
+/// threads.
 FloatGridPtr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
                                Interrupter* interrupter = nullptr);
 

@@ -45,7 +45,8 @@ struct GrowOptions {
     /// whole over some in between: sooner, and as thick. Fewer triangles than the default's have
     /// too little of their shape left then. 0: never.
     std::size_t coarse_from = 5000;
-    /// Upper bound on rounds of free moves, under each prism test. Unset: 40; but after a start on
+    /// Upper bound on rounds of free moves on the surface itself, under each prism test; coarser
+    /// surfaces have their own. Unset: 40; but after a start on
     /// coarser surfaces (50,000 / triangles) squared under Method::certified, and they end sooner,
     /// when one wins little for what it costs, and ask only vertices that can win. Given, growth
     /// takes its time: thicker (docs/measurements/benchmarks.md).

@@ -94,9 +94,10 @@ std::string inspection_json(const std::string& name, const ReadReport& read,
                             const MeshInspection& inspection);
 
 /// Writes the mesh as binary PLY with each point and triangle coloured by its worst defect, and a
-/// property `defects` whose bits name all of them (docs/stages/repair.md). Throws WriteError;
-/// InvalidOption for another extension than .ply.
+/// property `defects` whose bits name all of them (docs/stages/repair.md). Throws what
+/// inspect_mesh throws; InvalidOption for another extension than .ply; WriteError.
 void write_defect_picture(const std::filesystem::path& path, const TriangleMesh& mesh,
-                          const InspectOptions& options = {}, OutputSet* with = nullptr);
+                          const InspectOptions& options = {}, OutputSet* with = nullptr,
+                          Interrupter* interrupter = nullptr);
 
 } // namespace vdb_shell

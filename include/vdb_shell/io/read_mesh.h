@@ -73,4 +73,8 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                 const Placement& placement = {}, OutputSet* with = nullptr);
 
+/// Throws the InvalidOption of write_mesh for a placement that the format has no place for; for
+/// callers that know the placement long before they write.
+void require_place_for(const std::filesystem::path& path, const Placement& placement);
+
 } // namespace vdb_shell

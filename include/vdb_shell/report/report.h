@@ -144,7 +144,7 @@ struct ShellReport {
     double fill = 0; ///< what of shell_volume lies in layers inside / solid_volume
     /// The solid is the surface's own, or with layers outside what the outermost surface encloses.
     Coverage coverage;
-    std::optional<StackCertificate> certificate; ///< nothing when it was not asked for
+    std::optional<StackCertificate> certificate; ///< set by build_shell and build_posed
     /// What holds tet by tet; absent when the shell is certified as a whole.
     std::optional<Overlaps> overlaps;
     std::vector<StageCost> stages;

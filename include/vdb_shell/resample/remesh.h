@@ -81,8 +81,7 @@ struct RemeshResult {
     RemeshReport report;
 };
 
-/// Throws InvalidOption when an option is out of its range, or both or none of length and number
-/// are given.
+/// Throws InvalidOption when an option is out of its range, or both length and number are given.
 void require_sensible(const RemeshOptions& options);
 
 /// The surface in triangles as nearly equilateral and of one size as can be had (Botsch and Kobbelt
@@ -93,7 +92,9 @@ void require_sensible(const RemeshOptions& options);
 /// closed, manifold, consistently oriented, embedded and of the same topology as the input, by
 /// exact tests of each operation. The distance is measured afterwards, both ways
 /// (surface_distance); where it exceeds the tolerance all is done anew with a smaller one; the last
-/// resort is the input itself. Same result for any number of threads. Throws InvalidOption;
+/// resort is the input itself. Same result for any number of threads. Throws what
+/// require_sensible throws, and InvalidOption where neither length nor number is given, and for
+/// 2^30 triangles or more than free memory has room for, before any work;
 /// GeometryError for a surface that is not closed, manifold, oriented and embedded; Cancelled.
 RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
                     Interrupter* interrupter = nullptr);

@@ -38,7 +38,7 @@ struct ShellStack {
     const std::vector<openvdb::Vec3I>& triangles() const { return layers.front().triangles; }
 };
 
-/// The present case: one layer below the surface.
+/// A stack of one layer below the surface.
 ShellStack one_layer(PrismShell shell, PrismSplit split);
 
 /// The surface that the shell stands on, with all its points in their order.

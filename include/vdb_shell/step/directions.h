@@ -39,7 +39,8 @@ struct Directions {
 Directions directions_along(const TriangleMesh& mesh, std::vector<openvdb::Vec3d> outward);
 
 /// Directions of the extrusion lines. The level set is read only for DirectionSource::gradient.
-/// The same seed gives the same directions, whatever the number of threads.
+/// The same seed gives the same directions, whatever the number of threads. Throws InvalidOption
+/// when an option is out of its range.
 Directions compute_directions(const TriangleMesh& mesh, const openvdb::FloatGrid& level_set,
                               const DirectionOptions& options);
 

@@ -19,13 +19,13 @@ namespace vdb_shell
 /// What the user asks of the shell. Nothing is refused for them once a surface has been read, but
 /// for a number of tets that no shell of it has: the report says what was met.
 struct WantedBounds {
-    std::optional<double> dihedral;   ///< radians: no tet has a smaller dihedral angle
-    std::optional<double> amips;      ///< no tet has a larger one; 3 for the regular tet
-    std::optional<double> edge_ratio; ///< longest edge / shortest edge of any tet
+    std::optional<double> min_dihedral_radians; ///< no tet has a smaller dihedral angle
+    std::optional<double> amips;                ///< no tet has a larger one; 3 for the regular tet
+    std::optional<double> edge_ratio;           ///< longest edge / shortest edge of any tet
     std::optional<double> fill;
     std::optional<std::uint64_t> tets; ///< at most so many
 
-    bool any() const { return dihedral || amips || edge_ratio || fill || tets; }
+    bool any() const { return min_dihedral_radians || amips || edge_ratio || fill || tets; }
 };
 OptionList describe(WantedBounds& wanted);
 

@@ -56,7 +56,8 @@ struct CoordinateInputs {
 /// layer. Coordinates are those of ShellMap, so that no borders of tets show. Background 0,
 /// of numbers of triangles and layers -1. In a core there is no prism: numbers are -1, weights and
 /// thickness 0. Same bits for any number of threads. Throws InvalidOption for a voxel size
-/// that is not positive, texture coordinates that are missing, a ramp that is none; Cancelled.
+/// that is not positive, texture coordinates that are missing, a ramp that is none; GeometryError
+/// for voxels that are larger than the shell, or more than free memory has room for; Cancelled.
 std::vector<GridBasePtr> coordinate_grids(const CoordinateInputs& inputs,
                                           const CoordinateOptions& options,
                                           Interrupter* interrupter = nullptr);

@@ -57,9 +57,11 @@ struct MapFigures {
 ///
 /// `corner`: texture coordinates of the corners of the shell's triangles. Voxels have the size of
 /// the options and a centre at the origin. Same bits for any number of threads. Throws
-/// InvalidOption, naming the grid, for a type that is none of FloatGrid, Vec3SGrid and Int32Grid, a
-/// transform that is not linear, a grid without active voxels, and numbers of the options that are
-/// not positive and finite or no range; Cancelled.
+/// InvalidOption: naming the grid, for a type that is none of FloatGrid, Vec3SGrid and Int32Grid, a
+/// transform that is not linear, a grid without active voxels, and texture coordinates that lie
+/// beyond 2^30 voxels of it; for numbers of the options that are out of their range; for
+/// coordinates of another number of triangles than the shell has. GeometryError for voxels as
+/// coordinate_grids. Cancelled.
 GridBasePtr map_volume(const openvdb::GridBase& texture, const ShellMap& map,
                        const std::vector<std::array<openvdb::Vec2d, 3>>& corner,
                        const MapOptions& options, MapFigures& figures,

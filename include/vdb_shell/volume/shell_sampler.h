@@ -19,7 +19,8 @@ class ShellSampler
 {
 public:
     /// Keeps a reference to the map. `voxel_size`: of a grid that says which tet is near; 0: a
-    /// third of the cube root of a tet's mean volume, which takes 27 voxels a tet.
+    /// third of the cube root of a tet's mean volume, which takes 27 voxels a tet. Throws
+    /// InvalidOption for voxels too small for the coordinates.
     explicit ShellSampler(const ShellMap& map, double voxel_size = 0);
     ~ShellSampler();
     ShellSampler(ShellSampler&&) noexcept;

@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import warnings
 
 # kind: int, float, flag, menu, text. `unset` is the value that stands for none at all, which the
 # command then gets no option for. `group` is the folder it stands in.
@@ -38,6 +39,10 @@ class ShellError(Exception):
     def __init__(self, message, status=None):
         super().__init__(message)
         self.status = status
+
+
+class ShellWarning(UserWarning):
+    """All was written, but a bound that was wanted was not met."""
 
 
 def program():
@@ -141,19 +146,30 @@ def run(words, poll=None):
                 process.wait()
         errors.seek(0)
         lines = errors.read().decode(errors="replace").strip().splitlines()
-    # 7: all was written, but the shell is not valid, as one of the raw method may be; the report says so.
-    if process.returncode not in (0, 7):
+    # 6: all was written, but a bound that was wanted was not met; 7: all was written, but the shell is not valid, as one of the
+    # raw method may be. The report says so, which the program itself does not when it is quiet.
+    if process.returncode not in (0, 6, 7):
         said = lines[-1] if lines else f"it ended with status {process.returncode}"
         raise ShellError(said, process.returncode)
 
 
 def build(mesh, outputs, values, poll=None):
-    """Builds and returns the report's figures."""
+    """Builds and returns the report's figures. Bounds that were wanted and not met are told by a ShellWarning."""
     with tempfile.TemporaryDirectory(prefix="vdb_shell_") as folder:
         report = os.path.join(folder, "report.json")
         run(command_line(mesh, outputs, values, report), poll)
         with open(report, encoding="utf-8") as file:
-            return json.load(file)
+            figures = json.load(file)
+    missed = missed_bounds(figures)
+    if missed:
+        warnings.warn(f"{os.path.basename(mesh)}: {missed}", ShellWarning, stacklevel=2)
+    return figures
+
+
+def missed_bounds(report):
+    """Each bound that was wanted and not met, in words."""
+    return ", ".join(f"wanted {bound['bound']} {bound['asked']:.6g}, reached {bound['reached']:.6g}"
+                     for bound in (report.get("wanted") or {}).get("bounds", []) if not bound["met"])
 
 
 def replace_by_shell(geometry, values, new_geometry, poll=None):
@@ -179,8 +195,9 @@ def replace_by_shell(geometry, values, new_geometry, poll=None):
 def summary(report):
     """One line for a node's comment or a log."""
     certificate = report.get("certificate", {})
-    return (f"{report['tets']['tets']} tets, {report['volume']['fill']:.1%} of the solid, "
-            f"{'certified' if certificate.get('certified') else 'not certified'}")
+    parts = [f"{report['tets']['tets']} tets", f"{report['volume']['fill']:.1%} of the solid",
+             "certified" if certificate.get("certified") else "not certified", missed_bounds(report)]
+    return ", ".join(part for part in parts if part)
 
 
 def thickness_of(index, count, low, high):
