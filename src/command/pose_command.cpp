@@ -161,6 +161,10 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
 int status_of_pose(const ShellReport& report, const Context& context)
 {
     const std::string faults = faults_of(report);
+    // A shell there is valid, and lies on the other side than at rest.
+    if (report.mesh.inside_out_components() > 0)
+        context.say(LogLevel::warning, report.source + ": the skin is inside out, as a mirrored "
+                                                       "one is whose triangles were not turned");
     if (faults.empty())
         return success;
     const bool positive = report.signs.inverted.count + report.signs.flat.count == 0 &&

@@ -57,8 +57,8 @@ constexpr double kFirstShare = 0.9;
 constexpr double kSpacing = 0.5;
 // As subdivide(): a shell has three tets for a triangle, and their indices are 32 bits wide.
 constexpr double kMostTriangles = 1U << 30U;
-// Of the surface at work with its neighbours, sizes and samples of the input. Less than was
-// measured, for nothing may be refused that would have gone through.
+// Of the surface at work with its neighbours, sizes and samples of the input. An estimate on the
+// low side, for nothing may be refused that would have gone through.
 constexpr double kLeastBytes = 250;
 
 /// The edge length at which equilateral triangles of the surface's area are so many.

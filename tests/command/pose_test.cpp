@@ -326,6 +326,21 @@ TEST_F(Pose, ASkinThatCrossesItselfIsWarnedOfAndNoFailure)
     EXPECT_EQ(run("check " + file("x.vdb")).status, ExitCode::success);
 }
 
+TEST_F(Pose, AMirroredSkinIsWarnedOf)
+{
+    TriangleMesh ball = icosphere(1.0, 2);
+    const std::string shell = file("ball.vdb");
+    ASSERT_EQ(run("build " + mesh_file("ball.obj", ball) + kCoarse + " -q -o " + shell).status,
+              ExitCode::success);
+    const std::string to = " --report " + file("pose.json");
+    EXPECT_EQ(run("pose " + shell + " " + file("ball.obj") + to).err, "");
+    for (openvdb::Vec3s& p : ball.points)
+        p[0] = -p[0];
+    const Outcome posed = run("pose " + shell + " " + mesh_file("mirrored.obj", ball) + to);
+    EXPECT_NE(posed.err.find("mirrored.obj: the skin is inside out"), std::string::npos)
+        << posed.err;
+}
+
 TEST_F(Pose, ASkinThatLeavesNoPlaceGivesAShellThatIsToldToBeNotValid)
 {
     TriangleMesh ball = icosphere(1.0, 2);
