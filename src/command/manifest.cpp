@@ -76,19 +76,19 @@ template <typename Number>
 Number whole_number(const ordered_json& json, const char* key, const std::string& name)
 {
     const ordered_json& value = json.at(key);
-    constexpr Number low = std::numeric_limits<Number>::min();
-    constexpr Number high = std::numeric_limits<Number>::max();
+    constexpr Number kLow = std::numeric_limits<Number>::min();
+    constexpr Number kHigh = std::numeric_limits<Number>::max();
     bool fits = false;
     // The order matters: an unsigned number is an integer for this library too.
     if (value.is_number_unsigned())
-        fits = value.get<std::uint64_t>() <= std::uint64_t(high);
+        fits = value.get<std::uint64_t>() <= std::uint64_t(kHigh);
     else if (value.is_number_integer())
-        fits = std::is_signed_v<Number> && value.get<std::int64_t>() >= std::int64_t(low);
+        fits = std::is_signed_v<Number> && value.get<std::int64_t>() >= std::int64_t(kLow);
     if (!fits)
         throw ReadError(
             name + ": " + key + " is " +
             shown_in_part(value.dump(-1, ' ', false, ordered_json::error_handler_t::replace)) +
-            ", must be a whole number, " + std::to_string(low) + " to " + std::to_string(high));
+            ", must be a whole number, " + std::to_string(kLow) + " to " + std::to_string(kHigh));
     return value.get<Number>();
 }
 

@@ -57,7 +57,7 @@ std::string joined(const std::vector<std::string>& words)
 /// bound, since six of them are no limit that could be kept.
 std::string range_in_type(const Option& option)
 {
-    const std::string range = option.range.text();
+    std::string range = option.range.text();
     if (option.range.high && *option.range.high <= option.largest)
         return range;
     // 2^64 - 1 is no double: the next one is 2^64, which would wrap around.
