@@ -18,18 +18,11 @@ import subprocess
 import sys
 import tempfile
 
+from faults import require, status_of
+
 # The page's table, not what the machine calls them.
 STATUS = {signal.SIGHUP: 129, signal.SIGINT: 130, signal.SIGPIPE: 141, signal.SIGTERM: 143, signal.SIGXCPU: 152}
 OLD = b"what stood here before"
-
-
-class Violation(Exception):
-    pass
-
-
-def require(condition, text):
-    if not condition:
-        raise Violation(text)
 
 
 def is_progress(line):
@@ -85,32 +78,27 @@ def main():
     command, mesh = sys.argv[1:]
     # 540,000 triangles: many seconds before there is a shell, so that no signal comes too late.
     line = [command, "--progress", "json", "build", mesh, "--subdivide", "3", "--samples", "0", "-q"]
-    try:
-        with tempfile.TemporaryDirectory() as work:
-            folder = pathlib.Path(work)
-            for number, status in STATUS.items():
-                reason = ": the limit on processor time is reached" if number == signal.SIGXCPU else ""
-                said = [] if number == signal.SIGPIPE else [f"vdb_shell: stopped by {number.name}{reason}\n"]
-                stopped(line, folder, number.name, lambda process, n=number: process.send_signal(n), status, said)
+    with tempfile.TemporaryDirectory() as work:
+        folder = pathlib.Path(work)
+        for number, status in STATUS.items():
+            reason = ": the limit on processor time is reached" if number == signal.SIGXCPU else ""
+            said = [] if number == signal.SIGPIPE else [f"vdb_shell: stopped by {number.name}{reason}\n"]
+            stopped(line, folder, number.name, lambda process, n=number: process.send_signal(n), status, said)
 
-            def hang_up_and_end(process):
-                process.send_signal(signal.SIGHUP)
-                # One line may have been on its way; after a second one it works on.
-                for _ in range(2):
-                    line = process.stderr.readline()
-                    require(is_progress(line), f"SIGHUP ignored: {line!r}")
-                process.send_signal(signal.SIGTERM)
+        def hang_up_and_end(process):
+            process.send_signal(signal.SIGHUP)
+            # One line may have been on its way; after a second one it works on.
+            for _ in range(2):
+                line = process.stderr.readline()
+                require(is_progress(line), f"SIGHUP ignored: {line!r}")
+            process.send_signal(signal.SIGTERM)
 
-            stopped(line, folder, "SIGHUP ignored, then SIGTERM", hang_up_and_end, STATUS[signal.SIGTERM],
-                    ["vdb_shell: stopped by SIGTERM\n"], ignored=[signal.SIGHUP])
-            stopped(line, folder, "a second of processor time", lambda process: None, STATUS[signal.SIGXCPU],
-                    ["vdb_shell: stopped by SIGXCPU: the limit on processor time is reached\n"], seconds=1)
-            unread_pipe(command)
-    except Violation as violation:
-        print("VIOLATION:", violation)
-        return 1
-    return 0
+        stopped(line, folder, "SIGHUP ignored, then SIGTERM", hang_up_and_end, STATUS[signal.SIGTERM],
+                ["vdb_shell: stopped by SIGTERM\n"], ignored=[signal.SIGHUP])
+        stopped(line, folder, "a second of processor time", lambda process: None, STATUS[signal.SIGXCPU],
+                ["vdb_shell: stopped by SIGXCPU: the limit on processor time is reached\n"], seconds=1)
+        unread_pipe(command)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(status_of(main))
