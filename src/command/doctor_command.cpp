@@ -12,6 +12,7 @@
 
 #include "command/exit_code.h"
 #include "command/help.h"
+#include "core/available_memory.h"
 #include "core/parallel.h"
 #include "fill/outside_program.h"
 #include "io/mesh_formats.h"
@@ -56,13 +57,12 @@ void print_folder(std::ostream& out, const char* what, const fs::path& folder)
 {
     std::error_code unknown;
     const fs::space_info space = fs::space(folder, unknown);
-    constexpr double kGib = 1024.0 * 1024 * 1024;
     std::ostringstream text;
     text.precision(3);
     text << folder.string()
          << (::access(folder.c_str(), W_OK) == 0 ? ", can be written" : ", CANNOT be written");
     if (!unknown)
-        text << ", " << double(space.available) / kGib << " GiB free";
+        text << ", " << double(space.available) / kBytesPerGib << " GiB free";
     print_row(out, what, text.str());
 }
 

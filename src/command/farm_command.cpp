@@ -87,11 +87,13 @@ OptionList task_options(FarmArguments& a)
                 .within(above(0).at_most(FarmLimits::kMostMinutes)),
             option("", limits.at_once, "--at-once", "Tasks at the same time; 0 is as it comes")
                 .in(Unit::count)
-                .within(at_least(0)),
+                .within(at_least(0))
+                .needing("--engine slurm"),
             option("", limits.retries, "--retries",
                    "How often a task that was killed is put back into the queue")
                 .in(Unit::count)
-                .within(at_least(0))};
+                .within(at_least(0))
+                .needing("--engine slurm")};
 }
 
 /// What neither an engine nor a shell gives a meaning to.

@@ -9,6 +9,7 @@
 
 #include "command/call.h"
 #include "command/cost_model.h"
+#include "core/available_memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +80,7 @@ std::size_t chunk_for(const StepCost& cost, std::size_t steps)
 
 void set_limits(FarmJob& job, const StepCost& cost)
 {
-    constexpr double kSecondsPerMinute = 60, kGib = 1024.0 * 1024 * 1024;
+    constexpr double kSecondsPerMinute = 60;
     std::size_t most = 0, at_once = 1;
     for (const FarmTask& task : job.tasks) {
         std::size_t steps = 0;
@@ -98,7 +99,7 @@ void set_limits(FarmJob& job, const StepCost& cost)
                        FarmLimits::kMostMinutes);
     if (!job.limits.memory_gib)
         job.limits.memory_gib =
-            std::min(kMemoryMargin * double(at_once) * cost.memory / kGib + kMoreMemoryGib,
+            std::min(kMemoryMargin * double(at_once) * cost.memory / kBytesPerGib + kMoreMemoryGib,
                      FarmLimits::kMostMemoryGib);
 }
 

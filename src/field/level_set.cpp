@@ -34,8 +34,6 @@ using openvdb::Vec3d;
 namespace
 {
 
-constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
-
 // The stencil of a point that is at most `interior_depth` deep reads voxels up to a cell diagonal
 // and the one voxel of the central difference away, 1.73 + 1 voxels.
 constexpr double kStencilVoxels = 3.0;
@@ -100,10 +98,11 @@ void check_memory(const TriangleMesh& mesh, double voxel, const LevelSetOptions&
 {
     const double estimate = estimate_level_set_bytes(mesh, voxel, options);
     const double limit =
-        options.max_memory_gib ? *options.max_memory_gib * kGib : available_memory();
+        options.max_memory_gib ? *options.max_memory_gib * kBytesPerGib : available_memory();
     if (!(estimate <= limit))
         fail<GeometryError>("level set: voxel size ", voxel, " needs an estimated ",
-                            estimate / kGib, " GiB, over the limit of ", limit / kGib,
+                            estimate / kBytesPerGib, " GiB, over the limit of ",
+                            limit / kBytesPerGib,
                             " GiB; enlarge the voxels or bound the depth of the band, ",
                             band_of(mesh, voxel, options).exterior,
                             " voxels outside (--exterior-depth, --thickness)");

@@ -8,6 +8,7 @@
 
 #include "fill/outside_program.h"
 
+#include "core/temporary_file.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/fill/fill_core.h"
 
@@ -147,9 +148,11 @@ private:
 
 TemporaryFolder::TemporaryFolder()
 {
-    std::error_code failure;
-    const fs::path base = fs::temp_directory_path(failure);
-    std::string name = ((failure ? fs::path("/tmp") : base) / "vdb_shell.XXXXXX").string();
+    std::error_code none;
+    const fs::path base = fs::temp_directory_path(none);
+    if (none)
+        throw WriteError("files for another program: " + no_temporary_folder(none));
+    std::string name = (base / "vdb_shell.XXXXXX").string();
     // Makes the folder with rights for its owner alone, under a name that nobody could have taken
     // before.
     if (!::mkdtemp(name.data()))

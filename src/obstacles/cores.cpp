@@ -222,6 +222,7 @@ OptionList describe(CoreOptions& o)
         "Cores",
         {option("distance", o.distance, "--core-distance",
                 "The shell stays at least so far from the surfaces of --core FILE, world units")
+             .needing("--core")
              .in(Unit::world_length)
              .within(at_least(0)),
          option("reach", o.reach, "--core-reach",

@@ -98,10 +98,10 @@ void require_possible(const RemeshOptions& options, double area)
     if (!(count < kMostTriangles))
         refuse("must give less than 2^30 triangles");
     const double bytes = kLeastBytes * count, free = available_memory();
-    constexpr double kGib = 1024.0 * 1024 * 1024;
     if (bytes > free)
-        refuse("must not need more than the ", free / kGib, " GiB of memory that are free, and ",
-               "would need ", bytes / kGib, " or more");
+        refuse("must not need more than the ", free / kBytesPerGib,
+               " GiB of memory that are free, and ", "would need ", bytes / kBytesPerGib,
+               " or more");
 }
 
 /// What all attempts have in common.

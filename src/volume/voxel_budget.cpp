@@ -135,10 +135,9 @@ void require_voxels_fit(const TetMesh& tets, double voxel_size, double bytes,
     const double voxels =
         std::min(extent.solid + boundary_area(tets) / (voxel_size * voxel_size) * kLeafReach, box);
     const double estimate = voxels * bytes + 0.5 * jobs;
-    constexpr double kGib = 1024.0 * 1024 * 1024;
     if (!(estimate <= free))
         fail<GeometryError>(name, ": voxel size ", voxel_size, " needs an estimated ",
-                            estimate / kGib, " GiB, over the ", free / kGib,
+                            estimate / kBytesPerGib, " GiB, over the ", free / kBytesPerGib,
                             " GiB that are free; enlarge the voxels (--voxel-size)");
 }
 

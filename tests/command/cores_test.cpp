@@ -121,7 +121,7 @@ TEST_F(Cores, WhatCannotBeIsRefused)
         build + " --core " + mesh_file("thorn.obj", translated(icosphere(0.2, 1), {0.9, 0, 0})),
         ExitCode::geometry_error, {"core thorn.obj crosses or touches the surface", "triangle"});
     expect_refusal(build + " --core-distance 0.1", ExitCode::usage_error,
-                   {"--core-distance needs --core FILE"});
+                   {"--core-distance needs --core"});
     expect_refusal(build + " --method raw --core " + ball, ExitCode::usage_error, {"--method"});
     expect_refusal(build + " --side both --core " + ball, ExitCode::usage_error, {"--side"});
     expect_refusal("build " + sphere + kCoarse + " -q -o " + ball + " --core " + ball,

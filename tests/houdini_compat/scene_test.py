@@ -210,12 +210,12 @@ class Scene(unittest.TestCase):
         self.assertGreater(os.path.getsize(output), 0)
         self.assertEqual([(bound["bound"], bound["met"]) for bound in report["wanted"]["bounds"]], [("amips", False)])
         self.assertRegex(tool.summary(report), r"certified, wanted amips 3, reached [\d.]+$")
-        # The node has its shell all the same.
+        # The node has its shell all the same, and a warning.
         node = self.node(**values)
         node.geometry().mesh_file = MESH
         self.addCleanup(setattr, tool, "MESH_EXTENSION", tool.MESH_EXTENSION)
         tool.MESH_EXTENSION = ".obj"
-        with self.assertWarns(tool.ShellWarning):
+        with self.assertWarns(tool.ShellWarning), self.assertRaisesRegex(hou.NodeWarning, r"^wanted amips 3, reached"):
             sop.cook(node)
         self.assertEqual([name for name, _ in node.geometry()._contents], ["shell.bgeo.sc"])
 

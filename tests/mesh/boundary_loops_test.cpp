@@ -3,18 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <ctime>
-
 namespace
 {
 
 using namespace vdb_shell;
-
-/// Of the processor, for the machine may have other work.
-double seconds_since(std::clock_t start)
-{
-    return double(std::clock() - start) / CLOCKS_PER_SEC;
-}
 
 TEST(BoundaryWalks, PartWhereLoopsMeetInAPoint)
 {
@@ -34,11 +26,10 @@ TEST(BoundaryWalks, EndAtPointsOfAnOddNumberOfEdges)
     EXPECT_EQ(walks[0].closed + walks[1].closed, 1);
 }
 
-// A search along the path for each point would take some hours here.
+// A search along the path for each point would take some hours here, and CTest end it.
 TEST(BoundaryWalks, TakeALoopOfAMillionEdgesAndAPointOfAMillion)
 {
     constexpr std::uint32_t kEdges = 1'000'000;
-    const std::clock_t start = std::clock();
     std::vector<Edge> ring{{0, kEdges - 1}};
     for (std::uint32_t i = 1; i < kEdges; ++i)
         ring.push_back({i - 1, i});
@@ -52,7 +43,6 @@ TEST(BoundaryWalks, TakeALoopOfAMillionEdgesAndAPointOfAMillion)
         petals.push_back({i, i + 1});
     }
     EXPECT_EQ(boundary_walks(petals).size(), kEdges / 2);
-    EXPECT_LT(seconds_since(start), 30);
 }
 
 } // namespace

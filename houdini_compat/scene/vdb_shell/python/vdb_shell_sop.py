@@ -16,10 +16,14 @@ def cook(node):
               if node.parm(parameter.name)}
     try:
         with hou.InterruptableOperation("Building the shell", open_interrupt_dialog=True) as operation:
-            tool.replace_by_shell(node.geometry(), values, hou.Geometry,
-                                  lambda: operation.updateProgress(0.0))
+            report = tool.replace_by_shell(node.geometry(), values, hou.Geometry,
+                                           lambda: operation.updateProgress(0.0))
     except tool.ShellError as error:
         raise hou.NodeError(str(error))
+    missed = tool.missed_bounds(report)
+    if missed:
+        # Last, so that the node has its shell.
+        raise hou.NodeWarning(missed)
 
 
 def value_of(node, parameter):
