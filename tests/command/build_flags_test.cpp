@@ -44,7 +44,7 @@ const std::map<std::string, Given>& chosen_values()
         {"--wrap-resolution", {"--wrap-resolution 16", 16}},
         {"--decimate-to", {"--decimate-to 60", 60}},
         {"--remesh-to", {"--remesh-to 60", 60}},
-        {"--core-distance", {"--core-distance 0.1 --core FOLDER/core.obj", 0.1}},
+        {"--core-distance", {"--core-distance 0.1", 0.1}},
         {"--core", {"--core stitched --taper", "stitched"}},
         {"--stop-test", {"--stop-test distance", "distance"}}, // none wants a thickness
         {"--want-tets", {"--want-tets 100", 100}}};
