@@ -23,6 +23,8 @@ from halves import read_halves
 from runs import build, replace_tables, table
 
 EXTENSIONS = [".obj", ".off"]
+# Y: no new points on the surface, as our shells have none.
+TETGEN = ["-pY", "-p"]
 
 
 def arguments():
@@ -51,8 +53,8 @@ def meshes_of(options):
     return [entry for entry in found if entry[2] is not None], note
 
 
-def tetgen_seconds(mesh):
-    """Processor and wall time of tetgen -pY on the same surface; nothing where it is not installed or fails."""
+def tetgen_seconds(mesh, flags):
+    """Processor and wall time of tetgen on the same surface; nothing where it is not installed or fails."""
     if not shutil.which("tetgen"):
         return None
     with tempfile.TemporaryDirectory() as folder:
@@ -70,7 +72,7 @@ def tetgen_seconds(mesh):
         else:
             shutil.copy(mesh, surface)
         before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        done = subprocess.run(["tetgen", "-pYQ", surface.name], cwd=folder, capture_output=True, check=False)
+        done = subprocess.run(["tetgen", flags + "Q", surface.name], cwd=folder, capture_output=True, check=False)
         wall, after = time.monotonic() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
         if done.returncode != 0:
             return None
@@ -89,37 +91,48 @@ def row_of(mesh, command, before, wall, flags):
     now = build(command, mesh, flags)
     if now["exit"] != 0:
         raise SystemExit(f"{mesh}: {now['message']}")
-    row = {"now": now, "then": build(before, mesh, flags) if before else None, "tetgen": tetgen_seconds(mesh)}
-    if wall and row["tetgen"]:
-        row["wall"] = (min(wall_seconds(command, mesh, flags) for _ in range(2)) /
-                       min(row["tetgen"][1], tetgen_seconds(mesh)[1]))
+    row = {"now": now, "then": build(before, mesh, flags) if before else None, "time": {}, "wall": {}}
+    ours = min(wall_seconds(command, mesh, flags) for _ in range(2)) if wall else None
+    for name in TETGEN:
+        took = tetgen_seconds(mesh, name)
+        row["time"][name] = now["seconds"] / took[0] if took else None
+        row["wall"][name] = ours / min(took[1], tetgen_seconds(mesh, name)[1]) if took and wall else None
     return row
 
 
+def ratio(value):
+    return "-" if value is None else f"{value:.2f}"
+
+
+def mean_of(values):
+    known = [value for value in values if value is not None]
+    return statistics.mean(known) if known else None
+
+
 def cells(name, half, row):
-    now, then, tetgen = row["now"], row["then"], row["tetgen"]
+    now, then = row["now"], row["then"]
     made = [name, half, f"{now['triangles']:,}", f"{now['fill']:.4f}", str(now["pinned"]),
             str(now["demanded_pins"]), str(now["without_tet"]), "yes" if now["certified"] else "no",
-            f"{now['seconds'] / tetgen[0]:.2f}" if tetgen else "-", f"{row['wall']:.2f}" if "wall" in row else "-"]
+            *(ratio(row[kind][other]) for kind in ("time", "wall") for other in TETGEN)]
     if then:
-        made += [f"{then['fill']:.4f}", str(then["pinned"]), f"{now['seconds'] / then['seconds']:.2f}"]
+        made += [f"{then['fill']:.4f}", str(then["pinned"]), ratio(now["seconds"] / then["seconds"])]
     return made
 
 
 def means(half, rows):
     now = [row["now"]["fill"] for row in rows]
-    made = [f"mean of {half}", half, "", f"{statistics.mean(now):.4f}", "", "", "", "", "",
-            f"{statistics.mean(row['wall'] for row in rows):.2f}" if all("wall" in row for row in rows) else ""]
+    made = [f"mean of {half}", half, "", f"{statistics.mean(now):.4f}", "", "", "", "",
+            *(ratio(mean_of([row[kind][other] for row in rows])) for kind in ("time", "wall") for other in TETGEN)]
     if rows[0]["then"]:
         made += [f"{statistics.mean(row['then']['fill'] for row in rows):.4f}", "",
-                 f"{statistics.mean(row['now']['seconds'] / row['then']['seconds'] for row in rows):.2f}"]
+                 ratio(statistics.mean(row["now"]["seconds"] / row["then"]["seconds"] for row in rows))]
     return made
 
 
 def main():
     options = arguments()
     head = ["mesh", "half", "triangles", "fill", "pins", "demanded", "without a tet", "certified",
-            "time / TetGen -pY", "wall time / TetGen -pY"]
+            *(f"{word} / TetGen {name}" for word in ("time", "wall time") for name in TETGEN)]
     if options.before:
         head += ["fill before", "pins before", "time / before"]
     lines, by_half = [], {}

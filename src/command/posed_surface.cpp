@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes files of a surface in a pose, gives its points in the order of the shell's vertices. That
-// the triangles are the same, one for one, proves that the points are; where they are not, ids say
-// which point is which, whatever their order.
+// the triangles are the same, one for one, proves that the points are; so do polygons that fill the
+// same outlines, for a polygon that is not convex in every pose is not cut alike in all of them.
+// Where neither holds, ids say which point is which, whatever their order.
 
 #include "command/posed_surface.h"
 
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/pose/bind_surface.h"
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -52,21 +55,58 @@ struct Wanted {
                         "where the shell's was repaired, wrapped or remeshed");
 }
 
+using DirectedEdge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Sides of triangles [begin, end) that no other of them has the other way round, sorted.
+std::vector<DirectedEdge> outline_of(const std::vector<openvdb::Vec3I>& triangles,
+                                     std::size_t begin, std::size_t end)
+{
+    std::vector<DirectedEdge> sides, outline;
+    for (std::size_t t = begin; t < end; ++t)
+        for (int k = 0; k < 3; ++k)
+            sides.emplace_back(triangles[t][k], triangles[t][(k + 1) % 3]);
+    std::sort(sides.begin(), sides.end());
+    std::copy_if(sides.begin(), sides.end(), std::back_inserter(outline),
+                 [&](const DirectedEdge& side) {
+                     return !std::binary_search(sides.begin(), sides.end(),
+                                                DirectedEdge{side.second, side.first});
+                 });
+    return outline;
+}
+
+/// Whether each of the file's polygons has the outline of the wanted triangles in its place.
+bool same_polygons(const ReadResult& read, const std::vector<openvdb::Vec3I>& wanted)
+{
+    const std::vector<openvdb::Vec3I>& triangles = read.mesh.triangles;
+    const std::vector<std::uint32_t>& first = read.first_triangles;
+    for (std::size_t face = 0; face < first.size(); ++face) {
+        const std::size_t begin = first[face];
+        const std::size_t end = face + 1 < first.size() ? first[face + 1] : triangles.size();
+        if (!std::equal(&triangles[begin], &triangles[begin] + (end - begin), &wanted[begin]) &&
+            outline_of(triangles, begin, end) != outline_of(wanted, begin, end))
+            return false;
+    }
+    return !first.empty();
+}
+
 /// Equal vertices of the file are merged or not, whichever gives the triangles that are wanted: in
 /// a pose other vertices can be equal than at rest. Standard input can be read only once.
 std::vector<Vec3s> read_points(const PosedSurface& posed, const Placement& placement,
                                const Wanted& wanted)
 {
-    const auto fits = [&](const TriangleMesh& mesh) {
-        return mesh.points.size() == wanted.vertices && mesh.triangles == wanted.triangles;
+    const auto fits = [&](const ReadResult& read) {
+        const std::vector<openvdb::Vec3I>& triangles = read.mesh.triangles;
+        return read.mesh.points.size() == wanted.vertices &&
+               triangles.size() == wanted.triangles.size() &&
+               (triangles == wanted.triangles || same_polygons(read, wanted.triangles));
     };
     ReadResult read = read_placed(posed.mesh, posed.format, placement, true);
-    if (fits(read.mesh))
+    if (fits(read))
         return std::move(read.mesh.points);
     // Only standard input has another format, and it is at its end.
     if (posed.format == InputFormat::by_extension) {
         read = read_placed(posed.mesh, posed.format, placement, false);
-        if (fits(read.mesh))
+        if (fits(read))
             return std::move(read.mesh.points);
     }
     // Ids are points' own names, which exporters keep when they write points in another order from

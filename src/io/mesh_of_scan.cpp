@@ -42,7 +42,9 @@ void append_faces(const FileScan& scan, ReadResult& result)
     std::size_t file_face = 0;
     Polygon polygon;
     // A polygon of n corners makes n - 2 triangles.
-    result.mesh.triangles.reserve(scan.corners.size() - 2 * scan.polygon_sizes.size());
+    const std::size_t most = scan.corners.size() - 2 * scan.polygon_sizes.size();
+    result.mesh.triangles.reserve(most);
+    const bool only_triangles = most == scan.polygon_sizes.size();
     for (const std::uint32_t size : scan.polygon_sizes) {
         // Both lists are ascending and together hold every face once. Faces that the scan left out
         // are passed before the next polygon, so `file_face` is the number that the file gives it.
@@ -54,6 +56,9 @@ void append_faces(const FileScan& scan, ReadResult& result)
         // Welding may have made two corners of a polygon the same.
         if (tidy_polygon(polygon)) {
             result.report.polygons_triangulated += polygon.size() > 3;
+            if (!only_triangles)
+                result.first_triangles.push_back(
+                    static_cast<std::uint32_t>(result.mesh.triangles.size()));
             append_triangles(scan.points, polygon, result.mesh.triangles);
         } else {
             skipped.push_back(file_face);

@@ -3,11 +3,13 @@
 #include "support/bends.h"
 
 #include "core/grid_instances.h"
+#include "vdb_shell/io/read_mesh.h"
 #include "vdb_shell/write/vdb_file.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <sstream>
@@ -196,6 +198,47 @@ TEST_F(Pose, OtherTrianglesNeedTheSurfaceAtRest)
                  expected = turn(rest).points;
     for (std::size_t v = 0; v < skin.size(); ++v)
         EXPECT_LT((skin[v] - expected[v]).length(), 1e-5f);
+}
+
+/// Quads, each of which is two triangles of the mesh.
+std::string write_quads(const std::filesystem::path& path, const TriangleMesh& mesh)
+{
+    std::ostringstream out;
+    for (const openvdb::Vec3s& p : mesh.points)
+        out << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 2) {
+        const openvdb::Vec3I &a = mesh.triangles[t], &b = mesh.triangles[t + 1];
+        out << "f " << a[0] + 1 << ' ' << a[1] + 1 << ' ' << a[2] + 1 << ' ' << b[2] + 1 << '\n';
+    }
+    write_bytes(path, out.str());
+    return path.string();
+}
+
+TEST_F(Pose, PolygonsMayBeCutOtherwiseThanAtRest)
+{
+    TriangleMesh box = gridded_box({0, 0, 0}, {6, 6, 6}, 6);
+    ASSERT_EQ(run("build " + write_quads(folder / "quads.obj", box) + kCoarse + " -q -o " +
+                  file("quads.vdb"))
+                  .status,
+              ExitCode::success);
+    // Beyond the diagonal of a quad beside it, which is not convex then.
+    const openvdb::Vec3s inside(3, 3, 6);
+    *std::find(box.points.begin(), box.points.end(), inside) = {3.7F, 3.7F, 6};
+    const std::string posed = write_quads(folder / "posed.obj", box);
+    ASSERT_NE(read_mesh(posed).mesh.triangles, read_mesh(file("quads.obj")).mesh.triangles);
+    ASSERT_EQ(run("pose " + file("quads.vdb") + " " + posed + " -q -o " + file("p.vdb")).status,
+              ExitCode::success);
+    const ShellFile shell = read_shell_vdb(folder / "p.vdb");
+    EXPECT_EQ(shell.stack.surface(shell.stack.skin), box.points);
+
+    // Quads of other vertices are another surface, as many as there may be.
+    std::rotate(box.points.begin(), box.points.begin() + 1, box.points.end());
+    for (openvdb::Vec3I& t : box.triangles)
+        for (int k = 0; k < 3; ++k)
+            t[k] = (t[k] + std::uint32_t(box.points.size()) - 1) % std::uint32_t(box.points.size());
+    expect_refusal("pose " + file("quads.vdb") + " " + write_quads(folder / "other.obj", box) +
+                       " -q -o " + file("o.vdb"),
+                   ExitCode::usage_error, {"other.obj", "not those of the surface of"});
 }
 
 /// The mesh's points back to front, as text, with ids.

@@ -196,6 +196,16 @@ TEST_F(ReadMesh, triangulates_polygons_without_folds)
     EXPECT_TRUE(ring.report.skipped_faces.empty());
 }
 
+TEST_F(ReadMesh, says_where_the_triangles_of_each_face_begin)
+{
+    const std::string points = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 6 0\n";
+    // The second face has two different corners and is left out.
+    const ReadResult mixed = read("m.obj", points + "f 1 2 3\nf 1 1 2\nf 1 2 3 5 4\nf 1 3 2\n");
+    EXPECT_EQ(mixed.first_triangles, (std::vector<std::uint32_t>{0, 1, 4}));
+    EXPECT_EQ(mixed.mesh.triangles.size(), 5U);
+    EXPECT_TRUE(read("t.obj", points + "f 1 2 3\nf 1 3 2\n").first_triangles.empty());
+}
+
 TEST_F(ReadMesh, survives_a_polygon_of_very_many_corners)
 {
     std::string text, face = "f";

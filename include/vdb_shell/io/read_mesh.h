@@ -52,6 +52,9 @@ struct ReadResult {
     /// Houdini geometry, which name a vertex whatever its place in the file; of merged vertices
     /// that of the first. Empty where the file has none, or none of whole numbers.
     std::vector<std::int64_t> ids;
+    /// By face of the file that was kept, its first triangle; a face's triangles stand one after
+    /// the other. Empty where each face is one triangle.
+    std::vector<std::uint32_t> first_triangles;
 };
 
 /// Reads OBJ, PLY, OFF or STL by extension; docs/mesh_files.md lists the forms that are understood.
