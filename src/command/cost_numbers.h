@@ -5,7 +5,7 @@
 
 // Made by docs/scripts/estimate_model.py, of which every second mesh tuned them; docs/farm.md has
 // their errors. On one thread, Debian 12:
-// - builds: 146 on 2026-11-23, release build, 2 hardware threads (AMD EPYC)
+// - builds: 145 on 2026-11-27, release build, 2 hardware threads (AMD EPYC)
 // - poses: 70 on 2026-11-24, development build, 2 hardware threads (AMD EPYC)
 // - deformations: 70 on 2026-11-24, development build, 2 hardware threads (AMD EPYC)
 
@@ -19,10 +19,10 @@ using CostNumbers = std::array<double, 6>;
 
 inline constexpr double kCoarseFrom = 5000;
 /// Processor seconds, bytes.
-inline constexpr CostNumbers kSecondsNumbers{0.1397,    0.0001199, 5.697e-05,
-                                             7.166e-07, 2.379e-08, 1.154e-05};
-inline constexpr CostNumbers kMemoryNumbers{5.428e+07, 1369, 1502, 185, 4.4, 1161};
-inline constexpr CostNumbers kVdbNumbers{8.287e+04, 284.7, 199.9, 28.71, 0.425, 299.3};
+inline constexpr CostNumbers kSecondsNumbers{0.1151,    7.395e-05, 5.133e-05,
+                                             4.971e-07, 1.092e-08, 1.463e-05};
+inline constexpr CostNumbers kMemoryNumbers{5.838e+07, 1364, 1135, 161, 4.761, 1097};
+inline constexpr CostNumbers kVdbNumbers{7.028e+04, 289.3, 186.3, 30.47, 0.3395, 267.5};
 inline constexpr CostNumbers kPoseSecondsNumbers{0.0974,    5.456e-05, 2.158e-05,
                                                  2.416e-06, 0,         1.803e-05};
 inline constexpr CostNumbers kPoseMemoryNumbers{7.535e+07, 0, 1882, 183.2, 64.5, 1587};
