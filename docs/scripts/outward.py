@@ -9,6 +9,7 @@ Each build is one run on one thread. Ends with an error where a shell is not cer
 import sys
 
 from runs import arguments, build, replace_tables, table
+from triangles import read_obj
 
 MESHES = ["paper/cow", "paper/teapot", "paper/knot", "paper/bunny_low_resolution", "paper/lamp"]
 COMMON = ["--resolution", "128", "--samples", "20000"]
@@ -18,8 +19,7 @@ RUNS = {"outward 0.05": ("outward", "0.05"), "outward, default": ("outward", Non
 
 
 def diagonal(mesh):
-    points = [[float(word) for word in line.split()[1:4]] for line in mesh.read_text().splitlines()
-              if line.startswith("v ")]
+    points, _ = read_obj(mesh)
     return sum((max(axis) - min(axis)) ** 2 for axis in zip(*points)) ** 0.5
 
 

@@ -50,12 +50,12 @@ def run(command, flags, output, hidden):
                 "seconds": usage.ru_utime + usage.ru_stime}
 
 
-def build(command, mesh, flags, read=None):
-    """One build: the run, with the figures of its report; `read` picks them."""
+def build(command, mesh, flags, read=None, written=(0,)):
+    """One build: the run, with the figures of its report; `read` picks them. `written`: statuses with a report."""
     with tempfile.TemporaryDirectory() as folder:
         report = pathlib.Path(folder) / "report.json"
         done = run(command, ["build", "-q", *flags, "--report", str(report), str(mesh)], os.devnull, mesh)
-        if done["exit"] == 0:
+        if done["exit"] in written:
             done.update((read or figures)(json.loads(report.read_text())))
         return done
 

@@ -50,8 +50,8 @@ TriangleMesh faces_of_tets(std::uint32_t cells)
     return mesh;
 }
 
-// Each of these surfaces takes a second or two. In time that grows with the square they would take
-// longer than CTest waits for a test.
+// Each of these surfaces takes a second or two; in time that grows with the square it would be
+// minutes to hours, of which CTest's limit for a test allows ten minutes.
 
 TEST(RepairCost, FacesOfATetMeshEnd)
 {
