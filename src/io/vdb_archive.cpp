@@ -11,6 +11,7 @@
 #include "io/vdb_archive.h"
 
 #include "core/parallel.h"
+#include "vdb_shell/core/digest.h"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Compression.h>
@@ -188,12 +189,14 @@ public:
         setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
     }
 
-    void write_start(std::ostream& out, const openvdb::MetaMap& metadata, std::size_t grids) const
+    std::string head(const openvdb::MetaMap& metadata, std::size_t grids) const
     {
-        writeHeader(out, /*seekable=*/true);
-        metadata.writeMeta(out);
+        Stream stream{StreamMetadata()};
+        writeHeader(stream.out, /*seekable=*/true);
+        metadata.writeMeta(stream.out);
         const auto count = std::int32_t(grids);
-        out.write(reinterpret_cast<const char*>(&count), sizeof count);
+        stream.out.write(reinterpret_cast<const char*>(&count), sizeof count);
+        return stream.bytes.take();
     }
 
     GridBytes bytes_of(const GridBase& grid) const
@@ -239,21 +242,35 @@ void write_bytes(std::ostream& out, const std::string& bytes)
     out.write(bytes.data(), std::streamsize(bytes.size()));
 }
 
-void write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
+/// The descriptor of a grid that stands at a place of the file.
+std::string descriptor_bytes(std::int64_t place, const GridBase& grid, const GridBytes& bytes)
 {
+    Stream stream{StreamMetadata()};
     openvdb::io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
-    descriptor.writeHeader(out);
+    descriptor.writeHeader(stream.out);
     // The grid begins behind its three positions, which are written before it.
     constexpr std::int64_t kPositionsSize = 3 * sizeof(std::int64_t);
-    descriptor.setGridPos(std::int64_t(out.tellp()) + kPositionsSize);
+    descriptor.setGridPos(place + std::int64_t(stream.out.tellp()) + kPositionsSize);
     descriptor.setBlockPos(descriptor.getGridPos() +
                            std::int64_t(bytes.head.size() + bytes.topology.size()));
     descriptor.setEndPos(descriptor.getBlockPos() + bytes.buffers_size());
-    descriptor.writeStreamPos(out);
-    write_bytes(out, bytes.head);
-    write_bytes(out, bytes.topology);
-    for (const std::string& part : bytes.buffers)
+    descriptor.writeStreamPos(stream.out);
+    return stream.bytes.take();
+}
+
+VdbArchive::Grid write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
+{
+    Digest digest;
+    const auto write = [&](const std::string& part) {
+        digest.add(part.data(), part.size());
         write_bytes(out, part);
+    };
+    write(descriptor_bytes(std::int64_t(out.tellp()), grid, bytes));
+    write(bytes.head);
+    write(bytes.topology);
+    for (const std::string& part : bytes.buffers)
+        write(part);
+    return {grid.getName(), digest.words()};
 }
 
 } // namespace
@@ -263,13 +280,15 @@ std::string creator_name()
     return std::string("vdb_shell ") + VDB_SHELL_VERSION;
 }
 
-void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
-                       const openvdb::MetaMap& metadata)
+VdbArchive write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
+                             const openvdb::MetaMap& metadata)
 {
     const Archive archive;
+    VdbArchive result;
+    result.head = archive.head(metadata, grids.size());
     errno = 0;
     std::ofstream out(path, std::ios::binary);
-    archive.write_start(out, metadata, grids.size());
+    write_bytes(out, result.head);
     // The reason is known to the thread alone that met it, and only at once.
     int reason = out ? 0 : errno;
     std::mutex writing;
@@ -291,7 +310,7 @@ void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec gr
             ready[last] = std::move(bytes);
             for (; written < grids.size() && ready[written]; ++written) {
                 errno = 0;
-                write_grid(out, *grids[written], *ready[written]);
+                result.grids.push_back(write_grid(out, *grids[written], *ready[written]));
                 reason = !out && reason == 0 ? errno : reason;
                 ready[written].reset();
                 done.push_back(std::move(grids[written]));
@@ -299,12 +318,14 @@ void write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec gr
         },
         1);
     errno = 0;
+    result.size = std::uint64_t(out.tellp());
     out.close();
     reason = !out && reason == 0 ? errno : reason;
     // Callers put the name of the output before it; not that of the temporary.
     if (!out)
         throw std::runtime_error(reason != 0 ? std::strerror(reason)
                                              : "the file system refused the data");
+    return result;
 }
 
 } // namespace vdb_shell

@@ -185,11 +185,17 @@ void walk_grid(VdbCursor& walk, const VdbGridPart& part, std::uint32_t version)
 
 } // namespace
 
-VdbOutline walk_outline(VdbCursor& walk)
+VdbOutline walk_head(VdbCursor& walk)
 {
     VdbOutline outline;
     outline.version = walk_header(walk);
     outline.metadata = walk_metadata(walk);
+    return outline;
+}
+
+VdbOutline walk_outline(VdbCursor& walk)
+{
+    VdbOutline outline = walk_head(walk);
     const auto count = walk.number<std::int32_t>("the number of grids");
     if (count < 0)
         walk.fail("the number of grids is " + std::to_string(count));

@@ -33,15 +33,26 @@ namespace fs = std::filesystem;
 constexpr std::string_view kMark = "7664625f"; ///< "vdb_"
 constexpr std::size_t kPartDigits = 16;
 
-std::string uuid_of(std::string_view bytes)
+/// All of them but for the UUID. Precondition: the bytes begin where the file does, and hold it.
+void add_without_uuid(Digest& digest, std::string_view bytes)
 {
-    Digest digest;
     digest.add(bytes.data(), kUuid);
     digest.add(bytes.data() + kUuid + kUuidLength, bytes.size() - kUuid - kUuidLength);
+}
+
+std::string uuid_of(const Digest& digest)
+{
     // A UUID of version 8, whose bits are free but for these two digits.
     const std::string hex = digest.hex();
     return std::string(kMark) + "-" + hex.substr(0, 4) + "-8" + hex.substr(4, 3) + "-8" +
            hex.substr(7, 3) + "-" + hex.substr(10, 12);
+}
+
+std::string uuid_of(std::string_view bytes)
+{
+    Digest digest;
+    add_without_uuid(digest, bytes);
+    return uuid_of(digest);
 }
 
 bool has_seal(std::string_view bytes)
@@ -63,9 +74,9 @@ struct Part {
     std::size_t place = 0; ///< of the digits, 0 where there is no room for them
 };
 
-std::string digits_of(Digest& digest)
+std::string digits_of(const std::array<std::uint64_t, 2>& digest)
 {
-    return digest.hex().substr(0, kPartDigits);
+    return hex_of(digest).substr(0, kPartDigits);
 }
 
 const VdbEntry* digests_entry(const VdbOutline& outline)
@@ -86,7 +97,7 @@ std::string head_digits(std::string_view bytes, const VdbOutline& outline, const
     digest.add(bytes.data(), kUuid);
     digest.add(bytes.data() + kUuid + kUuidLength, begin - kUuid - kUuidLength);
     digest.add(bytes.data() + behind, end - behind);
-    return digits_of(digest);
+    return digits_of(digest.words());
 }
 
 /// Where the digits of a part stand: a line of three words that begins with its name.
@@ -106,28 +117,46 @@ std::size_t place_of(std::string_view bytes, const VdbEntry& entry, const std::s
     return 0;
 }
 
-std::vector<Part> parts_of(std::string_view bytes, const VdbOutline& outline)
+/// The file's metadata, and its grids, whose digests are given.
+std::vector<Part> parts_of(std::string_view bytes, const VdbOutline& outline,
+                           const std::vector<VdbArchive::Grid>& grids)
 {
     std::vector<Part> parts;
     const VdbEntry* const entry = digests_entry(outline);
     if (!entry)
         return parts;
     parts.push_back({"metadata", head_digits(bytes, outline, *entry), 0});
-    for (const VdbGridPart& grid : outline.grids) {
-        Digest digest;
-        digest.add(bytes.data() + grid.descriptor, grid.end - grid.descriptor);
-        parts.push_back({grid.name, digits_of(digest), 0});
-    }
+    for (const VdbArchive::Grid& grid : grids)
+        parts.push_back({grid.name, digits_of(grid.digest), 0});
     for (Part& part : parts)
         part.place = place_of(bytes, *entry, part.name);
     return parts;
+}
+
+/// The bytes of the file between two places. A failure stays noted in the stream.
+void add_between(Digest& digest, std::fstream& file, std::uint64_t begin, std::uint64_t end)
+{
+    // Small enough for the processor's cache, so that a large file costs no memory.
+    constexpr std::uint64_t kPiece = std::uint64_t(1) << 18;
+    std::vector<char> piece(kPiece);
+    file.seekg(std::streamoff(begin));
+    for (std::uint64_t size = 0; begin < end && file; begin += size) {
+        size = std::min(kPiece, end - begin);
+        file.read(piece.data(), std::streamsize(size));
+        digest.add(piece.data(), size);
+    }
 }
 
 /// What differs, in words. Precondition: something does.
 std::string damaged_part(std::string_view bytes, const std::string& name)
 {
     VdbCursor walk(bytes, name);
-    for (const Part& part : parts_of(bytes, walk_outline(walk)))
+    const VdbOutline outline = walk_outline(walk);
+    std::vector<VdbArchive::Grid> grids;
+    for (const VdbGridPart& grid : outline.grids)
+        grids.push_back(
+            {grid.name, digest_of(bytes.data() + grid.descriptor, grid.end - grid.descriptor)});
+    for (const Part& part : parts_of(bytes, outline, grids))
         if (part.place && bytes.substr(part.place, kPartDigits) != part.digits)
             return part.name == "metadata" ? "its metadata"
                                            : "grid " + vdb_shell::quoted(part.name);
@@ -136,29 +165,25 @@ std::string damaged_part(std::string_view bytes, const std::string& name)
 
 } // namespace
 
-void seal_vdb(const fs::path& path)
+void seal_vdb(const fs::path& path, const VdbArchive& written)
 {
-    std::string bytes;
-    try {
-        bytes = read_whole_file(path);
-    } catch (const ReadError& error) {
-        // The file is an output that is being written. As an error of a library it is told of that
-        // output (core/output_set.cpp), and not of an input.
-        throw std::runtime_error(error.what());
-    }
+    std::string head = written.head;
     errno = 0;
     std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
     const auto put = [&](std::size_t place, const std::string& text) {
-        bytes.replace(place, text.size(), text);
+        head.replace(place, text.size(), text);
         file.seekp(std::streamoff(place));
         file.write(text.data(), std::streamsize(text.size()));
     };
-    VdbCursor walk(bytes, path.string());
-    for (const Part& part : parts_of(bytes, walk_outline(walk)))
+    VdbCursor walk(written.head, path.string());
+    for (const Part& part : parts_of(written.head, walk_head(walk), written.grids))
         if (part.place)
             put(part.place, part.digits);
     // Last, as it is the digest of all other bytes, those of the parts' digests among them.
-    put(kUuid, uuid_of(bytes));
+    Digest digest;
+    add_without_uuid(digest, head);
+    add_between(digest, file, head.size(), written.size);
+    put(kUuid, uuid_of(digest));
     file.close();
     if (!file)
         throw std::runtime_error("the digests of the bytes cannot be written" +

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "io/vdb_archive.h"
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -18,9 +20,10 @@ inline constexpr std::string_view kUnsealed = "0000000000000000";
 
 /// Makes a .vdb tell damage of any of its bytes: fills in the digests of the bytes of each part
 /// where the entry above has room for them, and puts a digest of all bytes in place of the random
-/// UUID. So a program that writes the file anew, which draws another UUID, lifts the seal. Throws
-/// std::runtime_error when the file cannot be read or written.
-void seal_vdb(const std::filesystem::path& path);
+/// UUID. So a program that writes the file anew, which draws another UUID, lifts the seal.
+/// Precondition: `written` is what write_vdb_archive said of that file. Throws std::runtime_error
+/// when the file cannot be read or written.
+void seal_vdb(const std::filesystem::path& path, const VdbArchive& written);
 
 /// False where the bytes have no seal. Throws ReadError with the part that differs where they are
 /// not those that were sealed; a changed seal differs as well.

@@ -38,6 +38,9 @@ struct VdbOutline {
     std::vector<VdbGridPart> grids;
 };
 
+/// Header and metadata of the file; no grids.
+VdbOutline walk_head(VdbCursor& walk);
+
 /// Header, metadata of the file, descriptors of the grids.
 VdbOutline walk_outline(VdbCursor& walk);
 

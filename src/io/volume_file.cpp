@@ -115,8 +115,8 @@ void write_volumes(const std::filesystem::path& path, const std::vector<GridBase
         grid->setCreator(creator_name());
     write_together(with, [&](OutputSet& set) {
         set.write(path, [&](const std::filesystem::path& temporary) {
-            write_vdb_archive(temporary, {grids.begin(), grids.end()}, metadata);
-            seal_vdb(temporary);
+            seal_vdb(temporary,
+                     write_vdb_archive(temporary, {grids.begin(), grids.end()}, metadata));
         });
     });
 }

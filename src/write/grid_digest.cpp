@@ -56,11 +56,17 @@ struct AsStored {
     openvdb::PointDataIndex32 operator()(openvdb::PointDataIndex32 value) const { return value; }
 };
 
-template <typename Mask> void add_mask(Digest& digest, const Mask& mask)
+template <typename Mask> auto words_of(const Mask& mask)
 {
     std::array<std::uint64_t, Mask::WORD_COUNT> words;
     for (openvdb::Index i = 0; i < Mask::WORD_COUNT; ++i)
         words[i] = mask.template getWord<std::uint64_t>(i);
+    return words;
+}
+
+template <typename Mask> void add_mask(Digest& digest, const Mask& mask)
+{
+    const auto words = words_of(mask);
     digest.add(words.data(), sizeof words);
 }
 
@@ -98,15 +104,19 @@ template <typename Tree> void add_nodes(Digest& digest, const Tree& tree, const 
 
 template <typename Leaf> Words leaf_digest(const Leaf& leaf, const AsStored& as_stored)
 {
-    Digest digest;
-    digest.add(leaf.origin().data(), sizeof(openvdb::Coord));
-    add_mask(digest, leaf.getValueMask());
+    const auto mask = words_of(leaf.getValueMask());
     std::array<typename Leaf::ValueType, Leaf::SIZE> values;
     // Inactive voxels too: a level set has its signs there.
+    const auto* const stored = leaf.buffer().data();
     for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
-        values[i] = as_stored(leaf.getValue(i));
-    digest.add(values.data(), sizeof values);
-    return digest.words();
+        values[i] = as_stored(stored[i]);
+    // In one piece, which has the digest of its pieces: to take these one after the other costs a
+    // state in memory, which is as dear as all voxels of a leaf.
+    std::array<char, sizeof(openvdb::Coord) + sizeof mask + sizeof values> bytes;
+    std::memcpy(bytes.data(), leaf.origin().data(), sizeof(openvdb::Coord));
+    std::memcpy(bytes.data() + sizeof(openvdb::Coord), mask.data(), sizeof mask);
+    std::memcpy(bytes.data() + sizeof(openvdb::Coord) + sizeof mask, values.data(), sizeof values);
+    return digest_of(bytes.data(), bytes.size());
 }
 
 /// The digest of one for each leaf.

@@ -187,8 +187,7 @@ void write_sealed(const fs::path& path, openvdb::GridPtrVec grids, openvdb::Meta
 {
     // Last of all, as the digest is of all other entries; the seal needs the bytes of the file.
     add_digests(metadata, grids);
-    write_vdb_archive(path, std::move(grids), metadata);
-    seal_vdb(path);
+    seal_vdb(path, write_vdb_archive(path, std::move(grids), metadata));
 }
 
 /// Runs `read`, turning what OpenVDB throws at damaged data into ReadError. Errors of our own pass

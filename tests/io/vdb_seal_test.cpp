@@ -32,8 +32,7 @@ protected:
         metadata.insertMeta(kDigestsKey,
                             openvdb::StringMetadata("metadata ab " + room + "\none ab " + room +
                                                     "\none.x ab\nother ab " + room + "\n"));
-        write_vdb_archive(path_, {one, other}, metadata);
-        seal_vdb(path_);
+        seal_vdb(path_, write_vdb_archive(path_, {one, other}, metadata));
         sound_ = test::read_bytes(path_);
     }
 
@@ -109,8 +108,8 @@ TEST_F(VdbSeal, FilesWithoutOneHaveNone)
 TEST_F(VdbSeal, SameGridsGiveTheSameFile)
 {
     const auto write = [&](const char* name) {
-        write_vdb_archive(folder_ / name, {test::sphere_level_set(4.0f, 1.0f)}, {});
-        seal_vdb(folder_ / name);
+        seal_vdb(folder_ / name,
+                 write_vdb_archive(folder_ / name, {test::sphere_level_set(4.0f, 1.0f)}, {}));
         return test::read_bytes(folder_ / name);
     };
     EXPECT_TRUE(write("b.vdb") == write("c.vdb"));
