@@ -23,10 +23,12 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <fstream>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -148,6 +150,23 @@ ordered_json parsed(const fs::path& file)
     return json;
 }
 
+std::string text_of(const ordered_json& json)
+{
+    return json.dump(1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+/// All lines but the first.
+std::string indented(const std::string& text, std::size_t by)
+{
+    std::string out;
+    for (const char c : text) {
+        out += c;
+        if (c == '\n')
+            out.append(by, ' ');
+    }
+    return out;
+}
+
 /// What the parser throws says nothing of the file.
 template <typename Body> auto with_file(const fs::path& file, const Body& body)
 {
@@ -163,6 +182,15 @@ template <typename Body> auto with_file(const fs::path& file, const Body& body)
 bool FileMark::operator==(const FileMark& other) const
 {
     return path == other.path && bytes == other.bytes && digest == other.digest;
+}
+
+bool Manifest::FileState::operator==(const FileState& other) const
+{
+    const auto same = [](const timespec& a, const timespec& b) {
+        return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+    };
+    return device == other.device && inode == other.inode && bytes == other.bytes &&
+           same(written, other.written) && same(changed, other.changed);
 }
 
 FileMark mark_of(const fs::path& file)
@@ -209,7 +237,8 @@ Manifest::Entries Manifest::read() const
         Entries entries;
         for (const ordered_json& step : json.at("steps")) {
             ManifestEntry entry = entry_of(step, file_.string());
-            entries[entry.frame] = std::move(entry);
+            const std::optional<int> frame = entry.frame;
+            entries[frame] = {std::move(entry), ""};
         }
         return entries;
     });
@@ -219,7 +248,7 @@ std::optional<ManifestEntry> Manifest::find(std::optional<int> frame) const
 {
     const std::lock_guard lock(mutex_);
     const auto found = entries_.find(frame);
-    return found == entries_.end() ? std::nullopt : std::optional(found->second);
+    return found == entries_.end() ? std::nullopt : std::optional(found->second.entry);
 }
 
 /// The manifest and its outputs may be moved together.
@@ -258,8 +287,8 @@ void Manifest::put(const ManifestEntry& entry)
     const std::lock_guard lock(mutex_);
     const FolderLock turn(folder_of(file_));
     // Others may have noted theirs meanwhile.
-    entries_ = read();
-    entries_[entry.frame] = entry;
+    read_if_changed();
+    entries_[entry.frame] = {entry, ""};
     write();
 }
 
@@ -272,12 +301,12 @@ void Manifest::put_all_of(const std::deque<Manifest>& others)
 {
     const std::lock_guard lock(mutex_);
     const FolderLock turn(folder_of(file_));
-    entries_ = read();
+    read_if_changed();
     for (const Manifest& other : others)
-        for (const auto& [frame, entry] : other.entries_) {
+        for (const auto& [frame, known] : other.entries_) {
             // Names of outputs are relative to the manifest, and this one may stand elsewhere.
-            ManifestEntry& own = entries_[frame] = entry;
-            for (FileMark& output : own.outputs)
+            Known& own = entries_[frame] = {known.entry, ""};
+            for (FileMark& output : own.entry.outputs)
                 output.path = relative(other.place_of(output));
         }
     write();
@@ -293,7 +322,27 @@ std::string Manifest::lost_output(const ManifestEntry& entry) const
     return "";
 }
 
-void Manifest::write() const
+/// Opened for it, since network file systems ask their server when a file is opened, and not when
+/// its name is looked up.
+std::optional<Manifest::FileState> Manifest::state() const
+{
+    const Descriptor file(::open(file_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    struct stat status{};
+    if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
+        return std::nullopt;
+    return FileState{status.st_dev, status.st_ino, status.st_size, status.st_mtim, status.st_ctim};
+}
+
+/// Reading is what takes the time where there are thousands of steps. Precondition: it is this
+/// process' turn, or the file could change in between.
+void Manifest::read_if_changed()
+{
+    const std::optional<FileState> now = state();
+    if (!now || !(now == written_))
+        entries_ = read();
+}
+
+void Manifest::write()
 {
     ordered_json json;
     json["schema"] = kManifestSchema;
@@ -302,14 +351,23 @@ void Manifest::write() const
     json["version"] = VDB_SHELL_VERSION;
     json["command"] = command_;
     json["steps"] = ordered_json::array();
-    for (const auto& [frame, entry] : entries_)
-        json["steps"].push_back(json_of(entry));
+    std::string text = text_of(json);
+    // The texts of the steps go between the brackets at the end, each made once only.
+    constexpr std::string_view kEnd = "]\n}";
+    text.resize(text.size() - kEnd.size());
+    const char* between = "\n  ";
+    for (auto& [frame, known] : entries_) {
+        if (known.text.empty())
+            known.text = indented(text_of(json_of(known.entry)), 2);
+        text.append(between).append(known.text);
+        between = ",\n  ";
+    }
+    text.append(entries_.empty() ? "" : "\n ").append(kEnd).append("\n");
     OutputSet files;
     // By a set of files as every output: replaced whole, or left as it was.
-    files.write_stream(file_, [&](std::ostream& out) {
-        out << json.dump(1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
-    });
+    files.write_stream(file_, [&](std::ostream& out) { out << text; });
     files.commit();
+    written_ = state();
 }
 
 } // namespace vdb_shell::command

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
+#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -61,9 +64,23 @@ public:
     std::string lost_output(const ManifestEntry& entry) const;
 
 private:
-    using Entries = std::map<std::optional<int>, ManifestEntry>;
+    struct Known {
+        ManifestEntry entry;
+        std::string text; ///< of the entry in the file; empty until it is first written
+    };
+    using Entries = std::map<std::optional<int>, Known>;
+    /// What tells that nobody has replaced the file or written to it.
+    struct FileState {
+        dev_t device;
+        ino_t inode;
+        off_t bytes;
+        timespec written, changed;
+        bool operator==(const FileState& other) const;
+    };
     Entries read() const;
-    void write() const;
+    void read_if_changed();
+    void write();
+    std::optional<FileState> state() const;
     std::string relative(const std::filesystem::path& file) const;
     std::filesystem::path place_of(const FileMark& output) const;
 
@@ -71,6 +88,7 @@ private:
     const std::string command_;
     mutable std::mutex mutex_;
     Entries entries_;
+    std::optional<FileState> written_; ///< as this object left the file
 };
 
 } // namespace vdb_shell::command

@@ -99,11 +99,11 @@ class Runner
 {
 public:
     Runner(const std::vector<Step>& steps, const GlobalArguments& global, const Context& context)
-        : steps_(steps), global_(global), context_(context), results_(steps.size())
+        : steps_(steps), global_(global), context_(context), command_(command_of(steps.front())),
+          results_(steps.size())
     {
         if (!global.manifest.empty())
-            // All steps are frames of one call, so of one command.
-            manifest_.emplace(global.manifest, command_of(steps.front()));
+            manifest_.emplace(global.manifest, command_);
         if (global.progress != ProgressStyle::none)
             progress_.emplace(global.progress, std::cerr, steps.size());
     }
@@ -130,6 +130,7 @@ private:
         std::string out, err;
     };
 
+    /// All steps are frames of one call, so of one command.
     static std::string command_of(const Step& step)
     {
         Call call;
@@ -271,7 +272,7 @@ private:
 
     int status_of_step(const Step& step, Context& context, bool& left_out)
     {
-        Call call;
+        Call call(command_);
         call.parse(step.words);
         // Planned anew: the plan of the whole sequence was made minutes or hours ago.
         const FilePlan plan = call.plan();
@@ -386,6 +387,7 @@ private:
     const std::vector<Step>& steps_;
     const GlobalArguments& global_;
     const Context& context_;
+    const std::string command_;
     std::optional<Manifest> manifest_;
     std::optional<Progress> progress_;
     Sequence sequence_;
