@@ -272,7 +272,8 @@ private:
 
     int status_of_step(const Step& step, Context& context, bool& left_out)
     {
-        Call call(command_);
+        // A single call knows all commands, since it may be the one that lists them.
+        Call call(step.frame ? command_ : "");
         call.parse(step.words);
         // Planned anew: the plan of the whole sequence was made minutes or hours ago.
         const FilePlan plan = call.plan();

@@ -355,11 +355,13 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
         count,
         [&](std::size_t c) {
             const int depth = components[c].nesting_depth = nesting.depth(std::uint32_t(c));
+            if (found.closed[c] == 0 || found.balanced[c] == 0)
+                return;
             // Exact: of a needle, the volume in doubles may have any sign.
-            components[c].inside_out =
-                found.closed[c] != 0 && found.balanced[c] != 0 &&
-                exact::volume_sign(mesh.points, mesh.triangles, pieces[c].triangles) ==
-                    (depth % 2 == 0 ? -1 : 1);
+            const int sign =
+                exact::volume_sign(mesh.points, mesh.triangles, pieces[c].triangles);
+            components[c].inside_out = sign == (depth % 2 == 0 ? -1 : 1);
+            components[c].flat = sign == 0;
         },
         1);
     return components;

@@ -55,12 +55,12 @@ private:
     std::string text_;
 };
 
-/// The inside-out components by index, in the form of the other defects.
-Defect<std::uint32_t> inside_out(const MeshCheck& check)
+/// The components of which that holds, by index, in the form of the other defects.
+Defect<std::uint32_t> components_that_are(const MeshCheck& check, bool Component::*bad)
 {
     Defect<std::uint32_t> defect;
     for (std::uint32_t c = 0; c < check.components.size(); ++c) {
-        if (!check.components[c].inside_out)
+        if (!(check.components[c].*bad))
             continue;
         if (defect.count++ < Defect<std::uint32_t>::kFirstShown)
             defect.first.push_back(c);
@@ -85,7 +85,10 @@ std::string findings_of(const MeshCheck& check, const CheckOptions& options, boo
     findings.add(check.duplicate_triangles, "triangle that repeats an earlier one",
                  "triangles that repeat an earlier one");
     if (!options.turn_inside_out)
-        findings.add(inside_out(check), "component is inside out", "components are inside out");
+        findings.add(components_that_are(check, &Component::inside_out), "component is inside out",
+                     "components are inside out");
+    findings.add(components_that_are(check, &Component::flat), "component encloses no volume",
+                 "components enclose no volume");
     if (!options.allow_self_intersections)
         findings.add(check.self_intersections, "pair of triangles that cross or touch",
                      "pairs of triangles that cross or touch");

@@ -159,6 +159,23 @@ TEST(PrepareSurface, MendingWrapsWhatHasNoInside)
         EXPECT_EQ(tried(mended(mesh, options)).back(), Mending::wrap);
 }
 
+TEST(PrepareSurface, MendingWrapsASheetThatARepairWouldCloseByItsBack)
+{
+    // A fan of six triangles in a plane, whose rim is filled in the same plane.
+    TriangleMesh sheet;
+    sheet.points.emplace_back(0.0F);
+    for (int i = 0; i < 6; ++i) {
+        sheet.points.emplace_back(std::cos(float(i)), std::sin(float(i)), 0.0F);
+        sheet.triangles.emplace_back(0, 1 + i, 1 + (i + 1) % 6);
+    }
+    ShellOptions options;
+    options.wrap.resolution = 24;
+    options.check.allow_self_intersections = true;
+    const ShellResult result = mended(sheet, options);
+    EXPECT_EQ(tried(result).back(), Mending::wrap);
+    EXPECT_GT(result.report.mesh.volume, 0.0);
+}
+
 TEST(PrepareSurface, ARepairThatWasAskedForComesFirst)
 {
     ShellOptions options;

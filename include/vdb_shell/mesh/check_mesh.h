@@ -43,6 +43,9 @@ struct Component {
     /// Closed, every edge run through as often one way as the other, but oriented against the
     /// nesting depth.
     bool inside_out = false;
+    /// Closed, every edge run through as often one way as the other, and its volume is exactly
+    /// zero, as that of a sheet that was closed by its own back is.
+    bool flat = false;
 };
 
 struct MeshCheck {
