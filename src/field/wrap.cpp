@@ -37,7 +37,11 @@ using openvdb::Vec3d;
 // More than half the diagonal of a voxel, 0.866. So every point of a sheet has a voxel centre
 // within this distance, and no sheet passes between the voxels.
 constexpr double kThinnestSheet = 0.9;
-constexpr double kMostWrapVoxels = 1e3;
+constexpr double kMostAdaptivityVoxels = 1e3;
+// All voxels within that distance of a sheet get a value, so memory grows with its cube: of igl's
+// circle at 256 voxels (tuning), 64 take 0.5 GiB and 200 already 4.8. Larger voxels give a plate of
+// the same thickness for less.
+constexpr double kThickestSheet = 64.0;
 // The field takes some ten voxels for each voxel of area, so 4096^2 voxels of area are 170 million
 // of them.
 constexpr double kMostVoxelsAlong = 4096.0;
@@ -146,12 +150,12 @@ OptionList describe(WrapOptions& o)
                 "How far simplification may move the wrap, voxels")
              .needing(kWraps)
              .in(Unit::voxels)
-             .within(at_least(0).at_most(kMostWrapVoxels)),
+             .within(at_least(0).at_most(kMostAdaptivityVoxels)),
          option("sheet_voxels", o.sheet_voxels, "--wrap-sheet",
                 "Half the thickness given to sheets and loose triangles, voxels")
              .needing(kWraps)
              .in(Unit::voxels)
-             .within(at_least(kThinnestSheet).at_most(kMostWrapVoxels)),
+             .within(at_least(kThinnestSheet).at_most(kThickestSheet)),
          option("keep_voids", o.keep_voids, "--wrap-keep-voids",
                 "Keep enclosed voids and what stands in them")
              .needing(kWraps)});
