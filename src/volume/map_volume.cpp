@@ -55,7 +55,7 @@ public:
     bool mean(const Vec3d& place, const Mat3d& across, Value& value)
     {
         if constexpr (std::is_integral_v<Value>) {
-            return probe(Coord::round(place), value);
+            return values_.probeValue(in_tile(Coord::round(place)), value);
         } else {
             const Samples samples(across, most_);
             limited_ += samples.limited();
@@ -70,32 +70,38 @@ public:
 
 private:
     /// Of the tile of all, for the texture has no end.
-    bool probe(Coord at, Value& value)
+    int in_tile(int at, int axis) const
     {
-        for (int axis = 0; axis < 3; ++axis) {
-            // The remainder of a negative number is negative; tiles go on below the first one.
-            const int beyond = (at[axis] - low_[axis]) % size_[axis];
-            at[axis] = low_[axis] + (beyond < 0 ? beyond + size_[axis] : beyond);
-        }
-        return values_.probeValue(at, value);
+        // The remainder of a negative number is negative; tiles go on below the first one.
+        const int beyond = (at - low_[axis]) % size_[axis];
+        return low_[axis] + (beyond < 0 ? beyond + size_[axis] : beyond);
+    }
+    Coord in_tile(const Coord& at) const
+    {
+        return {in_tile(at[0], 0), in_tile(at[1], 1), in_tile(at[2], 2)};
     }
 
     bool add(const Vec3d& place, SumOf<Value>& total)
     {
         const Coord base = Coord::floor(place);
         const Vec3d share = place - base.asVec3d();
+        const std::array<Vec3d, 2> weights{Vec3d(1.0) - share, share};
+        // Once for each axis and not for each of the eight: remainders take as long as all the rest.
+        std::array<Coord, 2> at{in_tile(base), {}};
+        for (int axis = 0; axis < 3; ++axis) {
+            const int next = at[0][axis] + 1;
+            at[1][axis] = next == low_[axis] + size_[axis] ? low_[axis] : next;
+        }
         bool any = false;
-        for (int i = 0; i < 8; ++i) {
-            const Coord step(i >> 2, i >> 1 & 1, i & 1);
-            double weight = 1;
-            for (int axis = 0; axis < 3; ++axis)
-                weight *= step[axis] ? share[axis] : 1 - share[axis];
+        for (unsigned i = 0; i < 8; ++i) {
+            const unsigned x = i >> 2, y = i >> 1 & 1, z = i & 1;
+            const double weight = weights[x][0] * weights[y][1] * weights[z][2];
             // On a voxel's centre only one of the eight counts. Asking the others could make a
             // voxel active that takes nothing from them.
             if (weight == 0)
                 continue;
             Value value;
-            any |= probe(base + step, value);
+            any |= values_.probeValue({at[x][0], at[y][1], at[z][2]}, value);
             total += weight * SumOf<Value>(value);
         }
         return any;
