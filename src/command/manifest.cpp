@@ -150,7 +150,7 @@ ordered_json parsed(const fs::path& file)
     return json;
 }
 
-std::string text_of(const ordered_json& json)
+std::string json_text(const ordered_json& json)
 {
     return json.dump(1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -327,7 +327,8 @@ std::string Manifest::lost_output(const ManifestEntry& entry) const
 std::optional<Manifest::FileState> Manifest::state() const
 {
     const Descriptor file(::open(file_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    struct stat status{};
+    struct stat status {
+    };
     if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
         return std::nullopt;
     return FileState{status.st_dev, status.st_ino, status.st_size, status.st_mtim, status.st_ctim};
@@ -351,14 +352,14 @@ void Manifest::write()
     json["version"] = VDB_SHELL_VERSION;
     json["command"] = command_;
     json["steps"] = ordered_json::array();
-    std::string text = text_of(json);
+    std::string text = json_text(json);
     // The texts of the steps go between the brackets at the end, each made once only.
     constexpr std::string_view kEnd = "]\n}";
     text.resize(text.size() - kEnd.size());
     const char* between = "\n  ";
     for (auto& [frame, known] : entries_) {
         if (known.text.empty())
-            known.text = indented(text_of(json_of(known.entry)), 2);
+            known.text = indented(json_text(json_of(known.entry)), 2);
         text.append(between).append(known.text);
         between = ",\n  ";
     }

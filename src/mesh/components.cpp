@@ -358,8 +358,7 @@ describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted
             if (found.closed[c] == 0 || found.balanced[c] == 0)
                 return;
             // Exact: of a needle, the volume in doubles may have any sign.
-            const int sign =
-                exact::volume_sign(mesh.points, mesh.triangles, pieces[c].triangles);
+            const int sign = exact::volume_sign(mesh.points, mesh.triangles, pieces[c].triangles);
             components[c].inside_out = sign == (depth % 2 == 0 ? -1 : 1);
             components[c].flat = sign == 0;
         },

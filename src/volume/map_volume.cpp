@@ -86,7 +86,8 @@ private:
         const Coord base = Coord::floor(place);
         const Vec3d share = place - base.asVec3d();
         const std::array<Vec3d, 2> weights{Vec3d(1.0) - share, share};
-        // Once for each axis and not for each of the eight: remainders take as long as all the rest.
+        // Once for each axis and not for each of the eight: remainders take as long as all the
+        // rest.
         std::array<Coord, 2> at{in_tile(base), {}};
         for (int axis = 0; axis < 3; ++axis) {
             const int next = at[0][axis] + 1;

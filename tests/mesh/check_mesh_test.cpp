@@ -198,9 +198,9 @@ TEST(check_mesh, tells_outer_surfaces_from_cavities)
 TEST(check_mesh, a_sheet_closed_by_its_own_back_encloses_nothing)
 {
     // A tetrahedron whose corners lie in one plane, at places that doubles would round.
-    const TriangleMesh flat{{{0.1f, 0.7f, 0.3f}, {1.1f, 0.7f, 0.3f}, {1.1f, 2.3f, 0.3f},
-                             {0.1f, 2.9f, 0.3f}},
-                            {Vec3I(0, 1, 2), Vec3I(0, 2, 3), Vec3I(0, 3, 1), Vec3I(1, 3, 2)}};
+    const TriangleMesh flat{
+        {{0.1f, 0.7f, 0.3f}, {1.1f, 0.7f, 0.3f}, {1.1f, 2.3f, 0.3f}, {0.1f, 2.9f, 0.3f}},
+        {Vec3I(0, 1, 2), Vec3I(0, 2, 3), Vec3I(0, 3, 1), Vec3I(1, 3, 2)}};
     const TriangleMesh both = joined(unit_box(Vec3d(5), 2), flat);
     const MeshCheck check = check_mesh(both);
     EXPECT_FALSE(check.components.at(0).flat);
