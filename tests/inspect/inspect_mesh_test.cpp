@@ -129,6 +129,21 @@ TEST(InspectMesh, NamesTouchingSpheresAndNestedOnes)
     EXPECT_FALSE(usable(inspection));
 }
 
+TEST(InspectMesh, NamesAClosedSurfaceWithoutVolume)
+{
+    const TriangleMesh flat{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                            {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+    const MeshInspection inspection = inspect_mesh(flat);
+    const std::vector<Finding> findings = findings_of(inspection);
+    const auto found = std::find_if(findings.begin(), findings.end(), [](const Finding& finding) {
+        return finding.kind == "flat_components";
+    });
+    ASSERT_NE(found, findings.end());
+    EXPECT_EQ(found->first, std::vector<std::string>{"0"});
+    EXPECT_TRUE(found->blocks);
+    EXPECT_FALSE(usable(inspection));
+}
+
 TEST(InspectMesh, FindsBlindVerticesWhereNormalsOppose)
 {
     // Around (1, 1, 1) a path of four of the eight cubes: its faces there look along +y and -y.
