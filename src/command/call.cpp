@@ -247,7 +247,11 @@ void Call::Parts::add_commands()
     add(
         "options", "List the options, for people, programs and shells", add_options_command,
         a.options, [] { return FilePlan(Existing::replaced); },
-        [this](Context& context) { return run_options(a.options, entries(), context.out); });
+        [this](Context& context) {
+            // This call may know its own command only.
+            const Call all;
+            return run_options(a.options, all.parts_->entries(), context.out);
+        });
 }
 
 /// The global options first, under no name.

@@ -184,15 +184,6 @@ bool FileMark::operator==(const FileMark& other) const
     return path == other.path && bytes == other.bytes && digest == other.digest;
 }
 
-bool Manifest::FileState::operator==(const FileState& other) const
-{
-    const auto same = [](const timespec& a, const timespec& b) {
-        return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
-    };
-    return device == other.device && inode == other.inode && bytes == other.bytes &&
-           same(written, other.written) && same(changed, other.changed);
-}
-
 FileMark mark_of(const fs::path& file)
 {
     std::ifstream in(file, std::ios::binary);
@@ -327,11 +318,12 @@ std::string Manifest::lost_output(const ManifestEntry& entry) const
 std::optional<Manifest::FileState> Manifest::state() const
 {
     const Descriptor file(::open(file_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    struct stat status {
-    };
-    if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
+    struct stat found;
+    if (file.number() < 0 || ::fstat(file.number(), &found) != 0)
         return std::nullopt;
-    return FileState{status.st_dev, status.st_ino, status.st_size, status.st_mtim, status.st_ctim};
+    const timespec written = found.st_mtim, changed = found.st_ctim;
+    return FileState(found.st_dev, found.st_ino, found.st_size, written.tv_sec, written.tv_nsec,
+                     changed.tv_sec, changed.tv_nsec);
 }
 
 /// Reading is what takes the time where there are thousands of steps. Precondition: it is this
@@ -339,7 +331,7 @@ std::optional<Manifest::FileState> Manifest::state() const
 void Manifest::read_if_changed()
 {
     const std::optional<FileState> now = state();
-    if (!now || !(now == written_))
+    if (!now || now != written_)
         entries_ = read();
 }
 

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace vdb_shell::command
@@ -69,14 +70,9 @@ private:
         std::string text; ///< of the entry in the file; empty until it is first written
     };
     using Entries = std::map<std::optional<int>, Known>;
-    /// What tells that nobody has replaced the file or written to it.
-    struct FileState {
-        dev_t device;
-        ino_t inode;
-        off_t bytes;
-        timespec written, changed;
-        bool operator==(const FileState& other) const;
-    };
+    /// What tells that nobody has replaced the file or written to it: device, inode, bytes, and
+    /// when it was written and changed, seconds and nanoseconds.
+    using FileState = std::tuple<dev_t, ino_t, off_t, time_t, long, time_t, long>;
     Entries read() const;
     void read_if_changed();
     void write();

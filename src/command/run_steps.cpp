@@ -99,11 +99,10 @@ class Runner
 {
 public:
     Runner(const std::vector<Step>& steps, const GlobalArguments& global, const Context& context)
-        : steps_(steps), global_(global), context_(context), command_(command_of(steps.front())),
-          results_(steps.size())
+        : steps_(steps), global_(global), context_(context), results_(steps.size())
     {
         if (!global.manifest.empty())
-            manifest_.emplace(global.manifest, command_);
+            manifest_.emplace(global.manifest, steps.front().command);
         if (global.progress != ProgressStyle::none)
             progress_.emplace(global.progress, std::cerr, steps.size());
     }
@@ -129,14 +128,6 @@ private:
         /// What it has said, until all before it have been printed.
         std::string out, err;
     };
-
-    /// All steps are frames of one call, so of one command.
-    static std::string command_of(const Step& step)
-    {
-        Call call;
-        call.parse(step.words);
-        return call.name();
-    }
 
     /// The first steps, until one has gone through and what they have in common is known.
     void run_alone()
@@ -272,8 +263,7 @@ private:
 
     int status_of_step(const Step& step, Context& context, bool& left_out)
     {
-        // A single call knows all commands, since it may be the one that lists them.
-        Call call(step.frame ? command_ : "");
+        Call call(step.command);
         call.parse(step.words);
         // Planned anew: the plan of the whole sequence was made minutes or hours ago.
         const FilePlan plan = call.plan();
@@ -388,7 +378,6 @@ private:
     const std::vector<Step>& steps_;
     const GlobalArguments& global_;
     const Context& context_;
-    const std::string command_;
     std::optional<Manifest> manifest_;
     std::optional<Progress> progress_;
     Sequence sequence_;

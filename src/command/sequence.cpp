@@ -116,9 +116,9 @@ void require_repeatable(const FilePlan& plan, const GlobalArguments& global)
 }
 
 /// Fills in the files of the step as well, which a dry run prints and a manifest notes.
-FilePlan plan_of(Step& step, const std::string& command)
+FilePlan plan_of(Step& step)
 {
-    Call call(command);
+    Call call(step.command);
     call.parse(step.words);
     FilePlan plan = call.plan();
     for (const FilePlan::Entry& input : plan.inputs())
@@ -252,11 +252,10 @@ std::vector<Step> plan_steps(const std::vector<std::string>& words, const Global
     FilesOfSteps files;
     Call first;
     first.parse(steps.front().words);
-    // The command is the same for all frames.
-    const std::string command = first.name();
     for (Step& step : steps)
         with_name(step, [&] {
-            const FilePlan plan = plan_of(step, command);
+            step.command = first.name();
+            const FilePlan plan = plan_of(step);
             require_repeatable(plan, global);
             if (!step.frame)
                 require_no_tokens(plan);

@@ -18,6 +18,7 @@ struct Step {
     std::vector<std::filesystem::path> inputs, outputs;
     std::vector<std::filesystem::path> missing; ///< inputs that are not there
     std::vector<int> gathered{};                ///< the frames of a step that has all of them
+    std::string command{};                      ///< what the words call; the same for all frames
 };
 
 /// All runs of a call, held against each other and against what is known before any work. Throws
