@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "core/sort_unique.h"
+#include "resample/edge_collapse.h"
 
 #include <algorithm>
 #include <array>
@@ -27,10 +28,11 @@ using openvdb::Vec3d;
 // How far points stay away from the ends of their edge, as a share of it. A zero exactly on a grid
 // point would otherwise put the points of all edges around it in one place. On a wall that runs
 // through grid points all points have this distance, and the strips between two rows of them have
-// the aspect (1 + c^2) / c once a collapse has made them as long as an edge. That has to be less
-// than what edge_collapse.cpp allows, 8, or walls keep all their triangles: with 0.05 the wrap of
-// the open box odedstein-cube_no_bottom (judging) kept 643,954 of 803,656, with 0.15 it has 14,078.
+// the aspect (1 + c^2) / c once a collapse has made them as long as an edge. If collapses may not
+// make such triangles, walls keep all of theirs: with 0.05 the wrap of the open box
+// odedstein-cube_no_bottom (judging) kept 643,954 of 803,656, with 0.15 it has 14,078.
 constexpr double kClearance = 0.15;
+static_assert((1 + kClearance * kClearance) / kClearance < kWorstAspect);
 
 /// The corners of a cube are numbered by three bits, x lowest. All tets run from corner 0 to corner
 /// 7, and all are positive. Every cube is cut alike, so the diagonals of a common face agree.

@@ -34,10 +34,6 @@ using openvdb::Vec3I;
 // A triangle may turn by 40 degrees in one collapse, of which this is the cosine; more is the
 // beginning of a fold.
 constexpr double kLeastCosine = 0.766;
-// No collapse may make a triangle narrower than that, as longest edge over height, unless a
-// triangle around the vertex is narrower before: a vertex in a row of needles could never go
-// otherwise. The walls that marching_tets.cpp makes are a little wider than that.
-constexpr double kWorstAspect = 8.0;
 // Share of the vertices that may go in one round. In sequence each collapse would be the cheapest
 // at its time; rounds of a bounded share stand for that order, and can be looked at in parallel.
 constexpr double kShareOfRound = 0.2;

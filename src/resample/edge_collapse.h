@@ -11,6 +11,10 @@
 namespace vdb_shell
 {
 
+/// No collapse makes a triangle narrower than that, as longest edge over height, unless a triangle
+/// around the vertex is narrower before: a vertex in a row of needles could never go otherwise.
+inline constexpr double kWorstAspect = 8.0;
+
 /// What no collapse may overstep. Lengths are in world units.
 struct CollapseLimits {
     static constexpr double kNone = std::numeric_limits<double>::infinity();
