@@ -20,7 +20,8 @@ WORDS = {"boundary_loops": "holes", "boundary_edges": "boundary edges", "non_man
          "non_manifold_vertices": "non-manifold points", "flipped_patches": "flipped patches",
          "one_sided_pieces": "one-sided pieces", "degenerate_triangles": "without area",
          "duplicate_triangles": "repeats", "self_intersections": "crossing pairs",
-         "inside_out_components": "inside out", "flat_components": "flat", "nested_components": "nested", "blind_vertices": "blind points"}
+         "inside_out_components": "inside out", "flat_components": "flat", "nested_components": "nested",
+         "blind_vertices": "blind points"}
 
 
 def inspect(command, mesh):

@@ -100,13 +100,13 @@ void add_connectivity(Findings& findings, const MeshInspection& inspection)
         inspection.one_sided_pieces);
 }
 
-/// By index, the components of which that holds. They are numbered by their first triangles.
-template <typename Holds>
-std::vector<std::uint32_t> components_of(const MeshCheck& check, const Holds& holds)
+/// A component at an odd depth is a cavity and one at an even depth a body within it. Neither is a
+/// fault, but a file that was not meant to have cavities is told of them here.
+std::vector<std::uint32_t> nested(const MeshCheck& check)
 {
     std::vector<std::uint32_t> found;
     for (std::uint32_t c = 0; c < check.components.size(); ++c)
-        if (holds(check.components[c]))
+        if (check.components[c].nesting_depth > 0)
             found.push_back(c);
     return found;
 }
@@ -127,17 +127,14 @@ void add_triangles_and_components(Findings& findings, const MeshInspection& insp
                   "--repair --cut-crossings where few cross, else --wrap; "
                   "--allow-self-intersections for a shell that overlaps"},
                  check.self_intersections);
-    const auto turned = components_of(check, [](const Component& c) { return c.inside_out; });
+    // Components are numbered by their first triangles.
     findings.add({"inside_out_components", "components that are inside out", true,
                   "--turn-outward or --repair turns them"},
-                 turned.size(), turned);
-    const auto flat = components_of(check, [](const Component& c) { return c.flat; });
+                 check.components_that_are(&Component::inside_out));
     findings.add({"flat_components", "closed components that enclose no volume", true,
                   "--wrap makes plates of them"},
-                 flat.size(), flat);
-    // A component at an odd depth is a cavity and one at an even depth a body within it. Neither is
-    // a fault, but a file that was not meant to have cavities is told of them here.
-    const auto inner = components_of(check, [](const Component& c) { return c.nesting_depth > 0; });
+                 check.components_that_are(&Component::flat));
+    const std::vector<std::uint32_t> inner = nested(check);
     findings.add({"nested_components",
                   "components inside other ones: cavities, and islands in them", false,
                   "nothing to mend: an odd depth is taken as a cavity"},

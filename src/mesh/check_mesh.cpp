@@ -15,7 +15,6 @@
 #include "mesh/topology.h"
 #include "vdb_shell/core/error.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -23,8 +22,19 @@ namespace vdb_shell
 {
 std::size_t MeshCheck::inside_out_components() const
 {
-    return static_cast<std::size_t>(std::count_if(components.begin(), components.end(),
-                                                  [](const Component& c) { return c.inside_out; }));
+    return components_that_are(&Component::inside_out).count;
+}
+
+Defect<std::uint32_t> MeshCheck::components_that_are(bool Component::*mark) const
+{
+    Defect<std::uint32_t> found;
+    for (std::uint32_t c = 0; c < components.size(); ++c) {
+        if (!(components[c].*mark))
+            continue;
+        if (found.count++ < Defect<std::uint32_t>::kFirstShown)
+            found.first.push_back(c);
+    }
+    return found;
 }
 
 void require_well_formed(const TriangleMesh& mesh, const std::string& caller)

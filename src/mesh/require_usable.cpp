@@ -55,19 +55,6 @@ private:
     std::string text_;
 };
 
-/// The components of which that holds, by index, in the form of the other defects.
-Defect<std::uint32_t> components_that_are(const MeshCheck& check, bool Component::*bad)
-{
-    Defect<std::uint32_t> defect;
-    for (std::uint32_t c = 0; c < check.components.size(); ++c) {
-        if (!(check.components[c].*bad))
-            continue;
-        if (defect.count++ < Defect<std::uint32_t>::kFirstShown)
-            defect.first.push_back(c);
-    }
-    return defect;
-}
-
 std::string findings_of(const MeshCheck& check, const CheckOptions& options, bool with_indices)
 {
     Findings findings(with_indices);
@@ -85,9 +72,9 @@ std::string findings_of(const MeshCheck& check, const CheckOptions& options, boo
     findings.add(check.duplicate_triangles, "triangle that repeats an earlier one",
                  "triangles that repeat an earlier one");
     if (!options.turn_inside_out)
-        findings.add(components_that_are(check, &Component::inside_out), "component is inside out",
+        findings.add(check.components_that_are(&Component::inside_out), "component is inside out",
                      "components are inside out");
-    findings.add(components_that_are(check, &Component::flat), "component encloses no volume",
+    findings.add(check.components_that_are(&Component::flat), "component encloses no volume",
                  "components enclose no volume");
     if (!options.allow_self_intersections)
         findings.add(check.self_intersections, "pair of triangles that cross or touch",

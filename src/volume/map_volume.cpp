@@ -70,15 +70,14 @@ public:
 
 private:
     /// Of the tile of all, for the texture has no end.
-    int in_tile(int at, int axis) const
+    Coord in_tile(Coord at) const
     {
-        // The remainder of a negative number is negative; tiles go on below the first one.
-        const int beyond = (at - low_[axis]) % size_[axis];
-        return low_[axis] + (beyond < 0 ? beyond + size_[axis] : beyond);
-    }
-    Coord in_tile(const Coord& at) const
-    {
-        return {in_tile(at[0], 0), in_tile(at[1], 1), in_tile(at[2], 2)};
+        for (int axis = 0; axis < 3; ++axis) {
+            // The remainder of a negative number is negative; tiles go on below the first one.
+            const int beyond = (at[axis] - low_[axis]) % size_[axis];
+            at[axis] = low_[axis] + (beyond < 0 ? beyond + size_[axis] : beyond);
+        }
+        return at;
     }
 
     bool add(const Vec3d& place, SumOf<Value>& total)
@@ -88,11 +87,7 @@ private:
         const std::array<Vec3d, 2> weights{Vec3d(1.0) - share, share};
         // Once for each axis and not for each of the eight: remainders take as long as all the
         // rest.
-        std::array<Coord, 2> at{in_tile(base), {}};
-        for (int axis = 0; axis < 3; ++axis) {
-            const int next = at[0][axis] + 1;
-            at[1][axis] = next == low_[axis] + size_[axis] ? low_[axis] : next;
-        }
+        const std::array<Coord, 2> at{in_tile(base), in_tile(base.offsetBy(1))};
         bool any = false;
         for (unsigned i = 0; i < 8; ++i) {
             const unsigned x = i >> 2, y = i >> 1 & 1, z = i & 1;

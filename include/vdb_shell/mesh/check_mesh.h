@@ -67,6 +67,8 @@ struct MeshCheck {
     bool manifold() const { return non_manifold_edges.count + non_manifold_vertices.count == 0; }
     bool embedded() const { return self_intersections.count == 0; }
     std::size_t inside_out_components() const;
+    /// Components of which that mark holds, by index.
+    Defect<std::uint32_t> components_that_are(bool Component::*mark) const;
 };
 
 struct CheckOptions {
