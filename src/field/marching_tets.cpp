@@ -30,7 +30,7 @@ using openvdb::Vec3d;
 // through grid points all points have this distance, and the strips between two rows of them have
 // the aspect (1 + c^2) / c once a collapse has made them as long as an edge. If collapses may not
 // make such triangles, walls keep all of theirs: with 0.05 the wrap of the open box
-// odedstein-cube_no_bottom (judging) kept 643,954 of 803,656, with 0.15 it has 14,078.
+// odedstein-cube_no_bottom (tuning) kept 643,954 of 803,656, with 0.15 it has 14,078.
 constexpr double kClearance = 0.15;
 static_assert((1 + kClearance * kClearance) / kClearance < kWorstAspect);
 
