@@ -2,9 +2,10 @@
 
 // Takes an embedded surface and leaves a coarser one that is embedded too, where that can be had.
 // Edge collapses know nothing of triangles that are not neighbours, so exact tests look for
-// contacts afterwards. The vertices around these are fixed, and the collapses begin anew from the
-// input; undoing single collapses would need their history. Fixed vertices only become more, so
-// each repeat is nearer to the input, which is embedded.
+// contacts afterwards, and for components that have turned inside out. The vertices around these are
+// fixed, and the collapses begin anew from the input; undoing single collapses would need their
+// history. Fixed vertices only become more, so each repeat is nearer to the input, which is
+// embedded.
 
 #include "resample/collapse_embedded.h"
 
@@ -12,6 +13,7 @@
 #include "core/parallel.h"
 #include "mesh/most_visible.h"
 #include "mesh/topology.h"
+#include "resample/component_sides.h"
 #include "resample/spoiled_triangles.h"
 
 #include <algorithm>
@@ -80,15 +82,17 @@ EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limi
                                    int most_repeats, Blind blind, const StageProgress& progress)
 {
     limits.fixed.resize(mesh.points.size());
+    const ComponentSides sides(mesh);
     for (int repeat = 0;; ++repeat) {
         progress.stop_if_interrupted(100.0 * repeat / (most_repeats + 1));
         Coarsened left = collapse_edges(mesh, limits);
         std::vector<FloatBox> places = spoiled_places(left.mesh);
-        const bool embedded = places.empty();
+        const bool turned = sides.hold_turned(left, limits.fixed);
+        const bool embedded = places.empty() && !turned;
         if (blind == Blind::avoided)
             for (const FloatBox& place : blind_places(left.mesh))
                 places.push_back(place);
-        if (places.empty() || repeat == most_repeats)
+        if ((places.empty() && !turned) || repeat == most_repeats)
             return {std::move(left), repeat, embedded};
         fix_vertices_in(places, repeat, limits.distance, mesh, limits.fixed);
     }

@@ -10,15 +10,17 @@ namespace vdb_shell
 struct EmbeddedCollapse {
     Coarsened result;
     int repeats = 0;       ///< how often some vertices had to be held
-    bool embedded = false; ///< no two triangles of the result touch but in what they share
+    /// No two triangles of the result touch but in what they share, and no component has turned
+    /// inside out.
+    bool embedded = false;
 };
 
 /// Whether vertices that no direction serves (mesh/most_visible.h) count as spoiled as well.
 enum class Blind { allowed, avoided };
 
-/// collapse_edges, and again with the vertices around all triangles that touch held, until none do
-/// or `most_repeats` are made; the last result is given back as it is. What is blind or touches in
-/// the input stays so. Precondition: closed, manifold, consistently oriented. Same result for any
+/// collapse_edges, and again with the vertices around all triangles that touch held, and those of
+/// components that have turned inside out, until there are none or `most_repeats` are made; the
+/// last result is given back as it is. What is blind or touches in the input stays so. Precondition: closed, manifold, consistently oriented. Same result for any
 /// number of threads.
 EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limits,
                                    int most_repeats, Blind blind, const StageProgress& progress);
