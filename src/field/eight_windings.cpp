@@ -41,7 +41,8 @@ struct HalfAngles {
 HWY_INLINE void add(const NearTriangle& triangle, const FloatPoint& p, HalfAngles& sum)
 {
     const Floats zero(0.0F), one(1.0F);
-    const FloatPoint a = to(triangle[0], p), b = to(triangle[1], p), c = to(triangle[2], p);
+    const FloatPoint a = to(triangle.corners[0], p), b = to(triangle.corners[1], p),
+                     c = to(triangle.corners[2], p);
     const Floats la = square_root(dot(a, a)), lb = square_root(dot(b, b)),
                  lc = square_root(dot(c, c));
     const Floats y = dot(a, cross(b, c));
@@ -62,26 +63,36 @@ HWY_INLINE void add(const NearTriangle& triangle, const FloatPoint& p, HalfAngle
     sum.im = select(sound, im * scale, sum.im);
 }
 
+/// The solid angle of a far small area is its area vector times the direction over the distance
+/// cubed. `way`: to it; `squared`: of its length.
+HWY_INLINE Floats solid_angle(const FarCluster& cluster, const FloatPoint& way, Floats squared)
+{
+    const std::array<float, 3>& n = cluster.area_normal;
+    return (Floats(n[0]) * way[0] + Floats(n[1]) * way[1] + Floats(n[2]) * way[2]) *
+           (Floats(1.0F) / (squared * square_root(squared)));
+}
+
 void sum_up(const FarCluster* clusters, std::size_t cluster_count, const NearTriangle* triangles,
             std::size_t triangle_count, const EightPoints& points, float* dipoles, float* re,
             float* im, float* laps)
 {
     const FloatPoint p{Floats::load(points.x.data()), Floats::load(points.y.data()),
                        Floats::load(points.z.data())};
-    const Floats one(1.0F);
     Floats far(0.0F);
     for (std::size_t i = 0; i < cluster_count; ++i) {
         const FloatPoint way = to(clusters[i].centre, p);
-        const std::array<float, 3>& n = clusters[i].area_normal;
-        const Floats squared = dot(way, way);
-        // The solid angle of a far small area is its area vector times the direction over the
-        // distance cubed.
-        far += (Floats(n[0]) * way[0] + Floats(n[1]) * way[1] + Floats(n[2]) * way[2]) *
-               (one / (squared * square_root(squared)));
+        far += solid_angle(clusters[i], way, dot(way, way));
     }
-    HalfAngles near{one, Floats(0.0F), Floats(0.0F)};
-    for (std::size_t i = 0; i < triangle_count; ++i)
-        add(triangles[i], p, near);
+    HalfAngles near{Floats(1.0F), Floats(0.0F), Floats(0.0F)};
+    for (std::size_t i = 0; i < triangle_count; ++i) {
+        const NearTriangle& triangle = triangles[i];
+        const FloatPoint way = to(triangle.from_afar.centre, p);
+        const Floats squared = dot(way, way);
+        if (bits_of(squared <= Floats(triangle.squared_far)) == 0)
+            far += solid_angle(triangle.from_afar, way, squared);
+        else
+            add(triangle, p, near);
+    }
     store(far, dipoles);
     store(near.re, re);
     store(near.im, im);

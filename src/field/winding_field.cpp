@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -34,6 +35,8 @@ constexpr double kFarHalves = 3.0;
 constexpr std::size_t kFewPoints = 2 * kAllPlaces;
 // Cubes with more points than this are taken one after the other, smaller ones by threads.
 constexpr std::size_t kPointsOfTask = 32 * kFewPoints;
+// A cube of kFewPoints voxels is five of them wide.
+constexpr int kCurveHalvings = 3;
 // Points in one place cannot be parted.
 constexpr int kMostHalvings = 30;
 
@@ -159,9 +162,33 @@ private:
         }
     }
 
+    /// Where a point is along a curve through the cube that passes near points together (Morton
+    /// 1966): each number of it is an eighth of the one before.
+    static unsigned place_along_curve(const Cube& cube, const Vec3d& point)
+    {
+        Vec3d middle = cube.middle;
+        unsigned place = 0;
+        double half = cube.half;
+        for (int halving = 0; halving < kCurveHalvings; ++halving) {
+            half *= 0.5;
+            for (int axis = 0; axis < 3; ++axis) {
+                const bool beyond = point[axis] >= middle[axis];
+                place = 2 * place + unsigned(beyond);
+                middle[axis] += beyond ? half : -half;
+            }
+        }
+        return place;
+    }
+
     /// The sums of a smallest cube.
     void add_up(const Cube& cube)
     {
+        // Eight at a time are looked at together, and what is far from all eight costs less.
+        std::sort(order_.begin() + std::ptrdiff_t(cube.begin),
+                  order_.begin() + std::ptrdiff_t(cube.end), [&](std::size_t a, std::size_t b) {
+                      return std::make_pair(place_along_curve(cube, points_[a]), a) <
+                             std::make_pair(place_along_curve(cube, points_[b]), b);
+                  });
         std::vector<Vec3d> points(cube.end - cube.begin);
         std::vector<float> near(points.size());
         for (std::size_t i = 0; i < points.size(); ++i)

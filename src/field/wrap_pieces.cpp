@@ -6,11 +6,13 @@
 
 #include "field/wrap_pieces.h"
 
+#include "core/stage_stop.h"
 #include "field/winding_field.h"
 #include "resample/triangle_pieces.h"
 
 #include <openvdb/tools/Morphology.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -40,7 +42,7 @@ constexpr double kSummedVoxels = 8.0;
 // From the voxel that the middle of a piece is in to all that are nearer to it than kSolidVoxels.
 constexpr int kReachVoxels = 2;
 
-enum class Part : char { boundary, sheet, interior };
+enum class Part : char { boundary, sheet, interior, open };
 
 Vec3d middle_of(const TriangleCorners& t)
 {
@@ -97,20 +99,12 @@ std::vector<Part> parts_of(const std::vector<TriangleCorners>& pieces, const Win
 
 /// Pieces with edges of no more than so many voxels.
 template <typename Visit>
-void for_each_cut(const std::vector<TriangleCorners>& triangles, double voxels, const Visit& visit)
+void for_each_cut(const TriangleCorners& triangle, double voxels, const Visit& visit)
 {
-    for (const TriangleCorners& t : triangles)
-        for_each_piece(t[0], t[1], t[2], voxels,
-                       [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-                           visit(TriangleCorners{a, b, c});
-                       });
-}
-
-std::vector<TriangleCorners> cut_up(const std::vector<TriangleCorners>& triangles, double voxels)
-{
-    std::vector<TriangleCorners> pieces;
-    for_each_cut(triangles, voxels, [&](const TriangleCorners& piece) { pieces.push_back(piece); });
-    return pieces;
+    for_each_piece(triangle[0], triangle[1], triangle[2], voxels,
+                   [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+                       visit(TriangleCorners{a, b, c});
+                   });
 }
 
 /// The voxels around pieces where the winding number says inside, and those where it says outside,
@@ -133,10 +127,13 @@ KnownSides sides_around(const std::vector<TriangleCorners>& triangles, WindingGr
     openvdb::MaskTree around;
     openvdb::tree::ValueAccessor<openvdb::MaskTree> mark(around);
     std::size_t pieces = 0;
-    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
-        mark.setValueOn(Coord::round(middle_of(piece)));
-        ++pieces;
-    });
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        stop_if_stage_wants(t);
+        for_each_cut(triangles[t], kPieceVoxels, [&](const TriangleCorners& piece) {
+            mark.setValueOn(Coord::round(middle_of(piece)));
+            ++pieces;
+        });
+    }
     dilate(around);
     if (around.activeVoxelCount() > 2 * pieces)
         return {};
@@ -150,12 +147,6 @@ KnownSides sides_around(const std::vector<TriangleCorners>& triangles, WindingGr
     dilate(*sides.outside);
     return sides;
 }
-
-/// Pieces to ask for, and which of them answers for each.
-struct Alike {
-    std::vector<TriangleCorners> asked;
-    std::vector<std::uint32_t> answer;
-};
 
 /// A piece's voxel, and its normal's direction as one of those to a cube's faces, edges and
 /// corners. None without area.
@@ -172,32 +163,70 @@ Kind kind_of(const TriangleCorners& piece)
     return kind;
 }
 
-/// The grid shows one surface in a voxel, so pieces that have their middles in one and are turned
-/// alike get one answer. It bounds the pieces to ask for by the voxels.
-Alike alike_in_a_voxel(const std::vector<TriangleCorners>& pieces)
+/// Pieces to ask for. The grid shows one surface in a voxel, so pieces that have their middles in
+/// one and are turned alike get one answer, which bounds the pieces to ask for by the voxels.
+class Questions
 {
-    Alike alike;
-    std::map<Kind, std::uint32_t> known;
-    for (const TriangleCorners& piece : pieces) {
-        const auto next = static_cast<std::uint32_t>(alike.asked.size());
-        const auto [at, is_new] = known.try_emplace(kind_of(piece), next);
+public:
+    void add(const TriangleCorners& piece)
+    {
+        const auto next = static_cast<std::uint32_t>(asked_.size());
+        const auto [at, is_new] = known_.try_emplace(kind_of(piece), next);
         if (is_new)
-            alike.asked.push_back(piece);
-        alike.answer.push_back(at->second);
+            asked_.push_back(piece);
+        answer_.push_back(at->second);
     }
-    return alike;
-}
+    const std::vector<TriangleCorners>& asked() const { return asked_; }
+    /// For each piece that was added, which of those that are asked answers for it.
+    const std::vector<std::uint32_t>& answer() const { return answer_; }
+
+private:
+    std::vector<TriangleCorners> asked_;
+    std::vector<std::uint32_t> answer_;
+    std::map<Kind, std::uint32_t> known_;
+};
 
 double area_of(const TriangleCorners& t)
 {
     return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).length();
 }
 
+/// `open`: it has to be asked for.
+Part known_part(const TriangleCorners& piece, const KnownSides& sides)
+{
+    if (!sides.inside)
+        return Part::open;
+    const Coord voxel = Coord::round(middle_of(piece));
+    if (!sides.inside->isValueOn(voxel))
+        return Part::sheet;
+    return sides.outside->isValueOn(voxel) || !(area_of(piece) > 0) ? Part::open : Part::interior;
+}
+
+/// Pieces inside the solid are left out: the distance to them would bring values near zero into the
+/// solid.
+void put(const TriangleCorners& piece, Part part, WrapPieces& pieces)
+{
+    const double area = area_of(piece);
+    if (part == Part::interior) {
+        pieces.interior_area += area;
+        return;
+    }
+    const bool sheet = part == Part::sheet;
+    (sheet ? pieces.sheet : pieces.boundary).push_back(piece);
+    (sheet ? pieces.sheet_area : pieces.boundary_area) += area;
+}
+
 } // namespace
 
 std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles)
 {
-    return cut_up(triangles, kSummedVoxels);
+    std::vector<TriangleCorners> pieces;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        stop_if_stage_wants(t);
+        for_each_cut(triangles[t], kSummedVoxels,
+                     [&](const TriangleCorners& piece) { pieces.push_back(piece); });
+    }
+    return pieces;
 }
 
 WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
@@ -205,48 +234,36 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
     const std::vector<TriangleCorners>& triangles = winding.number().triangles();
     const KnownSides sides = sides_around(triangles, winding);
     progress.stop_if_interrupted(10);
-    WrapPieces pieces;
-    // Pieces inside the solid are left out of the field: the distance to them would bring values
-    // near zero into the solid.
-    const auto put = [&](const TriangleCorners& piece, Part part) {
-        const double area = area_of(piece);
-        if (part == Part::interior) {
-            pieces.interior_area += area;
-            return;
-        }
-        const bool sheet = part == Part::sheet;
-        (sheet ? pieces.sheet : pieces.boundary).push_back(piece);
-        (sheet ? pieces.sheet_area : pieces.boundary_area) += area;
-    };
-    // A large triangle may bound the solid in one part and stick out of it in another.
-    std::vector<TriangleCorners> open, cut;
-    for (const TriangleCorners& triangle : triangles) {
-        cut.clear();
-        const bool known = sides.inside != nullptr;
-        bool outside_only = known;
-        for_each_cut({triangle}, kPieceVoxels, [&](const TriangleCorners& piece) {
-            cut.push_back(piece);
-            outside_only = outside_only && !sides.inside->isValueOn(Coord::round(middle_of(piece)));
+    Questions questions;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        stop_if_stage_wants(t);
+        for_each_cut(triangles[t], kPieceVoxels, [&](const TriangleCorners& piece) {
+            if (known_part(piece, sides) == Part::open)
+                questions.add(piece);
         });
-        if (outside_only) {
-            put(triangle, Part::sheet);
-            continue;
-        }
-        for (const TriangleCorners& piece : cut) {
-            const Coord voxel = Coord::round(middle_of(piece));
-            if (known && !sides.inside->isValueOn(voxel))
-                put(piece, Part::sheet);
-            else if (known && !sides.outside->isValueOn(voxel) && area_of(piece) > 0)
-                put(piece, Part::interior);
-            else
-                open.push_back(piece);
-        }
     }
-    const Alike alike = alike_in_a_voxel(open);
-    const std::vector<Part> parts = parts_of(alike.asked, winding.number());
-    for (std::size_t i = 0; i < open.size(); ++i)
-        put(open[i], parts[alike.answer[i]]);
+    const std::vector<Part> answers = parts_of(questions.asked(), winding.number());
     progress.stop_if_interrupted(20);
+    // Cut a second time, since a soup may have many times more pieces than the memory holds.
+    WrapPieces pieces;
+    auto answer = questions.answer().begin();
+    std::vector<TriangleCorners> cut;
+    std::vector<Part> parts;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        stop_if_stage_wants(t);
+        cut.clear(), parts.clear();
+        for_each_cut(triangles[t], kPieceVoxels, [&](const TriangleCorners& piece) {
+            const Part known = known_part(piece, sides);
+            cut.push_back(piece);
+            parts.push_back(known == Part::open ? answers[*answer++] : known);
+        });
+        // A large triangle may bound the solid in one part and stick out of it in another.
+        const bool one = std::equal(parts.begin() + 1, parts.end(), parts.begin());
+        if (one)
+            put(triangles[t], parts.front(), pieces);
+        for (std::size_t i = 0; i < cut.size() && !one; ++i)
+            put(cut[i], parts[i], pieces);
+    }
     return pieces;
 }
 

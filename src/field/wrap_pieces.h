@@ -12,7 +12,7 @@ namespace vdb_shell
 /// Triangles cut for the winding number: the same sum, of which little is near to any point.
 std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles);
 
-/// The input's triangles by what they are to the solid: whole where all of one is a sheet, in
+/// The input's triangles by what they are to the solid: whole where all of one is of one kind, in
 /// pieces of no more than two voxels elsewhere. All coordinates in voxels.
 struct WrapPieces {
     std::vector<TriangleCorners> boundary, sheet;

@@ -2,8 +2,8 @@
 
 // Takes an embedded surface and leaves a coarser one that is embedded too, where that can be had.
 // Edge collapses know nothing of triangles that are not neighbours, so exact tests look for
-// contacts afterwards, and for components that have turned inside out. The vertices around these are
-// fixed, and the collapses begin anew from the input; undoing single collapses would need their
+// contacts afterwards, and for components that have turned inside out. The vertices around these
+// are fixed, and the collapses begin anew from the input; undoing single collapses would need their
 // history. Fixed vertices only become more, so each repeat is nearer to the input, which is
 // embedded.
 

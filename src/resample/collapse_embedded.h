@@ -9,7 +9,7 @@ namespace vdb_shell
 
 struct EmbeddedCollapse {
     Coarsened result;
-    int repeats = 0;       ///< how often some vertices had to be held
+    int repeats = 0; ///< how often some vertices had to be held
     /// No two triangles of the result touch but in what they share, and no component has turned
     /// inside out.
     bool embedded = false;
@@ -20,8 +20,8 @@ enum class Blind { allowed, avoided };
 
 /// collapse_edges, and again with the vertices around all triangles that touch held, and those of
 /// components that have turned inside out, until there are none or `most_repeats` are made; the
-/// last result is given back as it is. What is blind or touches in the input stays so. Precondition: closed, manifold, consistently oriented. Same result for any
-/// number of threads.
+/// last result is given back as it is. What is blind or touches in the input stays so.
+/// Precondition: closed, manifold, consistently oriented. Same result for any number of threads.
 EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limits,
                                    int most_repeats, Blind blind, const StageProgress& progress);
 
