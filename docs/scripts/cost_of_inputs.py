@@ -40,12 +40,17 @@ def write_ply(path, points, triangles):
 
 
 def finishes(command, words, limit):
-    """Whether it ends within the limit. The exit status is left aside: most inputs are refused."""
+    """Whether it ends within the limit. The exit status is left aside, since most inputs are refused, but for wraps: there
+    always is one."""
     line = [command, words[0], "--threads", "1", *words[1:]] if words[0] == "build" else [command, *words]
     ended = subprocess.run(line, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False,
                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5)))
     # What the command says of a signal, and the system's word where it ended before it could.
-    return ended.returncode not in (128 + signal.SIGXCPU, -signal.SIGXCPU, -signal.SIGKILL)
+    if ended.returncode in (128 + signal.SIGXCPU, -signal.SIGXCPU, -signal.SIGKILL):
+        return False
+    if "--wrap" in words and ended.returncode != 0:
+        raise SystemExit(f"exit status {ended.returncode}: {' '.join(line)}")
+    return True
 
 
 def seconds(command, words, limit):

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_shell/growth/grow.h"
-#include "vdb_shell/mesh/normals.h"
 
 #include "growth/grown.h"
 #include "growth/move_tests.h"
@@ -21,7 +20,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 
 namespace
@@ -31,32 +29,11 @@ using namespace vdb_shell;
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 using test::bumpy_sphere;
+using test::Case;
+using test::case_of;
 using test::fill_of;
+using test::grown;
 using test::kInfinity;
-
-struct Case {
-    TriangleMesh mesh;
-    Directions directions;
-    LineLengths start; ///< none: growth finds its own start
-    std::vector<double> cap;
-};
-
-Case case_of(const TriangleMesh& mesh, double cap = kInfinity)
-{
-    Case c;
-    c.mesh = mesh;
-    c.directions = directions_along(mesh, pseudo_normals(mesh));
-    const std::size_t count = mesh.points.size();
-    c.start = {std::vector<double>(count, 0.0), std::vector<std::uint32_t>(count, 0),
-               std::vector<StopReason>(count, StopReason::none)};
-    c.cap.assign(count, cap);
-    return c;
-}
-
-GrowResult grown(const Case& c, const GrowOptions& options = {}, Interrupter* interrupter = nullptr)
-{
-    return grow_shell(c.mesh, c.directions, c.start, c.cap, options, {}, interrupter);
-}
 
 void expect_all_positive(const PrismShell& shell, const PrismSplit& split)
 {
@@ -329,63 +306,6 @@ TEST(Grow, GivesTheSameBitsForAnyNumberOfThreads)
     }
 }
 
-class StopAfter : public Interrupter
-{
-public:
-    explicit StopAfter(int polls) : left_(polls) {}
-    bool wasInterrupted(int /*percent*/) override { return left_-- <= 0; }
-    int left() const { return left_; }
-
-private:
-    int left_;
-};
-
-TEST(Grow, StopsWhenAskedAtAnyPoint)
-{
-    const Case c = case_of(bumpy_sphere());
-    // How often it is asked depends on how many threads share the loops.
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    constexpr int kMany = 1000000;
-    StopAfter never(kMany);
-    grown(c, {}, &never);
-    const int polls = kMany - never.left();
-    EXPECT_GT(polls, 10);
-    for (const int after : {0, 1, polls / 2, polls - 1}) {
-        StopAfter interrupter(after);
-        EXPECT_THROW(grown(c, {}, &interrupter), Cancelled) << after;
-    }
-}
-
-/// What share of growth it was told is done.
-struct NotesPercents : Interrupter {
-    bool wasInterrupted(int percent) override
-    {
-        if (percent >= 0)
-            percents.push_back(percent);
-        return false;
-    }
-    std::vector<int> percents;
-};
-
-TEST(Grow, ProgressGoesForwardInSmallStepsFromLevelToLevel)
-{
-    const Case c = case_of(bumpy_sphere(5));
-    GrowOptions options;
-    options.coarse_from = 1000;
-    const std::vector<Coarsened> levels = coarse_levels(c.mesh, options);
-    ASSERT_GE(levels.size(), 2U);
-    NotesPercents notes;
-    grow_shell_from({GrowFrom::levels, {}, levels}, c.mesh, c.directions, c.start, c.cap, options,
-                    {}, &notes);
-    ASSERT_FALSE(notes.percents.empty());
-    EXPECT_TRUE(std::is_sorted(notes.percents.begin(), notes.percents.end()));
-    EXPECT_GE(notes.percents.back(), 60);
-    int step = 0;
-    for (std::size_t i = 1; i < notes.percents.size(); ++i)
-        step = std::max(step, notes.percents[i] - notes.percents[i - 1]);
-    EXPECT_LE(step, 25);
-}
-
 // Growth goes through a large surface along a curve, whatever order its file has.
 TEST(Grow, AShellHasTheVerticesAndTrianglesOfItsMeshWhereTheyWere)
 {
@@ -421,13 +341,6 @@ TEST(Grow, AShellHasTheVerticesAndTrianglesOfItsMeshWhereTheyWere)
     EXPECT_TRUE(std::is_sorted(first.begin(), first.end()));
     for (std::size_t v = 0; v < levels.front().from.size(); ++v)
         ASSERT_EQ(levels.front().mesh.points[v], mesh.points[levels.front().from[v]]) << v;
-}
-
-TEST(Grow, CoarseningStopsWhenAsked)
-{
-    const TriangleMesh mesh = bumpy_sphere(5);
-    StopAfter soon(5);
-    EXPECT_THROW(coarse_levels(mesh, GrowOptions{}, &soon), Cancelled);
 }
 
 TEST(Grow, EndsWhereThereIsEnough)
