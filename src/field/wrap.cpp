@@ -198,9 +198,12 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
     result.mesh = contour_mapped(*field, to_world, {options.adaptivity, !options.keep_voids},
                                  result.report.contour, interrupter);
     // Samples a voxel apart: features between them are smaller than what the wrap can show.
-    const double spacing = kDistanceSpacingVoxels * voxel;
-    result.report.input_to_wrap = surface_distance(mesh, result.mesh, spacing, interrupter);
-    result.report.wrap_to_input = surface_distance(result.mesh, mesh, spacing, interrupter);
+    const auto distance = [&](const TriangleMesh& from, const TriangleMesh& to) {
+        const double spacing = std::max(kDistanceSpacingVoxels * voxel, finest_spacing(from));
+        return surface_distance(from, to, spacing, interrupter);
+    };
+    result.report.input_to_wrap = distance(mesh, result.mesh);
+    result.report.wrap_to_input = distance(result.mesh, mesh);
     return result;
 }
 

@@ -14,6 +14,7 @@
 
 #include "report/text_lines.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace vdb_shell
@@ -88,7 +89,8 @@ std::string what_is_lost(const ShellResult& r, const TriangleMesh& mesh, const W
                          const std::string& what, Interrupter* interrupter)
 {
     const double voxel = wrap_voxel_size(mesh, options);
-    const double lost = surface_distance(mesh, r.surface, voxel, interrupter).max;
+    const double spacing = std::max(voxel, finest_spacing(mesh));
+    const double lost = surface_distance(mesh, r.surface, spacing, interrupter).max;
     if (lost <= voxel)
         return {};
     return what + " lies " + number(lost) + " from the rest, more than a voxel of a wrap, " +

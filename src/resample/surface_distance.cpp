@@ -10,8 +10,10 @@
 
 #include "vdb_shell/resample/surface_distance.h"
 
+#include "core/fail.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "core/stage_stop.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/triangle_area.h"
 #include "mesh/triangle_corners.h"
@@ -37,6 +39,9 @@ using openvdb::Vec3d;
 // A bound on the memory: a point, its area and its distance take 40 bytes, so 2^27 of them take 5
 // GiB.
 constexpr double kMostSamples = 134217728.0;
+// Pieces for each square of the spacing: halving at the longest edge leaves pieces smaller than it
+// allows.
+constexpr double kPiecesInSquare = 8;
 // A search begins with the triangle that the one before it found, which is near. Of triangles that
 // are equally near to the last bit of a float the beginning may decide which is found, so runs of
 // points that follow each other are cut at fixed places, not where threads happen to cut them.
@@ -109,21 +114,19 @@ double sum_of_edges(const TriangleMesh& mesh)
 /// and not the sheets.
 Samples sample(const TriangleMesh& mesh, double spacing)
 {
+    const double finest = finest_spacing(mesh);
+    if (!(std::isfinite(spacing) && spacing > 0 && spacing >= finest))
+        fail<InvalidOption>("surface distance: spacing is ", spacing, ", must be at least ", finest,
+                            ", which gives 2^27 points");
     const double area = surface_area(mesh.points, mesh.triangles);
-    // An estimate before anything is made: it takes a piece for an eighth of the squared spacing,
-    // as halving at the longest edge leaves pieces smaller than the spacing allows; of a triangle
-    // without width there are as many as of its edges.
-    if (!(std::isfinite(spacing) && spacing > 0 &&
-          8 * area / (spacing * spacing) + sum_of_edges(mesh) / spacing < kMostSamples))
-        throw InvalidOption("surface distance: spacing is " + std::to_string(spacing) +
-                            " for an area of " + std::to_string(area) +
-                            ", must be positive and give less than 2^27 points");
     Samples samples;
     const auto add_to = [&](auto& list) {
+        std::size_t pieces = 0;
         for (const openvdb::Vec3I& t : mesh.triangles)
             for_each_piece(Vec3d(mesh.points[t[0]]), Vec3d(mesh.points[t[1]]),
                            Vec3d(mesh.points[t[2]]), spacing,
                            [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+                               stop_if_stage_wants(pieces++);
                                list.add((a + b + c) / 3.0, 0.5 * (b - a).cross(c - a).length());
                            });
         // Vertices count for the largest distance alone: they have no area, and so no weight in the
@@ -164,6 +167,15 @@ std::vector<double> distances_to(const TriangleMesh& surface, const std::vector<
 }
 
 } // namespace
+
+double finest_spacing(const TriangleMesh& from)
+{
+    // An estimate before anything is made; of a triangle without width there are as many pieces as
+    // of its edges. The root of kPiecesInSquare area / spacing^2 + edges / spacing = kMostSamples.
+    const double area = surface_area(from.points, from.triangles), edges = sum_of_edges(from);
+    return (edges + std::sqrt(edges * edges + 4 * kPiecesInSquare * area * kMostSamples)) /
+           (2 * kMostSamples);
+}
 
 DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& to, double spacing,
                                  Interrupter* interrupter)

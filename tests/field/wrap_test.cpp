@@ -335,7 +335,8 @@ TEST(Wrap, OfATriangleAndItsCopiesIsThatOfOne)
 {
     const TriangleMesh once = test::box(Vec3d(-1), Vec3d(1));
     TriangleMesh often = once;
-    for (std::uint32_t i = 0; i < 200; ++i) {
+    // More area than can be measured a voxel apart: 2^27 pieces, eight for each of 128 voxels.
+    for (std::uint32_t i = 0; i < 150000; ++i) {
         // Named from any of its corners.
         const openvdb::Vec3I t = once.triangles[0];
         often.triangles.emplace_back(t[i % 3], t[(i + 1) % 3], t[(i + 2) % 3]);

@@ -110,5 +110,16 @@ TEST(SurfaceDistance, CountsTrianglesWithoutWidthByTheirLength)
     EXPECT_NO_THROW(surface_distance(needle, unit_tetrahedron(), 1e3));
 }
 
+TEST(SurfaceDistance, TakesNoFinerSpacingThanGivesPointsThatFit)
+{
+    TriangleMesh copies;
+    copies.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    copies.triangles.assign(20000, {0, 1, 2});
+    const double finest = finest_spacing(copies);
+    // Eight pieces for each square of it, 2^27 in all; edges are few beside them.
+    EXPECT_NEAR(finest, std::sqrt(8 * 0.5 * 20000 / std::pow(2, 27)), 0.05 * finest);
+    EXPECT_THROW(surface_distance(copies, copies, 0.99 * finest), InvalidOption);
+}
+
 } // namespace
 } // namespace vdb_shell::test
