@@ -25,10 +25,10 @@ struct Simplified {
 /// Edge collapses in the order of their quadric error (edge_collapse.h) that move the surface by no
 /// more than the tolerance (the distance from what was collapsed to what is left), nor turn a
 /// triangle far. What comes out is closed, manifold and embedded like what went in, and no
-/// component of it has turned inside out. No edge longer than the limit is collapsed: what is flat keeps triangles of about that size, and
-/// the distances do not cost more and more. Where triangles touch, the vertices around them are
-/// held and all is done anew; the input itself is the last resort. Precondition: closed, manifold,
-/// embedded.
+/// component of it has turned inside out. No edge longer than the limit is collapsed: what is flat
+/// keeps triangles of about that size, and the distances do not cost more and more. Where triangles
+/// touch, the vertices around them are held and all is done anew; the input itself is the last
+/// resort. Precondition: closed, manifold, embedded.
 Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
                     Interrupter* interrupter);
 
