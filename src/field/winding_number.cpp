@@ -23,9 +23,8 @@ namespace
 
 using openvdb::Vec3d;
 
-// Half as many, or twice as many, take 4 and 10 % longer for the faces of a tet mesh
-// (cost_of_inputs, tet_faces of 96,000): a leaf of few triangles is far sooner, but there are more
-// of them.
+// Half as many take 3 %, twice as many 12 % longer for the wrap of 96,000 faces of a tet mesh
+// (tet_faces of docs/scripts/cost_inputs.py): small leaves are far sooner, but are more of them.
 constexpr std::uint32_t kLeafTriangles = 4;
 // As kFar for a single triangle, whose dipole is nearer to the truth: 0.017 turns off beside a
 // sphere, 0.021 from twice the radius on.

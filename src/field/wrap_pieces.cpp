@@ -107,6 +107,15 @@ void for_each_cut(const TriangleCorners& triangle, double voxels, const Visit& v
                    });
 }
 
+template <typename Visit>
+void for_each_cut(const std::vector<TriangleCorners>& triangles, double voxels, const Visit& visit)
+{
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        stop_if_stage_wants(t);
+        for_each_cut(triangles[t], voxels, visit);
+    }
+}
+
 /// The voxels around pieces where the winding number says inside, and those where it says outside,
 /// each with all voxels that a piece might reach from the one that its middle is in. Where all
 /// voxels around a piece are on one side, the grid cannot show another. A soup may have many times
@@ -127,13 +136,10 @@ KnownSides sides_around(const std::vector<TriangleCorners>& triangles, WindingGr
     openvdb::MaskTree around;
     openvdb::tree::ValueAccessor<openvdb::MaskTree> mark(around);
     std::size_t pieces = 0;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        stop_if_stage_wants(t);
-        for_each_cut(triangles[t], kPieceVoxels, [&](const TriangleCorners& piece) {
-            mark.setValueOn(Coord::round(middle_of(piece)));
-            ++pieces;
-        });
-    }
+    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
+        mark.setValueOn(Coord::round(middle_of(piece)));
+        ++pieces;
+    });
     dilate(around);
     if (around.activeVoxelCount() > 2 * pieces)
         return {};
@@ -221,11 +227,8 @@ void put(const TriangleCorners& piece, Part part, WrapPieces& pieces)
 std::vector<TriangleCorners> cut_to_sum_up(const std::vector<TriangleCorners>& triangles)
 {
     std::vector<TriangleCorners> pieces;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        stop_if_stage_wants(t);
-        for_each_cut(triangles[t], kSummedVoxels,
-                     [&](const TriangleCorners& piece) { pieces.push_back(piece); });
-    }
+    for_each_cut(triangles, kSummedVoxels,
+                 [&](const TriangleCorners& piece) { pieces.push_back(piece); });
     return pieces;
 }
 
@@ -235,13 +238,10 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
     const KnownSides sides = sides_around(triangles, winding);
     progress.stop_if_interrupted(10);
     Questions questions;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        stop_if_stage_wants(t);
-        for_each_cut(triangles[t], kPieceVoxels, [&](const TriangleCorners& piece) {
-            if (known_part(piece, sides) == Part::open)
-                questions.add(piece);
-        });
-    }
+    for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
+        if (known_part(piece, sides) == Part::open)
+            questions.add(piece);
+    });
     const std::vector<Part> answers = parts_of(questions.asked(), winding.number());
     progress.stop_if_interrupted(20);
     // Cut a second time, since a soup may have many times more pieces than the memory holds.

@@ -15,7 +15,9 @@ namespace vdb_shell
 struct Coarsened {
     TriangleMesh mesh;
     std::vector<std::uint32_t> from; ///< for each point, which of the input's it is, ascending
-    bool embedded = false;           ///< by coarsen: no triangles touch but in what they share
+    /// By coarsen: no triangles touch but in what they share, and no component has turned inside
+    /// out.
+    bool embedded = false;
 };
 
 /// Edge collapses of least quadric error (Garland, Heckbert 1997, "Surface simplification using
