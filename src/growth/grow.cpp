@@ -96,16 +96,14 @@ GrowthSchedule schedule_of(const GrowOptions& options)
 std::vector<std::uint8_t> turned_components(const Connectivity& connectivity,
                                             const PrismShell& shell)
 {
-    std::vector<std::vector<std::uint32_t>> faces(std::size_t(connectivity.components));
-    for (std::uint32_t f = 0; f < connectivity.faces.size(); ++f)
-        faces[std::size_t(connectivity.component[connectivity.faces[f][0]])].push_back(f);
-    std::vector<std::uint8_t> turned(faces.size());
-    for_each_index(turned.size(), [&](std::size_t c) {
-        const auto sign = [&](const std::vector<openvdb::Vec3s>& points) {
-            return exact::volume_sign(points, connectivity.faces, faces[c]);
-        };
-        turned[c] = sign(shell.outer) * sign(shell.inner) < 0;
-    });
+    const auto signs = [&](const std::vector<openvdb::Vec3s>& points) {
+        return exact::volume_signs(points, connectivity.faces, connectivity.component,
+                                   connectivity.components);
+    };
+    const std::vector<int> outer = signs(shell.outer), inner = signs(shell.inner);
+    std::vector<std::uint8_t> turned(outer.size());
+    for (std::size_t c = 0; c < turned.size(); ++c)
+        turned[c] = outer[c] * inner[c] < 0;
     return turned;
 }
 

@@ -9,6 +9,8 @@
 
 #include "mesh/exact_volume.h"
 
+#include "core/parallel.h"
+
 #include <CGAL/Exact_integer.h>
 
 #include <algorithm>
@@ -119,6 +121,18 @@ int volume_sign(const std::vector<Vec3s>& points, const std::vector<Vec3I>& tria
         sum += whole_cone(apex, points[v[0]], points[v[1]], points[v[2]], -lowest);
     }
     return sum > 0 ? 1 : sum < 0 ? -1 : 0;
+}
+
+std::vector<int> volume_signs(const std::vector<Vec3s>& points, const std::vector<Vec3I>& triangles,
+                              const std::vector<int>& component_of_vertex, int count)
+{
+    std::vector<std::vector<std::uint32_t>> chosen(static_cast<std::size_t>(count));
+    for (std::uint32_t t = 0; t < triangles.size(); ++t)
+        chosen[std::size_t(component_of_vertex[triangles[t][0]])].push_back(t);
+    std::vector<int> signs(chosen.size());
+    for_each_index(signs.size(),
+                   [&](std::size_t c) { signs[c] = volume_sign(points, triangles, chosen[c]); });
+    return signs;
 }
 
 bool same_volume(const std::vector<Vec3s>& points, const std::vector<openvdb::Vec4I>& tets,

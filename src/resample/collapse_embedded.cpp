@@ -87,12 +87,11 @@ EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limi
         progress.stop_if_interrupted(100.0 * repeat / (most_repeats + 1));
         Coarsened left = collapse_edges(mesh, limits);
         std::vector<FloatBox> places = spoiled_places(left.mesh);
-        const bool turned = sides.hold_turned(left, limits.fixed);
-        const bool embedded = places.empty() && !turned;
+        const bool embedded = !sides.hold_turned(left, limits.fixed) && places.empty();
         if (blind == Blind::avoided)
             for (const FloatBox& place : blind_places(left.mesh))
                 places.push_back(place);
-        if ((places.empty() && !turned) || repeat == most_repeats)
+        if ((embedded && places.empty()) || repeat == most_repeats)
             return {std::move(left), repeat, embedded};
         fix_vertices_in(places, repeat, limits.distance, mesh, limits.fixed);
     }

@@ -3,7 +3,6 @@
 
 #include "vdb_shell/resample/coarsen.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace vdb_shell
@@ -23,8 +22,8 @@ public:
     bool hold_turned(const Coarsened& left, std::vector<char>& fixed) const;
 
 private:
-    std::vector<std::uint32_t> component_; ///< by vertex
-    std::vector<int> sign_;                ///< by component
+    std::vector<int> component_; ///< by vertex
+    std::vector<int> sign_;      ///< by component
 };
 
 } // namespace vdb_shell
