@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace vdb_shell
 {
@@ -42,7 +43,7 @@ constexpr double kSummedVoxels = 8.0;
 // From the voxel that the middle of a piece is in to all that are nearer to it than kSolidVoxels.
 constexpr int kReachVoxels = 2;
 
-enum class Part : char { boundary, sheet, interior, open };
+enum class Part : char { boundary, sheet, interior };
 
 Vec3d middle_of(const TriangleCorners& t)
 {
@@ -197,15 +198,17 @@ double area_of(const TriangleCorners& t)
     return 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).length();
 }
 
-/// `open`: it has to be asked for.
-Part known_part(const TriangleCorners& piece, const KnownSides& sides)
+/// None: it has to be asked for.
+std::optional<Part> known_part(const TriangleCorners& piece, const KnownSides& sides)
 {
     if (!sides.inside)
-        return Part::open;
+        return {};
     const Coord voxel = Coord::round(middle_of(piece));
     if (!sides.inside->isValueOn(voxel))
         return Part::sheet;
-    return sides.outside->isValueOn(voxel) || !(area_of(piece) > 0) ? Part::open : Part::interior;
+    if (!sides.outside->isValueOn(voxel) && area_of(piece) > 0)
+        return Part::interior;
+    return {};
 }
 
 /// Pieces inside the solid are left out: the distance to them would bring values near zero into the
@@ -239,7 +242,7 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
     progress.stop_if_interrupted(10);
     Questions questions;
     for_each_cut(triangles, kPieceVoxels, [&](const TriangleCorners& piece) {
-        if (known_part(piece, sides) == Part::open)
+        if (!known_part(piece, sides))
             questions.add(piece);
     });
     const std::vector<Part> answers = parts_of(questions.asked(), winding.number());
@@ -253,9 +256,9 @@ WrapPieces sort_pieces(WindingGrid& winding, const StageProgress& progress)
         stop_if_stage_wants(t);
         cut.clear(), parts.clear();
         for_each_cut(triangles[t], kPieceVoxels, [&](const TriangleCorners& piece) {
-            const Part known = known_part(piece, sides);
+            const std::optional<Part> known = known_part(piece, sides);
             cut.push_back(piece);
-            parts.push_back(known == Part::open ? answers[*answer++] : known);
+            parts.push_back(known ? *known : answers[*answer++]);
         });
         // A large triangle may bound the solid in one part and stick out of it in another.
         const bool one = std::equal(parts.begin() + 1, parts.end(), parts.begin());
