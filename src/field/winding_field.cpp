@@ -94,6 +94,19 @@ struct FarField {
     }
 };
 
+/// Which eighth of a cube a point is in: a bit for each axis, that of x the highest.
+unsigned eighth_with(const Vec3d& point, const Vec3d& middle)
+{
+    return (point[0] < middle[0] ? 0U : 4U) + (point[1] < middle[1] ? 0U : 2U) +
+           (point[2] < middle[2] ? 0U : 1U);
+}
+
+/// `middle`: of the cube; `half`: of the eighth.
+Vec3d middle_of(unsigned eighth, const Vec3d& middle, double half)
+{
+    return middle + half * Vec3d(eighth & 4U ? 1 : -1, eighth & 2U ? 1 : -1, eighth & 1U ? 1 : -1);
+}
+
 /// A cube, its points, and what it was handed.
 struct Cube {
     Vec3d middle;
@@ -167,28 +180,34 @@ private:
     static unsigned place_along_curve(const Cube& cube, const Vec3d& point)
     {
         Vec3d middle = cube.middle;
-        unsigned place = 0;
         double half = cube.half;
+        unsigned place = 0;
         for (int halving = 0; halving < kCurveHalvings; ++halving) {
+            const unsigned eighth = eighth_with(point, middle);
             half *= 0.5;
-            for (int axis = 0; axis < 3; ++axis) {
-                const bool beyond = point[axis] >= middle[axis];
-                place = 2 * place + unsigned(beyond);
-                middle[axis] += beyond ? half : -half;
-            }
+            middle = middle_of(eighth, middle, half);
+            place = 8 * place + eighth;
         }
         return place;
+    }
+
+    /// In the order of the curve, those in one place of it by their own. Eight at a time are looked
+    /// at together, and what is far from all eight costs less.
+    void sort_along_curve(const Cube& cube)
+    {
+        std::vector<std::pair<unsigned, std::size_t>> places;
+        places.reserve(cube.end - cube.begin);
+        for (std::size_t i = cube.begin; i < cube.end; ++i)
+            places.emplace_back(place_along_curve(cube, points_[order_[i]]), order_[i]);
+        std::sort(places.begin(), places.end());
+        for (std::size_t i = 0; i < places.size(); ++i)
+            order_[cube.begin + i] = places[i].second;
     }
 
     /// The sums of a smallest cube.
     void add_up(const Cube& cube)
     {
-        // Eight at a time are looked at together, and what is far from all eight costs less.
-        std::sort(order_.begin() + std::ptrdiff_t(cube.begin),
-                  order_.begin() + std::ptrdiff_t(cube.end), [&](std::size_t a, std::size_t b) {
-                      return std::make_pair(place_along_curve(cube, points_[a]), a) <
-                             std::make_pair(place_along_curve(cube, points_[b]), b);
-                  });
+        sort_along_curve(cube);
         std::vector<Vec3d> points(cube.end - cube.begin);
         std::vector<float> near(points.size());
         for (std::size_t i = 0; i < points.size(); ++i)
@@ -207,9 +226,7 @@ private:
         const std::vector<std::uint32_t> rest = sum_up_far(cube, far);
         const auto first = order_.begin() + std::ptrdiff_t(cube.begin);
         const auto octant = [&](std::size_t index) {
-            const Vec3d& p = points_[index];
-            return (p[0] < cube.middle[0] ? 0U : 1U) + (p[1] < cube.middle[1] ? 0U : 2U) +
-                   (p[2] < cube.middle[2] ? 0U : 4U);
+            return eighth_with(points_[index], cube.middle);
         };
         std::array<std::size_t, 9> begins{};
         for (std::size_t i = cube.begin; i < cube.end; ++i)
@@ -224,10 +241,8 @@ private:
             if (begins[o] == begins[o + 1])
                 continue;
             const double half = 0.5 * cube.half;
-            const Vec3d middle =
-                cube.middle + half * Vec3d(o & 1U ? 1 : -1, o & 2U ? 1 : -1, o & 4U ? 1 : -1);
-            eighths.push_back({middle, half, cube.begin + begins[o], cube.begin + begins[o + 1],
-                               cube.halvings + 1, far, rest});
+            eighths.push_back({middle_of(o, cube.middle, half), half, cube.begin + begins[o],
+                               cube.begin + begins[o + 1], cube.halvings + 1, far, rest});
         }
     }
 
