@@ -93,7 +93,7 @@ void CellMoves::list_bounds()
     constexpr double kLeastLoss = 1e-3;
     bounds_.clear(Vec3d(0.0), ball_.radius);
     for (const int f : faces_)
-        for (const OrientedTet& tet : tables().twelve) {
+        for (const OrientedTet& tet : tested_tets(s_, f)) {
             if (dropped(s_, f, tet.pillar))
                 continue;
             TetCorners p;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace vdb_shell::growth
 {
@@ -154,6 +155,42 @@ struct Seams {
     }
 };
 
+/// The orders of both prisms with the seam's diagonal turned; -1 for one that cannot be.
+std::array<int, 2> turned_orders(const GrowState& s, const Seam& seam)
+{
+    // One and the same edge runs one way in one prism and the other way in the other.
+    return {exchanged(s.order[seam.from.face], seam.from.local, (seam.from.local + 1) % 3),
+            exchanged(s.order[seam.across.face], seam.across.local, (seam.across.local + 2) % 3)};
+}
+
+/// The seam along the edge from that corner of its face to the next; none where there is no face
+/// across.
+std::optional<Seam> seam_from(const Connectivity& m, const FaceCorner& from)
+{
+    const int end = m.corner(from.face, (from.local + 1) % 3);
+    for (const FaceCorner& at : star(m, m.corner(from.face, from.local)))
+        if (m.corner(at.face, (at.local + 2) % 3) == end)
+            return Seam{from, at};
+    return std::nullopt;
+}
+
+/// Turns the seam's diagonal if fewer of its prisms' tets fail then, and no prism that was sound.
+bool turn_to_mend(GrowState& s, const Seam& seam)
+{
+    const int f = seam.from.face, g = seam.across.face;
+    const auto [f_order, g_order] = turned_orders(s, seam);
+    if (f_order < 0 || g_order < 0)
+        return false;
+    const int f_before = failing_tets(s, f, s.order[f]), g_before = failing_tets(s, g, s.order[g]);
+    const int f_after = failing_tets(s, f, f_order), g_after = failing_tets(s, g, g_order);
+    if (f_after + g_after >= f_before + g_before || (f_before == 0 && f_after > 0) ||
+        (g_before == 0 && g_after > 0))
+        return false;
+    s.order[f] = static_cast<std::uint8_t>(f_order);
+    s.order[g] = static_cast<std::uint8_t>(g_order);
+    return true;
+}
+
 /// The orders of both prisms with the seam's diagonal turned, if that is better: score(f, order) of
 /// both is joined by `join`. Negative where it is not.
 template <class Score, class Join>
@@ -161,9 +198,7 @@ std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Sco
                                  const Join& join)
 {
     const int f = seam.from.face, g = seam.across.face;
-    // One and the same edge runs one way in one prism and the other way in the other.
-    const int f_order = exchanged(s.order[f], seam.from.local, (seam.from.local + 1) % 3);
-    const int g_order = exchanged(s.order[g], seam.across.local, (seam.across.local + 2) % 3);
+    const auto [f_order, g_order] = turned_orders(s, seam);
     if (f_order < 0 || g_order < 0)
         return {-1, -1};
     const double now = join(score(f, s.order[f]), score(g, s.order[g]));
@@ -227,6 +262,29 @@ void order_by_length(GrowState& s)
         });
         s.order[f] = static_cast<std::uint8_t>(order_index(order));
     }
+}
+
+std::size_t flip_to_mend(GrowState& s, const std::vector<std::uint8_t>& where)
+{
+    std::vector<std::uint8_t> fails(where.size());
+    for_each_index(
+        fails.size(),
+        [&](std::size_t i) {
+            const int f = static_cast<int>(i);
+            fails[i] = where[i] && !split_positive(s, f, s.order[f]);
+        },
+        64);
+    std::size_t total = 0, before = 0;
+    // Serial, since a turned diagonal changes what its neighbours may do, and few fail. Each flip
+    // leaves fewer failing tets, so passes end.
+    do {
+        before = total;
+        for (int f = 0; f < s.mesh->face_count(); ++f)
+            for (int k = 0; fails[f] && k < 3; ++k)
+                if (const std::optional<Seam> seam = seam_from(*s.mesh, {f, k}))
+                    total += turn_to_mend(s, *seam);
+    } while (total != before);
+    return total;
 }
 
 std::size_t flip_for_room(GrowState& s)

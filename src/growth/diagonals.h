@@ -8,9 +8,14 @@
 namespace vdb_shell::growth
 {
 
-/// Longest pillar first, ties by index. Precondition: the twelve-tet test holds, under which any
-/// order is valid.
+/// Longest pillar first, ties by index. Under the twelve-tet test any order is valid; of a shell
+/// that does not pass it, some prisms may need another one.
 void order_by_length(GrowState& s);
+
+/// Turns diagonals of the faces marked in `where` whose chosen tets are not all positive, as long
+/// as that makes fewer tets fail and no prism that was sound. Positions stay. For the three-tet
+/// test. Returns the number of flips.
+std::size_t flip_to_mend(GrowState& s, const std::vector<std::uint8_t>& where);
 
 /// One pass that turns diagonals while the sum of the log volumes of the two prisms' tets rises:
 /// room for the barrier. Returns the number of flips.

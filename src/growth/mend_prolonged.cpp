@@ -9,6 +9,7 @@
 #include "growth/mend_prolonged.h"
 
 #include "core/parallel.h"
+#include "growth/diagonals.h"
 #include "growth/lengthen_again.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
@@ -67,8 +68,11 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
 {
     pin_unservable(s, directions, length);
     place_pillars(s, directions, length);
+    if (!s.twelve)
+        order_by_length(s);
     const std::vector<Vec3d> prolonged = s.b;
-    mend_placed(s, progress.part(0, kShortenedAt));
+    mend_placed(s, progress.part(0, kShortenedAt),
+                s.twelve ? MendFrom::twelve_tets : MendFrom::chosen_tets);
     lengthen_again(s, prolonged, progress.part(kShortenedAt, 100));
     return volume6_lost(s, prolonged);
 }
@@ -83,6 +87,7 @@ std::vector<std::uint8_t> mend_placed(GrowState& s, const StageProgress& progres
         look = free_corners_of(s, failing);
         moved.assign(moved.size(), 0);
     }
+    const bool chosen = from == MendFrom::chosen_tets;
     std::vector<std::uint8_t> begun = look;
     std::vector<double> cut(s.b.size(), schedule.first_cut);
     for (int round = 0;; ++round) {
@@ -90,13 +95,19 @@ std::vector<std::uint8_t> mend_placed(GrowState& s, const StageProgress& progres
         progress.stop_if_interrupted(100 - std::ldexp(100, -round));
         const bool first = round == 0;
         const bool moving = round < schedule.moving_rounds;
+        // Another diagonal costs no volume, and nearly every prism that fails has one that does.
+        if (chosen)
+            flip_to_mend(s, faces_around(s, moved));
         if (moving)
-            untangle(s, first ? schedule.first_sweeps : schedule.sweeps, look, moved);
+            untangle(s, first ? schedule.first_sweeps : schedule.sweeps, look, moved,
+                     chosen ? UntangledTets::chosen : UntangledTets::twelve);
         std::vector<std::uint8_t> changed = faces_around(s, moved);
         if (first)
             std::transform(changed.begin(), changed.end(), failing.begin(), changed.begin(),
                            std::bit_or<>());
-        if (!shorten_around(s, violating_faces(s, changed, first && from == MendFrom::twelve_tets),
+        if (chosen)
+            flip_to_mend(s, changed);
+        if (!shorten_around(s, violating_faces(s, changed, first && from != MendFrom::failures),
                             moving ? schedule.cut_growth : schedule.last_cut_growth, cut, moved))
             break;
         look_around(*s.mesh, moved, look);

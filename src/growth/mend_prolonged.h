@@ -21,10 +21,12 @@ std::vector<double> mend_prolonged(GrowState& s, const Directions& directions,
                                    const std::vector<double>& length,
                                    const StageProgress& progress);
 
-/// Where inner points are moved first: wherever one of the twelve tets of a prism is not positive,
-/// or where the state's own tests fail. The first leaves more room for what comes after, the second
-/// moves fewer points.
-enum class MendFrom { twelve_tets, failures };
+/// Where inner points are moved first: wherever one of the twelve tets of a prism is not positive;
+/// where the state's own tests fail; or wherever one of the three chosen tets is not positive after
+/// diagonals have been turned, which is for the three-tet test, of a shell whose diagonals are
+/// free. The first leaves more room for what comes after, the second moves fewer points, the third
+/// loses least.
+enum class MendFrom { twelve_tets, failures, chosen_tets };
 
 /// The same where the inner points, rounded to float32, and the pins have been put by the caller.
 /// Gives the vertices at which mending began.

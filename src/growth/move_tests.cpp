@@ -203,12 +203,18 @@ Vec3d capped(const GrowState& s, int v, const Vec3d& x)
     return end_within_cap(s, v, arm / arm.length(), s.cap[v]);
 }
 
+int failing_tets(const GrowState& s, int f, int order)
+{
+    const std::array<OrientedTet, 3>& tets = tables().three[order];
+    return static_cast<int>(std::count_if(
+        tets.begin(), tets.end(), [&](const OrientedTet& tet) { return !positive(s, f, tet); }));
+}
+
 bool split_positive(const GrowState& s, int f, int order)
 {
-    for (const OrientedTet& tet : tables().three[order])
-        if (!positive(s, f, tet))
-            return false;
-    return true;
+    const std::array<OrientedTet, 3>& tets = tables().three[order];
+    return std::all_of(tets.begin(), tets.end(),
+                       [&](const OrientedTet& tet) { return positive(s, f, tet); });
 }
 
 namespace
@@ -224,23 +230,29 @@ bool surely_all_positive(const GrowState& s, int f)
     return true;
 }
 
-} // namespace
-
-bool prism_valid(const GrowState& s, int f)
+/// Whether these tets are positive, and the inner triangle has area.
+bool valid_with(const GrowState& s, int f, const Slice<OrientedTet>& tets)
 {
-    if (s.twelve && surely_all_positive(s, f))
-        return true;
-    if (!s.twelve && !split_positive(s, f, s.order[f]))
-        return false;
-    if (s.twelve)
-        for (const OrientedTet& tet : tables().twelve)
-            if (!positive(s, f, tet))
-                return false;
+    for (const OrientedTet& tet : tets)
+        if (!positive(s, f, tet))
+            return false;
     // Positive tets show that their faces have area. With a pin the tet that holds the whole inner
     // triangle may have been dropped, so a triangle without area has to be looked for.
     const bool pins = dropped(s, f, 0) || dropped(s, f, 1) || dropped(s, f, 2);
     const Corners b = inner_corners(s, f);
     return !pins || !exact::collinear(Vec3s(b[0]), Vec3s(b[1]), Vec3s(b[2]));
+}
+
+} // namespace
+
+bool prism_valid(const GrowState& s, int f)
+{
+    return s.twelve ? twelve_tets_valid(s, f) : valid_with(s, f, tested_tets(s, f));
+}
+
+bool twelve_tets_valid(const GrowState& s, int f)
+{
+    return surely_all_positive(s, f) || valid_with(s, f, all_tets());
 }
 
 bool inner_triangle_clear(const GrowState& s, int f)

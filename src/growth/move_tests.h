@@ -26,6 +26,20 @@ inline Slice<TetFromInner> chosen_tets_with_inner(const GrowState& s, int f, int
     return {first, first + tables().from_b_count[s.order[f]][local]};
 }
 
+/// All twelve tets of a prism.
+inline Slice<OrientedTet> all_tets()
+{
+    return {tables().twelve.data(), tables().twelve.data() + tables().twelve.size()};
+}
+/// The tets of the prism of face f that the state's present rule is about.
+inline Slice<OrientedTet> tested_tets(const GrowState& s, int f)
+{
+    if (s.twelve)
+        return all_tets();
+    const std::array<OrientedTet, 3>& chosen = tables().three[s.order[f]];
+    return {chosen.data(), chosen.data() + chosen.size()};
+}
+
 /// Would the tets of the prisms around v be positive with b_v = x? Exact.
 bool tets_positive_at(const GrowState& s, int v, const Vec3d& x);
 
@@ -44,7 +58,11 @@ Vec3d capped(const GrowState& s, int v, const Vec3d& x);
 /// All tets of face f positive (under s.twelve or its order), and its inner triangle not
 /// degenerate.
 bool prism_valid(const GrowState& s, int f);
-/// Whether the chosen tets of face f were positive with this order.
+/// The same under the twelve-tet test, whatever the state's rule is.
+bool twelve_tets_valid(const GrowState& s, int f);
+/// How many of the three chosen tets of face f would not be positive with this order. Exact.
+int failing_tets(const GrowState& s, int f, int order);
+/// Whether all of them would be.
 bool split_positive(const GrowState& s, int f, int order);
 /// Whether inner triangle f is free of improper contact with every other triangle. Precondition:
 /// the inner tree's boxes hold the triangles.

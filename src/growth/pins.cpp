@@ -18,7 +18,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace vdb_shell::growth
@@ -166,11 +168,11 @@ std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& 
 constexpr int kReach = 4;
 constexpr std::size_t kMostWithinReach = 2000;
 
-/// The vertices within reach of v, v among them; none where there are too many.
-std::vector<int> vertices_around(const GrowState& s, int v)
+/// The vertices within so many edges of v, v among them; none where there are too many.
+std::vector<int> vertices_around(const GrowState& s, int v, int rings = kReach)
 {
     std::vector<int> all{v};
-    for (int ring = 0; ring < kReach; ++ring) {
+    for (int ring = 0; ring < rings; ++ring) {
         const std::size_t count = all.size();
         for (std::size_t i = 0; i < count; ++i) {
             for (const int u : neighbours(*s.mesh, all[i]))
@@ -197,21 +199,80 @@ void widen_boxes(GrowState& s, const std::vector<int>& vertices, double longest)
     }
 }
 
-/// Gives v a pillar while those beside it have none, and then these theirs: a vertex that hardly
-/// sees its triangles has to come before those that are easily served. False, with nothing changed,
-/// where one of them has none in the end. Precondition: BoxTree::index_parents.
-bool release_before_others(GrowState& s, int v, const std::vector<double>& visibility)
+/// Faces at these vertices.
+std::vector<int> faces_at_all(const GrowState& s, const std::vector<int>& vertices)
 {
-    const std::vector<int> around = vertices_around(s, v);
+    std::vector<int> faces;
+    for (const int u : vertices)
+        for (const FaceCorner& at : star(*s.mesh, u))
+            faces.push_back(at.face);
+    sort_unique(faces);
+    return faces;
+}
+
+/// Makes these prisms pass the twelve-tet test, under the three-tet test: of those that fail all
+/// pillars are halved together, for single ones could not be, none but those of the vertices
+/// `around`. Where pillars see their triangles that ends, since the two ends of a short prism are
+/// nearly alike. False where it does not. Precondition: the boxes of the inner tree hold what may
+/// be changed.
+bool shorten_to_twelve_tets(GrowState& s, const std::vector<int>& prisms,
+                            const std::vector<int>& around)
+{
+    constexpr int kRounds = 24; // a float has no more bits to lose
+    const auto passes = [&](int f) {
+        const bool twelve = std::binary_search(prisms.begin(), prisms.end(), f);
+        return (twelve ? twelve_tets_valid(s, f) : prism_valid(s, f)) && inner_triangle_clear(s, f);
+    };
+    std::vector<int> look = prisms;
+    for (int round = 0; round < kRounds; ++round) {
+        std::vector<int> failing, shortened;
+        std::copy_if(look.begin(), look.end(), std::back_inserter(failing),
+                     [&](int f) { return !passes(f); });
+        if (failing.empty())
+            return true;
+        for (const int f : failing)
+            for (int k = 0; k < 3; ++k)
+                if (const int u = s.mesh->corner(f, k); !s.pinned[u])
+                    shortened.push_back(u);
+        sort_unique(shortened);
+        for (const int u : shortened) {
+            const Vec3d end = rounded(s.a[u] + 0.5 * (s.b[u] - s.a[u]));
+            if (end == s.a[u] || !std::binary_search(around.begin(), around.end(), u))
+                return false;
+            s.b[u] = end;
+        }
+        look = faces_at_all(s, shortened);
+        look.insert(look.end(), failing.begin(), failing.end());
+        sort_unique(look);
+    }
+    return false;
+}
+
+/// The ends of pillars, to go back to.
+std::vector<PillarEnd> ends_of(const GrowState& s, const std::vector<int>& vertices)
+{
+    std::vector<PillarEnd> ends;
+    ends.reserve(vertices.size());
+    for (const int u : vertices)
+        ends.push_back({u, s.b[u]});
+    return ends;
+}
+
+/// Gives v a pillar while those beside it have none, and then these theirs: a vertex that hardly
+/// sees its triangles has to come before those that are easily served. Under the three-tet test
+/// another pillar can stand in the way even then: with `twelve_within`, prisms so many edges around
+/// are made to pass the twelve-tet test before, and stay so. False, with nothing changed, where one
+/// of them has none in the end. Precondition: BoxTree::index_parents.
+bool release_before_others(GrowState& s, int v, const std::vector<double>& visibility,
+                           std::optional<int> twelve_within = std::nullopt)
+{
+    const std::vector<int> around = vertices_around(s, v, kReach + (twelve_within ? 1 : 0));
     if (around.empty())
         return false;
     const double longest =
         std::min(mean_edge(*s.mesh, s.a, v), s.schedule.pins.longest * s.diagonal);
     widen_boxes(s, around, longest);
-    std::vector<PillarEnd> before;
-    before.reserve(around.size());
-    for (const int u : around)
-        before.push_back({u, s.b[u]});
+    const std::vector<PillarEnd> before = ends_of(s, around);
     const auto put = [&s](int u, const Vec3d& end) {
         s.b[u] = end;
         s.pinned[u] = end == s.a[u];
@@ -229,12 +290,37 @@ bool release_before_others(GrowState& s, int v, const std::vector<double>& visib
     const auto released = [&](int u, double length) {
         return release(s, u, length, visibility, PillarsBesidePin::turned);
     };
-    if (released(v, longest) && std::all_of(beside.begin(), beside.end(), [&](const PillarEnd& p) {
-            return released(p.vertex, std::max(longest, (p.end - s.a[p.vertex]).length()));
-        }))
+    const auto all_released = [&] {
+        return released(v, longest) &&
+               std::all_of(beside.begin(), beside.end(), [&](const PillarEnd& p) {
+                   return released(p.vertex, std::max(longest, (p.end - s.a[p.vertex]).length()));
+               });
+    };
+    bool done = false;
+    if (!twelve_within) {
+        done = all_released();
+    } else if (shorten_to_twelve_tets(s, faces_at_all(s, vertices_around(s, v, *twelve_within)),
+                                      around)) {
+        // Whatever passes this test passes the other.
+        s.twelve = true;
+        done = all_released();
+        s.twelve = false;
+    }
+    if (!done)
+        for (const PillarEnd& p : before)
+            put(p.vertex, p.end);
+    return done;
+}
+
+/// In one of these ways. Releasing changes pillars up to three edges away; fewer prisms have to do
+/// where one of them does not pass the twelve-tet test however short it is.
+bool release_last(GrowState& s, int v, const std::vector<double>& visibility)
+{
+    if (release_before_others(s, v, visibility))
         return true;
-    for (const PillarEnd& p : before)
-        put(p.vertex, p.end);
+    for (int rings = kReach - 1; rings > 0 && !s.twelve; --rings)
+        if (release_before_others(s, v, visibility, rings))
+            return true;
     return false;
 }
 
@@ -267,7 +353,7 @@ int release_last_pins(GrowState& s, const std::vector<double>& visibility,
         s.inner_tree.index_parents();
     for (const int v : pins) {
         progress.stop_if_interrupted(100);
-        released += release_before_others(s, v, visibility);
+        released += release_last(s, v, visibility);
     }
     return released;
 }

@@ -17,8 +17,9 @@ enum class PillarsBesidePin { kept, shortened, turned };
 /// released. Precondition: the inner tree has been built; its boxes are left as this needs them.
 int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBesidePin beside);
 
-/// The same when growth is done and nothing is left to wait for: pillars beside a pin are also
-/// taken away, until it has one, and given back shorter.
+/// The same when there is nothing left to wait for: pillars beside a pin are also taken away, until
+/// it has one, and given back shorter. Under the three-tet test, where the prisms around leave no
+/// way, their pillars are shortened first until they pass the twelve-tet test.
 int release_last_pins(GrowState& s, const std::vector<double>& visibility,
                       const StageProgress& progress);
 

@@ -255,19 +255,29 @@ void relax(GrowState& s, const std::vector<double>& visibility, const GrowOption
     }
 }
 
+void test_three_tets(GrowState& s)
+{
+    if (!s.twelve)
+        return;
+    // What the twelve-tet test allowed the three-tet test allows too, under any order.
+    s.twelve = false;
+    order_by_length(s);
+}
+
 void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_gain,
                  const std::vector<double>& visibility, const GrowOptions& options,
                  const StageProgress& progress, GrowReport& report)
 {
     const bool once_more = options.method == Method::thickest;
-    relax(s, visibility, options, relax_whole(s, from, options, std::move(predicted_gain)),
-          progress.part(0, once_more ? 50 : 100), report);
+    const double changed_at = !once_more ? 100 : s.twelve ? 50 : 0;
+    if (s.twelve)
+        relax(s, visibility, options, relax_whole(s, from, options, std::move(predicted_gain)),
+              progress.part(0, changed_at), report);
     if (!once_more)
         return;
-    // What the twelve-tet test allowed the three-tet test allows too, under any order.
-    s.twelve = false;
-    order_by_length(s);
-    relax(s, visibility, options, relax_thickest(s, from, options), progress.part(50, 100), report);
+    test_three_tets(s);
+    relax(s, visibility, options, relax_thickest(s, from, options), progress.part(changed_at, 100),
+          report);
 }
 
 } // namespace vdb_shell::growth

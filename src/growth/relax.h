@@ -19,8 +19,11 @@ namespace vdb_shell::growth
 void relax(GrowState& s, const std::vector<double>& visibility, const GrowOptions& options,
            const RelaxOptions& relax_options, const StageProgress& progress, GrowReport& report);
 
-/// All the rounds on the surface itself: under the twelve-tet test, and for Method::thickest then
-/// under the three-tet test, on which the state is left.
+/// Leaves the twelve-tet test for the three-tet test, on which the state stays.
+void test_three_tets(GrowState& s);
+
+/// All the rounds on the surface itself: under the twelve-tet test, unless the state has left it,
+/// and for Method::thickest then under the three-tet test.
 void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_gain,
                  const std::vector<double>& visibility, const GrowOptions& options,
                  const StageProgress& progress, GrowReport& report);

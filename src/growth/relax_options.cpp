@@ -26,7 +26,8 @@ bool thrifty(StartedFrom from, const GrowOptions& options)
 double first_weight(const GrowState& s, StartedFrom from, bool saves_time)
 {
     if (from == StartedFrom::lines)
-        return s.schedule.barrier.first_weight_twelve;
+        return s.twelve ? s.schedule.barrier.first_weight_twelve
+                        : s.schedule.barrier.first_weight_three;
     // In proportion to the void: a barrier that weighs more would push the inner surface back.
     return (saves_time ? 1 : 2) * s.schedule.multilevel.first_weight_over_void * (1 - fill_of(s));
 }

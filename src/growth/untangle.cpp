@@ -34,7 +34,7 @@ constexpr double kPositive = 1e-3;
 /// anew costs as much as all the rest; nothing that is in it lasts longer than a vertex.
 struct Scratch {
     std::vector<CountedPrism> prisms;
-    std::vector<TetBounds> bounds; ///< two to a prism
+    std::vector<TetBounds> bounds; ///< two to a prism; one of the chosen tets
 };
 
 double shortest_inner_edge(const GrowState& s, int v)
@@ -52,8 +52,33 @@ Vec3d inner_normal(const GrowState& s, int v)
     return length > 0 ? gradient / length : Vec3d(0.0);
 }
 
+/// The bounds of the chosen tets of each prism around v; gives back the least value of one.
+double list_chosen_bounds(const GrowState& s, int v, Scratch& out)
+{
+    constexpr double kEnough = std::numeric_limits<double>::infinity();
+    out.bounds.clear();
+    double least = kEnough;
+    for (const FaceCorner& at : star(*s.mesh, v)) {
+        TetBounds& of_prism = out.bounds.emplace_back();
+        of_prism.value.fill(kEnough);
+        std::size_t lane = 0;
+        for (const TetFromInner& tet : chosen_tets_with_inner(s, at.face, at.local)) {
+            const auto corner = [&](std::size_t i) { return corner_of(s, at.face, tet.base[i]); };
+            const Vec3d n = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+            const double length = n.length();
+            if (dropped(s, at.face, tet.pillar) || !(length > 0))
+                continue;
+            of_prism.x[lane] = n[0] / length, of_prism.y[lane] = n[1] / length;
+            of_prism.z[lane] = n[2] / length;
+            of_prism.value[lane] = n.dot(s.b[v] - corner(0)) / length;
+            least = std::min(least, of_prism.value[lane++]);
+        }
+    }
+    return least;
+}
+
 /// The bounds of the twelve tets of each prism around v; gives back the least value of one.
-double list_bounds(const GrowState& s, int v, Scratch& out)
+double list_twelve_bounds(const GrowState& s, int v, Scratch& out)
 {
     out.prisms.clear();
     for (const FaceCorner& at : star(*s.mesh, v)) {
@@ -89,10 +114,12 @@ Vec3d least_move(const Scratch& bounds, double room, const Vec3d& across,
 }
 
 /// Where v should go; where it is if that is good.
-Vec3d better_place(const GrowState& s, int v, Scratch& bounds)
+Vec3d better_place(const GrowState& s, int v, UntangledTets tets, Scratch& bounds)
 {
     const Vec3d& here = s.b[v];
-    if (list_bounds(s, v, bounds) > kPositive * s.rounding)
+    const double least = tets == UntangledTets::twelve ? list_twelve_bounds(s, v, bounds)
+                                                       : list_chosen_bounds(s, v, bounds);
+    if (least > kPositive * s.rounding)
         return here;
     const double edge = shortest_inner_edge(s, v);
     const MendSchedule& schedule = s.schedule.mend;
@@ -111,7 +138,7 @@ Vec3d better_place(const GrowState& s, int v, Scratch& bounds)
 } // namespace
 
 void untangle(GrowState& s, int sweeps, std::vector<std::uint8_t>& look,
-              std::vector<std::uint8_t>& moved)
+              std::vector<std::uint8_t>& moved, UntangledTets tets)
 {
     tbb::enumerable_thread_specific<Scratch> scratch;
     const auto visit = [&](int v) {
@@ -120,7 +147,7 @@ void untangle(GrowState& s, int sweeps, std::vector<std::uint8_t>& look,
         look[v] = 0;
         if (s.pinned[v])
             return;
-        const Vec3d x = better_place(s, v, scratch.local());
+        const Vec3d x = better_place(s, v, tets, scratch.local());
         // A point that comes to lie on its outer one would be a pin that is not marked as one.
         if (x == s.b[v] || x == s.a[v])
             return;

@@ -110,6 +110,18 @@ TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThread
     EXPECT_EQ(alone.split.order, with.split.order);
 }
 
+TEST(Prolongate, LosesLessWhereOnlyTheChosenTetsHaveToBePositive)
+{
+    const TriangleMesh mesh = test::bumpy_sphere(5);
+    const auto empty_before_rounds = [&](Method method) {
+        GrowOptions options;
+        options.method = method;
+        options.enough_fill = 0.9;
+        return 1 - test::grown(mesh, options).report.fill_after_lines;
+    };
+    EXPECT_LT(empty_before_rounds(Method::thickest), empty_before_rounds(Method::certified));
+}
+
 TEST(Prolongate, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
 {
     const TriangleMesh mesh = test::bumpy_sphere(5);

@@ -56,7 +56,7 @@ TEST(Untangle, MakesTheTwelveTetsOfEveryPrismPositive)
     NoisySphere sphere(0.06);
     ASSERT_GT(invalid_prisms(sphere.s), 200);
     std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
-    untangle(sphere.s, 60, look, moved);
+    untangle(sphere.s, 60, look, moved, UntangledTets::twelve);
     EXPECT_EQ(invalid_prisms(sphere.s), 0);
     EXPECT_EQ(std::count(look.begin(), look.end(), 1), 0);
     // Nobody went further than the noise had sent them, give or take.
@@ -64,6 +64,24 @@ TEST(Untangle, MakesTheTwelveTetsOfEveryPrismPositive)
         EXPECT_GT(p.length(), 0.35);
         EXPECT_LT(p.length(), 0.65);
     }
+}
+
+TEST(Untangle, MakesTheChosenTetsPositiveByShorterMovesThanAllTwelve)
+{
+    const auto way = [](UntangledTets tets) {
+        NoisySphere sphere(0.06);
+        sphere.s.twelve = tets == UntangledTets::twelve;
+        const std::vector<Vec3d> before = sphere.s.b;
+        EXPECT_GT(invalid_prisms(sphere.s), 100);
+        std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
+        untangle(sphere.s, 60, look, moved, tets);
+        EXPECT_EQ(invalid_prisms(sphere.s), 0);
+        double sum = 0;
+        for (std::size_t v = 0; v < before.size(); ++v)
+            sum += (sphere.s.b[v] - before[v]).length();
+        return sum;
+    };
+    EXPECT_LT(way(UntangledTets::chosen), 0.8 * way(UntangledTets::twelve));
 }
 
 TEST(Untangle, MovesAlongTheInnerSurfaceBeforeItMovesAcross)
@@ -75,7 +93,7 @@ TEST(Untangle, MovesAlongTheInnerSurfaceBeforeItMovesAcross)
     const std::vector<Vec3d> before = sphere.s.b;
     ASSERT_GT(invalid_prisms(sphere.s), 200);
     std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
-    untangle(sphere.s, 60, look, moved);
+    untangle(sphere.s, 60, look, moved, UntangledTets::twelve);
     EXPECT_EQ(invalid_prisms(sphere.s), 0);
     double along = 0, across = 0;
     for (std::size_t v = 0; v < before.size(); ++v) {
@@ -92,7 +110,7 @@ TEST(Untangle, LeavesAloneWhatIsValid)
     ASSERT_EQ(invalid_prisms(sphere.s), 0);
     const std::vector<Vec3d> before = sphere.s.b;
     std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
-    untangle(sphere.s, 5, look, moved);
+    untangle(sphere.s, 5, look, moved, UntangledTets::twelve);
     EXPECT_EQ(sphere.s.b, before);
     EXPECT_EQ(moved, sphere.none());
 }
@@ -102,10 +120,10 @@ TEST(Untangle, LooksOnlyWhereItIsTold)
     NoisySphere sphere(0.06);
     const std::vector<Vec3d> before = sphere.s.b;
     std::vector<std::uint8_t> look = sphere.none(), moved = sphere.none();
-    untangle(sphere.s, 5, look, moved);
+    untangle(sphere.s, 5, look, moved, UntangledTets::twelve);
     EXPECT_EQ(sphere.s.b, before);
     look[100] = 1;
-    untangle(sphere.s, 1, look, moved);
+    untangle(sphere.s, 1, look, moved, UntangledTets::twelve);
     for (std::size_t v = 0; v < before.size(); ++v)
         EXPECT_EQ(sphere.s.b[v] != before[v], moved[v] != 0) << v;
 }
@@ -121,7 +139,7 @@ TEST(Untangle, KeepsPinsAndTheCap)
         sphere.s.b[pin] = sphere.s.a[pin];
     }
     std::vector<std::uint8_t> look = sphere.all(), moved = sphere.none();
-    untangle(sphere.s, 20, look, moved);
+    untangle(sphere.s, 20, look, moved, UntangledTets::twelve);
     for (int v = 0; v < sphere.s.mesh->vertices; ++v)
         EXPECT_TRUE(within_cap(sphere.s, v, sphere.s.b[v])) << v;
     for (const int pin : {3, 40, 41})
@@ -132,10 +150,10 @@ TEST(Untangle, IsTheSameForAnyNumberOfThreads)
 {
     NoisySphere many(0.1), one(0.1);
     std::vector<std::uint8_t> look = many.all(), moved = many.none();
-    untangle(many.s, 10, look, moved);
+    untangle(many.s, 10, look, moved, UntangledTets::twelve);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
     std::vector<std::uint8_t> look_one = one.all(), moved_one = one.none();
-    untangle(one.s, 10, look_one, moved_one);
+    untangle(one.s, 10, look_one, moved_one, UntangledTets::twelve);
     EXPECT_EQ(many.s.b, one.s.b);
     EXPECT_EQ(moved, moved_one);
 }
