@@ -5,7 +5,7 @@
 //
 //   initialise  prepare_directions, start_from_lines, release_pins, lengthen_if_useful
 //   prolongate  coarse_levels, start_from_levels, or a refined shell as it is
-//   relax       relax_fully: under the twelve-tet test, then perhaps under the three-tet test
+//   relax       relax_fully: under the twelve-tet test, the three-tet test, or one after the other
 //   improve     improve: diagonals, quality, stops
 
 #include "vdb_shell/growth/grow.h"

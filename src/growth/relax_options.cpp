@@ -124,10 +124,8 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
     RelaxOptions relax;
     relax.most_rounds = most_rounds(s, from, options);
     if (options.method == Method::thickest)
-        relax.most_rounds = std::min(relax.most_rounds,
-                                     from == StartedFrom::prolonged
-                                         ? s.schedule.barrier.twelve_rounds_before_three_prolonged
-                                         : s.schedule.barrier.twelve_rounds_before_three);
+        relax.most_rounds =
+            std::min(relax.most_rounds, s.schedule.barrier.twelve_rounds_before_three);
     relax.first_weight = first_weight(s, from, saves_time);
     relax.weight_decrease = weight_decrease(s, from, options);
     relax.least_gain = least_gain(s, options);

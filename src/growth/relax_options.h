@@ -53,11 +53,12 @@ int affordable_rounds(std::size_t triangles, const GrowthSchedule& schedule);
 /// The rounds on a coarse surface, on the way to one of so many triangles.
 RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t triangles);
 
-/// The rounds on the surface itself, under the twelve-tet test.
+/// The rounds on the surface itself under the twelve-tet test: of a prolonged shell for
+/// Method::certified alone.
 RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions& options,
                          std::vector<double> predicted_gain);
 
-/// The rounds after those under the three-tet test, for Method::thickest.
+/// The rounds under the three-tet test, for Method::thickest.
 RelaxOptions relax_thickest(const GrowState& s, StartedFrom from, const GrowOptions& options);
 
 } // namespace vdb_shell::growth

@@ -128,7 +128,6 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, enough_fill),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, most_rounds),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, twelve_rounds_before_three),
-    VDB_SHELL_NUMBER(barrier, BarrierSchedule, twelve_rounds_before_three_prolonged),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, weight_decrease_thickest_prolonged),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, sweeps),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, planes_weight),

@@ -23,7 +23,8 @@ enum class Method {
     certified, ///< grown from a valid start, all twelve tets of each prism positive: every diagonal
                ///< and every thinner shell is valid too (docs/theory.md, "One prism: the
                ///< twelve tets")
-    thickest,  ///< the same, then on with only the three chosen tets of each prism positive
+    thickest,  ///< thicker: with only the three chosen tets of each prism positive, after a start
+               ///< on coarser surfaces from the first prolongation on, else in the last rounds
 };
 const NameTable<Method>& names(Method);
 

@@ -177,10 +177,9 @@ struct BarrierSchedule {
     double least_gain = 3e-4, least_gain_thickest = 1e-4;
     /// Share of the solid from which no round follows.
     double enough_fill = 0.998;
-    /// Count. Rounds at most, and those under the twelve-tet test before the three-tet one.
+    /// Count. Rounds at most, and those under the twelve-tet test before the three-tet one. None of
+    /// the latter after a prolongation.
     int most_rounds = 40, twelve_rounds_before_three = 25;
-    /// The same after a prolongation: one, which wins back what mending has lost.
-    int twelve_rounds_before_three_prolonged = 1;
     /// Count. Sweeps in a round; before each but the first the separating planes are recentred.
     int sweeps = 2;
     /// Weight of all near separating planes of a vertex together, where one tet has weight 1.
