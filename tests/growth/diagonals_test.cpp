@@ -20,13 +20,13 @@ using namespace vdb_shell::growth;
 
 /// A sphere whose inner points are thrown about: some splits of many prisms have tets that are not
 /// positive.
-struct NoisySphere {
+struct SphereSplitByIndex {
     TriangleMesh mesh = test::icosphere(1.0, 3);
     Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     GrowState s = make_state(connectivity, mesh.points,
                              std::vector<double>(mesh.points.size(), test::kInfinity));
 
-    NoisySphere()
+    SphereSplitByIndex()
     {
         const CounterRandom random(3);
         for (std::size_t v = 0; v < s.b.size(); ++v) {
@@ -71,7 +71,7 @@ std::ptrdiff_t count_failing(const std::vector<int>& tets)
 
 TEST(Diagonals, AreTurnedUntilFewerPrismsFailAndNoneThatWasSound)
 {
-    NoisySphere sphere;
+    SphereSplitByIndex sphere;
     GrowState& s = sphere.s;
     const std::vector<int> before = sphere.failing();
     const std::vector<Vec3d> places = s.b;
@@ -98,7 +98,7 @@ TEST(Diagonals, AreTurnedUntilFewerPrismsFailAndNoneThatWasSound)
 
 TEST(Diagonals, OfOtherFacesAreTurnedOnlyWithThem)
 {
-    NoisySphere sphere;
+    SphereSplitByIndex sphere;
     GrowState& s = sphere.s;
     const std::vector<int> before = sphere.failing();
     const std::vector<std::uint8_t> orders = s.order;
