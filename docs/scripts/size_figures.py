@@ -7,7 +7,8 @@
 
 rough_surface.py makes each surface; the default job builds its shell, writes a .vdb and certifies it. Processor and wall
 time are those of the whole command, memory the most that it had at a time. A command that takes more than 16 GiB is
-ended. --flags: each surface is built a second time, with these. --keep: a folder for the surfaces, which are made only where they are not there yet.
+ended. --flags: each surface is built a second time, with these. --keep: a folder for the surfaces, which are made only
+where they are not there yet.
 --results keeps what was measured and measures only what is not in it: ten million triangles take most of an hour.
 """
 import argparse

@@ -9,6 +9,7 @@
 #include "growth/connectivity.h"
 
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -136,6 +137,16 @@ std::vector<int> faces_at(const Connectivity& c, int v)
     std::vector<int> faces;
     for (const FaceCorner& at : star(c, v))
         faces.push_back(at.face);
+    return faces;
+}
+
+std::vector<int> faces_at(const Connectivity& c, const std::vector<int>& vertices)
+{
+    std::vector<int> faces;
+    for (const int v : vertices)
+        for (const FaceCorner& at : star(c, v))
+            faces.push_back(at.face);
+    sort_unique(faces);
     return faces;
 }
 

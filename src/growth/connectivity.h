@@ -87,6 +87,8 @@ inline Slice<FaceCorner> star(const Connectivity& c, int v)
 }
 /// The faces around a vertex, ascending.
 std::vector<int> faces_at(const Connectivity& c, int v);
+/// The faces around any of these vertices, ascending.
+std::vector<int> faces_at(const Connectivity& c, const std::vector<int>& vertices);
 inline Slice<int> neighbours(const Connectivity& c, int v)
 {
     return {c.neighbour.data() + c.neighbour_first[v],

@@ -313,14 +313,8 @@ void tet_bounds(const GrowState& s, int v, LinearBounds& out)
             out.add_prism({s.a[v], s.a[next], s.a[last], s.b[next], s.b[last]});
             continue;
         }
-        for (const TetFromInner& tet : tets_with_inner(s, at.face, at.local)) {
-            if (dropped(s, at.face, tet.pillar))
-                continue;
-            const Vec3d& p = corner_of(s, at.face, tet.base[0]);
-            const Vec3d u = corner_of(s, at.face, tet.base[1]) - p;
-            const Vec3d w = corner_of(s, at.face, tet.base[2]) - p;
-            out.add(u.cross(w), p);
-        }
+        for_each_base(s, at.face, tets_with_inner(s, at.face, at.local),
+                      [&](const Vec3d& n, const Vec3d& p) { out.add(n, p); });
     }
 }
 

@@ -26,6 +26,20 @@ inline Slice<TetFromInner> chosen_tets_with_inner(const GrowState& s, int f, int
     return {first, first + tables().from_b_count[s.order[f]][local]};
 }
 
+/// Calls visit(n, p) for each of these tets of face f that exists: it is positive where the inner
+/// point that they hold lies on the side of n from p.
+template <class Visit>
+void for_each_base(const GrowState& s, int f, const Slice<TetFromInner>& tets, Visit&& visit)
+{
+    for (const TetFromInner& tet : tets) {
+        if (dropped(s, f, tet.pillar))
+            continue;
+        const Vec3d& p = corner_of(s, f, tet.base[0]);
+        const Vec3d u = corner_of(s, f, tet.base[1]) - p, w = corner_of(s, f, tet.base[2]) - p;
+        visit(u.cross(w), p);
+    }
+}
+
 /// All twelve tets of a prism.
 inline Slice<OrientedTet> all_tets()
 {

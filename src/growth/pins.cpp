@@ -199,17 +199,6 @@ void widen_boxes(GrowState& s, const std::vector<int>& vertices, double longest)
     }
 }
 
-/// Faces at these vertices.
-std::vector<int> faces_at_all(const GrowState& s, const std::vector<int>& vertices)
-{
-    std::vector<int> faces;
-    for (const int u : vertices)
-        for (const FaceCorner& at : star(*s.mesh, u))
-            faces.push_back(at.face);
-    sort_unique(faces);
-    return faces;
-}
-
 /// Makes these prisms pass the twelve-tet test, under the three-tet test: of those that fail all
 /// pillars are halved together, for single ones could not be, none but those of the vertices
 /// `around`. Where pillars see their triangles that ends, since the two ends of a short prism are
@@ -241,7 +230,7 @@ bool shorten_to_twelve_tets(GrowState& s, const std::vector<int>& prisms,
                 return false;
             s.b[u] = end;
         }
-        look = faces_at_all(s, shortened);
+        look = faces_at(*s.mesh, shortened);
         look.insert(look.end(), failing.begin(), failing.end());
         sort_unique(look);
     }
@@ -299,7 +288,7 @@ bool release_before_others(GrowState& s, int v, const std::vector<double>& visib
     bool done = false;
     if (!twelve_within) {
         done = all_released();
-    } else if (shorten_to_twelve_tets(s, faces_at_all(s, vertices_around(s, v, *twelve_within)),
+    } else if (shorten_to_twelve_tets(s, faces_at(*s.mesh, vertices_around(s, v, *twelve_within)),
                                       around)) {
         // Whatever passes this test passes the other.
         s.twelve = true;

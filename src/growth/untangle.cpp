@@ -62,17 +62,16 @@ double list_chosen_bounds(const GrowState& s, int v, Scratch& out)
         TetBounds& of_prism = out.bounds.emplace_back();
         of_prism.value.fill(kEnough);
         std::size_t lane = 0;
-        for (const TetFromInner& tet : chosen_tets_with_inner(s, at.face, at.local)) {
-            const auto corner = [&](std::size_t i) { return corner_of(s, at.face, tet.base[i]); };
-            const Vec3d n = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        const auto add = [&](const Vec3d& n, const Vec3d& p) {
             const double length = n.length();
-            if (dropped(s, at.face, tet.pillar) || !(length > 0))
-                continue;
+            if (!(length > 0))
+                return;
             of_prism.x[lane] = n[0] / length, of_prism.y[lane] = n[1] / length;
             of_prism.z[lane] = n[2] / length;
-            of_prism.value[lane] = n.dot(s.b[v] - corner(0)) / length;
+            of_prism.value[lane] = n.dot(s.b[v] - p) / length;
             least = std::min(least, of_prism.value[lane++]);
-        }
+        };
+        for_each_base(s, at.face, chosen_tets_with_inner(s, at.face, at.local), add);
     }
     return least;
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/diagonals.h"
 
-#include "core/counter_random.h"
-#include "growth/grown.h"
+#include "growth/half_full_sphere.h"
 #include "growth/move_tests.h"
-#include "support/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -20,21 +18,9 @@ using namespace vdb_shell::growth;
 
 /// A sphere whose inner points are thrown about: some splits of many prisms have tets that are not
 /// positive.
-struct SphereSplitByIndex {
-    TriangleMesh mesh = test::icosphere(1.0, 3);
-    Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
-    GrowState s = make_state(connectivity, mesh.points,
-                             std::vector<double>(mesh.points.size(), test::kInfinity));
-
-    SphereSplitByIndex()
+struct SphereSplitByIndex : test::HalfFullSphere {
+    SphereSplitByIndex() : HalfFullSphere(0.04, 3)
     {
-        const CounterRandom random(3);
-        for (std::size_t v = 0; v < s.b.size(); ++v) {
-            Vec3d off;
-            for (std::uint64_t k = 0; k < 3; ++k)
-                off[static_cast<int>(k)] = 0.04 * (2 * random.unit(3 * v + k) - 1);
-            s.b[v] = rounded(0.5 * s.a[v] + off);
-        }
         s.twelve = false;
         // By index: they conform, and know nothing of the tets.
         for (int f = 0; f < s.mesh->face_count(); ++f) {

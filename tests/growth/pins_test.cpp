@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/pins.h"
 
-#include "core/counter_random.h"
 #include "core/stage_progress.h"
 #include "growth/diagonals.h"
+#include "growth/half_full_sphere.h"
 #include "growth/initialise.h"
 #include "growth/line_directions.h"
 #include "growth/mend_prolonged.h"
@@ -244,31 +244,19 @@ TEST(Pins, AreReleasedBeforeVerticesThatAreServedMoreEasily)
 }
 
 /// A sphere whose inner points are thrown about, valid under the three-tet test alone.
-growth::GrowState mended_sphere(const growth::Connectivity& mesh, const TriangleMesh& ball,
-                                std::uint64_t seed)
-{
-    const std::vector<double> cap(ball.points.size(), std::numeric_limits<double>::infinity());
-    growth::GrowState s = growth::make_state(mesh, ball.points, cap);
-    const CounterRandom random(seed);
-    for (std::size_t v = 0; v < s.b.size(); ++v) {
-        openvdb::Vec3d off;
-        for (std::uint64_t k = 0; k < 3; ++k)
-            off[static_cast<int>(k)] = 0.12 * (2 * random.unit(3 * v + k) - 1);
-        s.b[v] = growth::rounded(0.5 * s.a[v] + off);
+struct MendedSphere : test::HalfFullSphere {
+    explicit MendedSphere(int seed) : HalfFullSphere(0.12, static_cast<std::uint64_t>(seed))
+    {
+        s.twelve = false;
+        growth::order_by_length(s);
+        growth::mend_placed(s, StageProgress(nullptr, "test"), growth::MendFrom::chosen_tets);
     }
-    s.twelve = false;
-    growth::order_by_length(s);
-    growth::mend_placed(s, StageProgress(nullptr, "test"), growth::MendFrom::chosen_tets);
-    return s;
-}
+};
 
 /// Under the three-tet test a shortened pillar may turn over a tet that one beside it stands on. At
 /// these seeds and vertices neither shortening nor taking away those beside helps.
 TEST(Pins, AreReleasedUnderTheThreeTetTestAmongPrismsThatPassTheOther)
 {
-    const TriangleMesh ball = test::icosphere(1, 3);
-    const Directions directions = directions_along(ball, pseudo_normals(ball));
-    const growth::Connectivity mesh = growth::connect(ball.points.size(), ball.triangles);
     const auto all_pass_twelve = [](const growth::GrowState& s, int v) {
         const growth::Slice<int> around = growth::neighbours(*s.mesh, v);
         return std::all_of(around.begin(), around.end(), [&](int u) {
@@ -278,14 +266,16 @@ TEST(Pins, AreReleasedUnderTheThreeTetTestAmongPrismsThatPassTheOther)
         });
     };
     for (const auto& [seed, v] : {std::pair{38, 77}, std::pair{136, 581}, std::pair{226, 42}}) {
-        growth::GrowState s = mended_sphere(mesh, ball, static_cast<std::uint64_t>(seed));
+        MendedSphere sphere(seed);
+        growth::GrowState& s = sphere.s;
+        const Directions directions = directions_along(sphere.mesh, pseudo_normals(sphere.mesh));
         s.b[v] = s.a[v];
         s.pinned[v] = 1;
         EXPECT_EQ(violations(s), 0);
         const std::vector<openvdb::Vec3d> before = s.b;
         std::vector<double> visibility(s.b.size(), 0.0);
         visibility[v] = directions.visibility[v];
-        for (const int u : growth::neighbours(mesh, v))
+        for (const int u : growth::neighbours(*s.mesh, v))
             visibility[u] = directions.visibility[u];
         EXPECT_EQ(growth::release_pins(s, visibility, growth::PillarsBesidePin::turned), 0);
         EXPECT_EQ(s.b, before) << "a release that fails changes nothing";

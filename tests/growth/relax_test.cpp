@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/relax.h"
 
+#include "growth/half_full_sphere.h"
 #include "growth/move_tests.h"
-#include "support/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -15,20 +15,7 @@ namespace
 using namespace vdb_shell;
 using namespace vdb_shell::growth;
 
-/// A sphere of radius 1 whose inner points lie at 0.5.
-struct HalfFull {
-    TriangleMesh mesh = test::icosphere(1.0, 3);
-    Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
-    GrowState s;
-
-    HalfFull()
-        : s(make_state(
-              connectivity, mesh.points,
-              std::vector<double>(mesh.points.size(), std::numeric_limits<double>::infinity())))
-    {
-        for (std::size_t v = 0; v < s.b.size(); ++v)
-            s.b[v] = rounded(0.5 * s.a[v]);
-    }
+struct HalfFull : test::HalfFullSphere {
     /// How many rounds there were.
     int relax_with(const RelaxOptions& relax_options)
     {

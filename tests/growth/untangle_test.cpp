@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/untangle.h"
 
-#include "core/counter_random.h"
-#include "growth/grown.h"
+#include "growth/half_full_sphere.h"
 #include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
-#include "support/shapes.h"
 
 #include <tbb/global_control.h>
 
@@ -30,23 +28,9 @@ int invalid_prisms(const GrowState& s)
     return count;
 }
 
-/// A sphere of radius 1 whose inner points, at 0.5, are thrown off their places by up to `noise`.
-struct NoisySphere {
-    TriangleMesh mesh = test::icosphere(1.0, 3);
-    Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
-    GrowState s;
-
-    explicit NoisySphere(double noise, double cap = kInfinity)
-        : s(make_state(connectivity, mesh.points, std::vector<double>(mesh.points.size(), cap)))
-    {
-        const CounterRandom random(7);
-        for (std::size_t v = 0; v < s.b.size(); ++v) {
-            Vec3d off;
-            for (std::uint64_t k = 0; k < 3; ++k)
-                off[static_cast<int>(k)] = noise * (2 * random.unit(3 * v + k) - 1);
-            s.b[v] = rounded(0.5 * s.a[v] + off);
-        }
-    }
+/// Marks of the vertices of a sphere whose inner points are thrown about.
+struct NoisySphere : test::HalfFullSphere {
+    explicit NoisySphere(double noise, double cap = kInfinity) : HalfFullSphere(noise, 7, cap) {}
     std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(s.b.size(), 1); }
     std::vector<std::uint8_t> none() const { return std::vector<std::uint8_t>(s.b.size(), 0); }
 };

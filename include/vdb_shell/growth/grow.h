@@ -40,8 +40,9 @@ struct GrowOptions {
                                ///< is nearly full already (round and convex solids) or thin
     bool free_moves = true;    ///< let inner vertices leave their lines
     bool soft_contacts = true; ///< free moves keep clear of near triangles before they touch
-    bool flips = true; ///< choose diagonals again while moving (thickest) and for quality at
-                       ///< the end; prisms of a prolonged shell that fail get others anyway
+    bool flips = true;         ///< choose diagonals again while moving (thickest) and for
+                               ///< quality at the end; prolonged prisms that fail get others
+                               ///< anyway
     /// From so many triangles on, growth begins on a surface of a thousand or two, and comes to the
     /// whole over some in between: sooner, and as thick. Fewer triangles than the default's have
     /// too little of their shape left then. 0: never.

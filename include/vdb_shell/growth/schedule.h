@@ -177,8 +177,8 @@ struct BarrierSchedule {
     double least_gain = 3e-4, least_gain_thickest = 1e-4;
     /// Share of the solid from which no round follows.
     double enough_fill = 0.998;
-    /// Count. Rounds at most, and those under the twelve-tet test before the three-tet one. None of
-    /// the latter after a prolongation.
+    /// Count. Rounds at most, and those under the twelve-tet test before the three-tet one, of
+    /// which there are none after a prolongation.
     int most_rounds = 40, twelve_rounds_before_three = 25;
     /// Count. Sweeps in a round; before each but the first the separating planes are recentred.
     int sweeps = 2;
