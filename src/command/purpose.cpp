@@ -17,7 +17,8 @@ const NameTable<Purpose>& names(Purpose)
     static const NameTable<Purpose> table{{"any", Purpose::any},
                                           {"simulation", Purpose::simulation},
                                           {"fewest-tets", Purpose::fewest_tets},
-                                          {"thickness", Purpose::thickness}};
+                                          {"thickness", Purpose::thickness},
+                                          {"speed", Purpose::speed}};
     return table;
 }
 
@@ -30,6 +31,8 @@ std::string options_for(Purpose purpose)
         return kFewestTetsPreset;
     case Purpose::thickness:
         return kThicknessPreset;
+    case Purpose::speed:
+        return kSpeedPreset;
     case Purpose::any:
         break;
     }
@@ -51,6 +54,8 @@ void require_fit(Purpose purpose, const ShellOptions& options)
         hindrance = "of another method than thickest (--method)";
     else if (purpose == Purpose::thickness && options.scale.factor < 1)
         hindrance = "of pillars scaled down (--thickness-scale)";
+    else if (purpose == Purpose::speed && options.grow.coarse_from == 0)
+        hindrance = "that is grown from lines alone (--coarse-from)";
     if (hindrance)
         throw InvalidOption(std::string("--for ") + name_in_table(purpose) +
                             " is not for a shell " + hindrance);

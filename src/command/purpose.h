@@ -15,6 +15,7 @@ enum class Purpose {
     simulation,  ///< well shaped tets in two tapered layers
     fewest_tets, ///< one tapered layer
     thickness,   ///< as much of the solid as prisms can fill
+    speed,       ///< most of the solid, soon: large surfaces
 };
 const NameTable<Purpose>& names(Purpose);
 

@@ -72,6 +72,7 @@ Started start_growth(GrowState& s, const Ordered& given, const GrowOptions& opti
             start_from_levels(s, given.mesh, started.lines, given.stepped, given.start.levels,
                               given.order, options, progress, report);
     } else if (given.start.from == GrowFrom::shell) {
+        s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
         const Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
         mend_prolonged(s, pillars.lines, pillars.length, progress);
         started.lines = pillars_to(given.mesh, shell_of(given.mesh, s).inner, pillars.lines).lines;
@@ -125,14 +126,16 @@ bool pin_components(const Connectivity& connectivity, const std::vector<std::uin
 bool take_more_care(const Connectivity& connectivity, const std::vector<std::uint8_t>& turned,
                     GrowOptions& options, std::vector<double>& cap)
 {
-    if (options.method == Method::thickest)
+    if (prism_test_of(options) == PrismTest::chosen_tets) {
         options.method = Method::certified;
-    else if (options.top_down)
+        options.prism_test = PrismTest::twelve_tets;
+    } else if (options.top_down) {
         options.top_down = false; // from a thin shell, which is on the right side
-    else if (options.free_moves)
+    } else if (options.free_moves) {
         options.free_moves = false; // along lines
-    else
+    } else {
         return pin_components(connectivity, turned, cap);
+    }
     return true;
 }
 
@@ -181,7 +184,7 @@ GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOpti
         const bool any = std::find(turned.begin(), turned.end(), 1) != turned.end();
         // A component that crosses itself encloses as much of either sign as it likes.
         const auto crosses_itself = [&] {
-            return options.method != Method::thickest &&
+            return prism_test_of(options) == PrismTest::twelve_tets &&
                    !find_self_intersections(mesh, {}, interrupter).empty();
         };
         if (!any || crosses_itself() || !take_more_care(connectivity, turned, options, cap))

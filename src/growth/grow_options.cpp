@@ -19,6 +19,11 @@ const NameTable<Method>& names(Method)
     return table;
 }
 
+PrismTest prism_test_of(const GrowOptions& options)
+{
+    return options.method == Method::thickest ? PrismTest::chosen_tets : options.prism_test;
+}
+
 const NameTable<RefineBy>& names(RefineBy)
 {
     static const NameTable<RefineBy> table{
@@ -32,6 +37,10 @@ OptionList describe(GrowOptions& o)
         "Growth",
         {option("method", o.method, "--method", "How the inner vertices get their places")
              .with_shorthand("--thickest", "thickest"),
+         option("prism_test", o.prism_test, "--prism-test",
+                "Tets of each prism that stay positive: all twelve of its six splits, for layers, "
+                "thinner shells and coordinates; or the three chosen ones, sooner and fuller")
+             .needing("--method certified"),
          option("mend_directions", o.mend_directions, "--mend-directions",
                 "Replace directions that see a triangle from behind"),
          option("smooth_directions", o.smooth_directions, "--smooth-directions",

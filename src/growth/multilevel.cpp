@@ -116,7 +116,7 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
     // Of the prisms that fail the twelve-tet test when they are prolonged, 97 in 100 have diagonals
     // with which they pass the other (docs/measurements/tried.md): then mending loses less than
     // half as much.
-    s.twelve = job.options.method != Method::thickest;
+    s.twelve = prism_test_of(job.options) == PrismTest::twelve_tets;
     const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarser, schedule);
     const Pillars pillars = prolonged_pillars(coarser, coarser_inner, mesh, nearest, lines,
                                               bends_towards(job.triangles, s.schedule), schedule);
@@ -147,7 +147,8 @@ std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<dou
               job.progress.part(kGroupsAt, 100), ignored);
     };
     rounds();
-    if (job.options.method == Method::thickest && s.twelve) {
+    // On the coarsest surface alone: the others are under it from the start.
+    if (prism_test_of(job.options) == PrismTest::chosen_tets && s.twelve) {
         test_three_tets(s);
         rounds();
     }

@@ -269,8 +269,10 @@ void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_g
                  const StageProgress& progress, GrowReport& report)
 {
     const bool once_more = options.method == Method::thickest;
+    if (!once_more && prism_test_of(options) == PrismTest::chosen_tets)
+        test_three_tets(s);
     const double changed_at = !once_more ? 100 : s.twelve ? 50 : 0;
-    if (s.twelve)
+    if (s.twelve || !once_more)
         relax(s, visibility, options, relax_whole(s, from, options, std::move(predicted_gain)),
               progress.part(0, changed_at), report);
     if (!once_more)

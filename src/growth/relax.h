@@ -22,8 +22,9 @@ void relax(GrowState& s, const std::vector<double>& visibility, const GrowOption
 /// Leaves the twelve-tet test for the three-tet test, on which the state stays.
 void test_three_tets(GrowState& s);
 
-/// All the rounds on the surface itself: under the twelve-tet test, unless the state has left it,
-/// and for Method::thickest then under the three-tet test.
+/// All the rounds on the surface itself, under the test that the options ask for; for
+/// Method::thickest under the twelve-tet test, unless the state has left it, and then under the
+/// three-tet test.
 void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_gain,
                  const std::vector<double>& visibility, const GrowOptions& options,
                  const StageProgress& progress, GrowReport& report);

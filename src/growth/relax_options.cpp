@@ -26,8 +26,7 @@ bool thrifty(StartedFrom from, const GrowOptions& options)
 double first_weight(const GrowState& s, StartedFrom from, bool saves_time)
 {
     if (from == StartedFrom::lines)
-        return s.twelve ? s.schedule.barrier.first_weight_twelve
-                        : s.schedule.barrier.first_weight_three;
+        return s.schedule.barrier.first_weight;
     // In proportion to the void: a barrier that weighs more would push the inner surface back.
     return (saves_time ? 1 : 2) * s.schedule.multilevel.first_weight_over_void * (1 - fill_of(s));
 }
@@ -106,7 +105,9 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
     relax.most_rounds =
         std::max(affordable_rounds(s.mesh->faces.size(), s.schedule),
                  static_cast<int>(std::min(double(s.schedule.barrier.most_rounds), paid_for)));
-    relax.first_weight = first_weight(s, from, true);
+    const bool after_twelve = from == StartedFrom::lines && !s.twelve;
+    relax.first_weight =
+        after_twelve ? s.schedule.barrier.first_weight_three : first_weight(s, from, true);
     relax.weight_decrease = from == StartedFrom::prolonged ? schedule.weight_decrease
                                                            : schedule.coarsest_weight_decrease;
     relax.least_gain = s.schedule.barrier.least_gain;

@@ -50,11 +50,11 @@ bool asks_for_more(const GrowOptions& options);
 /// Rounds that a surface of so many triangles is given after a prolongation, by default.
 int affordable_rounds(std::size_t triangles, const GrowthSchedule& schedule);
 
-/// The rounds on a coarse surface, on the way to one of so many triangles.
+/// The rounds on a coarse surface, on the way to one of so many triangles. Those from lines under
+/// the three-tet test follow others under the twelve-tet test.
 RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t triangles);
 
-/// The rounds on the surface itself under the twelve-tet test: of a prolonged shell for
-/// Method::certified alone.
+/// The rounds on the surface itself: of a prolonged shell for Method::certified alone.
 RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions& options,
                          std::vector<double> predicted_gain);
 

@@ -31,7 +31,7 @@ namespace
 
 void make_layers(ShellResult& r, const ShellOptions& options, Interrupter* interrupter)
 {
-    LayerResult cut = cut_layers(r.stack, options.layers, prism_test(options), interrupter);
+    LayerResult cut = cut_layers(r.stack, options.layers, prism_test_of(options.grow), interrupter);
     r.stack = std::move(cut.stack);
     if (options.layers.layers != 1)
         r.report.cut = cut.report;
@@ -47,7 +47,7 @@ void taper_and_certify(ShellResult& r, const ShellOptions& options,
     const auto certify = [&] {
         clock.run("tets", [&] { r.tets = make_tets(r.stack); });
         clock.run("certificate", [&] {
-            r.report.certificate = certify_stack(r.stack, prism_test(options), interrupter);
+            r.report.certificate = certify_stack(r.stack, prism_test_of(options.grow), interrupter);
         });
     };
     if (!options.taper.wanted) {

@@ -113,8 +113,8 @@ void grow_and_scale(const SideJob& job, SideResult& side)
                         caps_of(job), options.grow, options.split, job.interrupter);
     side.grow = grown.report;
     if (options.scale.factor < 1.0)
-        side.scale = scale_thickness(grown.shell, grown.split, options.scale, prism_test(options),
-                                     job.interrupter);
+        side.scale = scale_thickness(grown.shell, grown.split, options.scale,
+                                     prism_test_of(options.grow), job.interrupter);
     side.stack = one_layer(std::move(grown.shell), std::move(grown.split));
 }
 
@@ -230,12 +230,6 @@ LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surfac
         band.interior_depth =
             options.side == Side::outward ? resolve_voxel_size(surface, band) : longest;
     return band;
-}
-
-PrismTest prism_test(const ShellOptions& options)
-{
-    return options.grow.method == Method::thickest ? PrismTest::chosen_tets
-                                                   : PrismTest::twelve_tets;
 }
 
 void build_sides(ShellResult& result, const ShellOptions& options,

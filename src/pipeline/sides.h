@@ -23,10 +23,6 @@ std::string why_not_sparse(const ShellOptions& options, const ShellResult& resul
 LevelSetOptions band_for(const ShellOptions& options, const TriangleMesh& surface,
                          const openvdb::FloatGrid* thickness_grid);
 
-/// The twelve tets are what growth keeps positive by default, and what the raw shells are held
-/// against; the thickest shells stand by their chosen tets alone.
-PrismTest prism_test(const ShellOptions& options);
-
 /// The stages from directions to scale, once for each side: fills in lines, stack and their parts
 /// of the report. Leaves the level set as it was. `start` is that of growth inward.
 void build_sides(ShellResult& result, const ShellOptions& options,

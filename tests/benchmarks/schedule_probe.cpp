@@ -115,7 +115,7 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(groups, GroupSchedule, least_void_of_solid),
     VDB_SHELL_NUMBER(groups, GroupSchedule, cuts),
     VDB_SHELL_NUMBER(groups, GroupSchedule, halvings),
-    VDB_SHELL_NUMBER(barrier, BarrierSchedule, first_weight_twelve),
+    VDB_SHELL_NUMBER(barrier, BarrierSchedule, first_weight),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, first_weight_three),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, most_weight_over_void),
     VDB_SHELL_NUMBER(barrier, BarrierSchedule, least_weight),

@@ -73,6 +73,7 @@ const std::map<std::string, std::string>& partners()
         {"--stop-test bisection", "--stop-test bisection"},
         {"--stop-test relative-normal own-sheet", "--stop-test own-sheet"},
         {"--stop-test own-sheet", "--stop-test own-sheet"},
+        {"--method certified", ""},
         {"--method certified thickest", ""},
         {"--refine-rounds", "--refine-rounds 1"},
         {"--layers", "--layers 2"},

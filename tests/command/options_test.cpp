@@ -410,6 +410,8 @@ TEST_F(Options, ContradictoryWishesAreRefusedByNameAndLeaveTheOutputAlone)
     refused("--for fewest-tets --subdivide 1", {"--for fewest-tets", "--subdivide"});
     refused("--for simulation --no-taper", {"--for simulation", "--no-taper"});
     refused("--for thickness --method raw", {"--for thickness", "--method"});
+    refused("--for speed --coarse-from 0", {"--for speed", "--coarse-from"});
+    refused("--thickest --prism-test twelve-tets", {"--prism-test", "--method certified"});
     refused("--for thickness --taper-tet-cost 4", {"--taper-tet-cost", "--taper"});
     refused("--want-amips 5 --method raw", {"--want", "--method"});
     refused("--want-fill 0.9 --side outward", {"--want-fill", "--side"});

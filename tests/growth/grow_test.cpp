@@ -63,13 +63,13 @@ void expect_embedded(const PrismShell& shell)
     EXPECT_EQ(check.degenerate_triangles.count, 0U);
 }
 
-void expect_sound(const GrowResult& result, Method method)
+void expect_sound(const GrowResult& result, const GrowOptions& options = {})
 {
-    if (method == Method::certified)
+    const PrismTest test = prism_test_of(options);
+    if (test == PrismTest::twelve_tets)
         expect_twelve_positive(result.shell);
     expect_all_positive(result.shell, result.split);
-    for (const std::string& failure :
-         certify_shell(result.shell, result.split, test::test_of(method)).failures())
+    for (const std::string& failure : certify_shell(result.shell, result.split, test).failures())
         ADD_FAILURE() << failure;
     EXPECT_TRUE(check_conformity(result.shell, make_tets(result.shell, result.split)).conforming());
     EXPECT_GE(fill_of(result.shell), result.report.fill_after_lines - 1e-12);
@@ -85,19 +85,27 @@ std::size_t count_of(const PrismShell& shell, StopReason reason)
 // is content) keeps the fill from 1.
 TEST(Grow, FillsConvexAndRoundSolids)
 {
-    for (const Method method : {Method::certified, Method::thickest}) {
-        GrowOptions options;
-        options.method = method;
+    for (const GrowOptions& options : test::ways_to_grow()) {
         for (const TriangleMesh& mesh :
              {test::box(Vec3d(-1), Vec3d(1)), test::box(Vec3d(0), Vec3d(3, 1, 0.5)),
               test::icosphere(1.0, 2), test::torus(1.0, 0.3, 32, 16)}) {
             const GrowResult result = grown(case_of(mesh), options);
-            expect_sound(result, method);
+            expect_sound(result, options);
             expect_embedded(result.shell);
             EXPECT_GT(fill_of(result.shell), 0.997);
             EXPECT_EQ(count_of(result.shell, StopReason::pinned), 0U);
             EXPECT_EQ(count_of(result.shell, StopReason::thickness), 0U);
         }
+    }
+}
+
+TEST(Grow, ThreeTetsLeaveMoreRoomThanTwelveWhereTrianglesAreFew)
+{
+    for (const TriangleMesh& mesh : {bumpy_sphere(2), test::trefoil(30, 5)}) {
+        GrowOptions options;
+        const double twelve = fill_of(grown(case_of(mesh), options).shell);
+        options.prism_test = PrismTest::chosen_tets;
+        EXPECT_GT(fill_of(grown(case_of(mesh), options).shell), twelve);
     }
 }
 
@@ -118,11 +126,12 @@ TEST(Grow, KeepsEveryStateValidWithoutSymmetry)
 {
     const Case c = case_of(bumpy_sphere());
     const GrowResult certified = grown(c);
-    expect_sound(certified, Method::certified);
+    expect_sound(certified);
     expect_embedded(certified.shell);
     EXPECT_GT(fill_of(certified.shell), 0.95);
-    const GrowResult more = grown(c, test::by_method(Method::thickest));
-    expect_sound(more, Method::thickest);
+    const GrowOptions thickest = test::by_method(Method::thickest);
+    const GrowResult more = grown(c, thickest);
+    expect_sound(more, thickest);
     expect_embedded(more.shell);
     EXPECT_GT(fill_of(more.shell), 0.95);
 }
@@ -138,7 +147,7 @@ TEST(Grow, IsValidWithEveryLeverOff)
         options.*lever = false;
         options.free_rounds = 4;
         const GrowResult result = grown(c, options);
-        expect_sound(result, options.method);
+        expect_sound(result, options);
         expect_embedded(result.shell);
     }
 }
@@ -191,15 +200,13 @@ TEST(Grow, GivesTheThicknessAskedForAlongFlatFaces)
 TEST(Grow, NeverExceedsTheThickness)
 {
     for (const Vec3d& shift : {Vec3d(0), Vec3d(1000, -700, 300)})
-        for (const Method method : {Method::certified, Method::thickest}) {
-            GrowOptions options;
-            options.method = method;
+        for (const GrowOptions& options : test::ways_to_grow()) {
             Case c = case_of(test::translated(bumpy_sphere(), shift), 0.1);
             for (std::size_t v = 0; v < c.cap.size(); v += 3)
                 c.cap[v] = 0.05; // a painted thickness
             c.cap[5] = 0;
             const GrowResult result = grown(c, options);
-            expect_sound(result, method);
+            expect_sound(result, options);
             for (std::size_t v = 0; v < c.cap.size(); ++v) {
                 EXPECT_FALSE(longer_than(result.shell, v, c.cap[v])) << v;
                 EXPECT_LE(result.shell.length(v), c.cap[v]) << v;
@@ -213,11 +220,9 @@ TEST(Grow, PinsAVertexThatNoDirectionServes)
 {
     const Case c = case_of(test::pyramid_over_u());
     ASSERT_TRUE(check_mesh(c.mesh).embedded());
-    for (const Method method : {Method::certified, Method::thickest}) {
-        GrowOptions options;
-        options.method = method;
+    for (const GrowOptions& options : test::ways_to_grow()) {
         const GrowResult result = grown(c, options);
-        expect_sound(result, method);
+        expect_sound(result, options);
         EXPECT_TRUE(result.shell.pinned(8));
         EXPECT_EQ(result.shell.stop[8], StopReason::pinned);
         EXPECT_EQ(count_of(result.shell, StopReason::pinned), 1U);
@@ -230,7 +235,7 @@ TEST(Grow, FillsTwoComponents)
     const TriangleMesh box = test::box(Vec3d(0), Vec3d(1));
     const GrowResult result =
         grown(case_of(test::joined(box, test::translated(box, Vec3d(1.001, 0, 0)))));
-    expect_sound(result, Method::certified);
+    expect_sound(result);
     expect_embedded(result.shell);
     EXPECT_GT(fill_of(result.shell), 0.997);
 }
@@ -244,7 +249,7 @@ TEST(Grow, GrowsFromBothSidesOfACavity)
                          test::translated(test::reversed(test::box(Vec3d(-half), Vec3d(half))),
                                           Vec3d(0.25, 0.1, -0.5)));
         const GrowResult result = grown(case_of(solid));
-        expect_sound(result, Method::certified);
+        expect_sound(result);
         expect_embedded(result.shell);
         EXPECT_GT(fill_of(result.shell), 0.3);
         const TetMesh tets = make_tets(result.shell, result.split);
@@ -267,7 +272,7 @@ TEST(Grow, DoesNotStartAcrossACavity)
     Case c = case_of(solid);
     std::fill(c.cap.begin() + 8, c.cap.end(), 0.01);
     const GrowResult result = grown(c);
-    expect_sound(result, Method::certified);
+    expect_sound(result);
     expect_embedded(result.shell);
 }
 
@@ -346,15 +351,14 @@ TEST(Grow, AShellHasTheVerticesAndTrianglesOfItsMeshWhereTheyWere)
 TEST(Grow, EndsWhereThereIsEnough)
 {
     const Case c = case_of(bumpy_sphere());
-    for (const Method method : {Method::certified, Method::thickest}) {
-        GrowOptions options = test::by_method(method);
+    for (GrowOptions options : test::ways_to_grow()) {
         const GrowResult all = grown(c, options);
         options.enough_fill = 0.8;
         const GrowResult enough = grown(c, options);
         EXPECT_GE(fill_of(enough.shell), 0.8);
         EXPECT_LT(fill_of(enough.shell), fill_of(all.shell));
         EXPECT_LT(enough.report.rounds, all.report.rounds);
-        expect_sound(enough, method);
+        expect_sound(enough, options);
         expect_embedded(enough.shell);
     }
     GrowOptions along_lines;

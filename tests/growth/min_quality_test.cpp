@@ -50,20 +50,22 @@ Below below(const GrowResult& result, double bound)
     return found;
 }
 
-void expect_certified(const GrowResult& result, Method method)
+void expect_certified(const GrowResult& result, const GrowOptions& options)
 {
-    test::expect_certified(one_layer(result.shell, result.split), test::test_of(method));
+    test::expect_certified(one_layer(result.shell, result.split), prism_test_of(options));
 }
 
 TEST(MinQuality, LeavesFewerTetsUnderTheBoundAndCountsThem)
 {
-    for (const Method method : {Method::certified, Method::thickest})
+    for (GrowOptions options : test::ways_to_grow())
         for (const TriangleMesh& mesh : {test::bumpy_sphere(), test::trefoil(90, 8)}) {
-            const GrowResult free = test::grown(mesh, bounded(0, method));
+            options.min_quality = 0;
+            const GrowResult free = test::grown(mesh, options);
             EXPECT_EQ(free.report.quality_rounds, 0U);
             for (const double bound : {0.05, 0.2}) {
-                const GrowResult held = test::grown(mesh, bounded(bound, method));
-                expect_certified(held, method);
+                options.min_quality = bound;
+                const GrowResult held = test::grown(mesh, options);
+                expect_certified(held, options);
                 const Below before = below(free, bound), after = below(held, bound);
                 EXPECT_GT(before.tets, 0U);
                 EXPECT_LT(after.tets, before.tets) << bound;
@@ -91,7 +93,7 @@ TEST(MinQuality, NeverExceedsTheThickness)
 {
     const TriangleMesh mesh = test::bumpy_sphere();
     const GrowResult held = test::grown(mesh, bounded(0.4), 0.1);
-    expect_certified(held, Method::certified);
+    expect_certified(held, {});
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
         EXPECT_FALSE(exact::longer_than(held.shell.outer[v], held.shell.inner[v], 0.1)) << v;
 }

@@ -88,20 +88,19 @@ TEST(Prolongate, AKinkBetweenCoarseTrianglesIsSmoothedIfThatIsWanted)
     EXPECT_GT(length(growth::Bends::smoothed), 0.6);
 }
 
-class GrownFromCoarse : public testing::TestWithParam<Method>
+class GrownFromCoarse : public testing::TestWithParam<GrowOptions>
 {
 };
 
 TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThreads)
 {
-    GrowOptions options;
-    options.method = GetParam();
+    GrowOptions options = GetParam();
     const TriangleMesh mesh = test::bumpy_sphere(4);
     options.coarse_from = 0;
     const GrowResult without = test::grown(mesh, options);
     options.coarse_from = mesh.triangles.size();
     const GrowResult with = test::grown(mesh, options);
-    test::expect_certified(one_layer(with.shell, with.split), test::test_of(options.method));
+    test::expect_certified(one_layer(with.shell, with.split), prism_test_of(options));
     EXPECT_NE(with.shell.inner, without.shell.inner);
     EXPECT_GT(fill_of(with.shell), fill_of(without.shell) - 0.01);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
@@ -113,13 +112,14 @@ TEST_P(GrownFromCoarse, IsCertifiedAndAboutAsThickAndTheSameForAnyNumberOfThread
 TEST(Prolongate, LosesLessWhereOnlyTheChosenTetsHaveToBePositive)
 {
     const TriangleMesh mesh = test::bumpy_sphere(5);
-    const auto empty_before_rounds = [&](Method method) {
+    const auto empty_before_rounds = [&](PrismTest test) {
         GrowOptions options;
-        options.method = method;
+        options.prism_test = test;
         options.enough_fill = 0.9;
         return 1 - test::grown(mesh, options).report.fill_after_lines;
     };
-    EXPECT_LT(empty_before_rounds(Method::thickest), empty_before_rounds(Method::certified));
+    EXPECT_LT(empty_before_rounds(PrismTest::chosen_tets),
+              empty_before_rounds(PrismTest::twelve_tets));
 }
 
 TEST(Prolongate, LevelsGoDownToAThousandTrianglesOrSoInEvenSteps)
@@ -216,8 +216,7 @@ TEST(Prolongate, IsThickerWhenRoundsAreAskedFor)
 TEST_P(GrownFromCoarse, EndsWhereThereIsEnough)
 {
     const TriangleMesh mesh = test::bumpy_sphere(4);
-    GrowOptions options;
-    options.method = GetParam();
+    GrowOptions options = GetParam();
     options.coarse_from = 500;
     const double by_itself = fill_of(test::grown(mesh, options).shell);
     double last = 0;
@@ -228,9 +227,7 @@ TEST_P(GrownFromCoarse, EndsWhereThereIsEnough)
         EXPECT_GE(fill, enough);
         EXPECT_GT(fill, last);
         last = fill;
-        test::expect_certified(one_layer(result.shell, result.split), GetParam() == Method::thickest
-                                                                          ? PrismTest::chosen_tets
-                                                                          : PrismTest::twelve_tets);
+        test::expect_certified(one_layer(result.shell, result.split), prism_test_of(options));
     }
     options.enough_fill = 0.85;
     EXPECT_LT(fill_of(test::grown(mesh, options).shell), by_itself);
@@ -262,15 +259,13 @@ TEST(Prolongate, IsMostlyDoneBeforeTheFirstRoundOnTheWhole)
 
 TEST_P(GrownFromCoarse, KeepsToTheCap)
 {
-    GrowOptions options;
-    options.method = GetParam();
+    GrowOptions options = GetParam();
     options.coarse_from = 500;
     const GrowResult result = test::grown(test::torus(2.0, 0.8, 48, 24), options, 0.125);
     for (std::size_t v = 0; v < result.shell.inner.size(); ++v)
         EXPECT_LE(result.shell.length(v), 0.125) << v;
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, GrownFromCoarse,
-                         testing::Values(Method::certified, Method::thickest));
+INSTANTIATE_TEST_SUITE_P(Each, GrownFromCoarse, testing::ValuesIn(test::ways_to_grow()));
 
 } // namespace

@@ -8,6 +8,7 @@
 #include "support/files.h"
 #include "support/shapes.h"
 #include "support/shells.h"
+#include "support/stacks.h"
 #include "vdb_shell/io/read_mesh.h"
 
 #include <gtest/gtest.h>
@@ -108,9 +109,9 @@ TEST(Refine, ContactsMarkTheShortPillarThatIsHeldBack)
 TEST(Refine, GrowsOnToMoreFillAndStaysCertified)
 {
     const TriangleMesh mesh = bent_disc();
-    for (const Method method : {Method::certified, Method::thickest}) {
+    for (const GrowOptions& way : test::ways_to_grow()) {
         ShellOptions options = refining(3);
-        options.grow.method = method;
+        options.grow = way;
         const ShellResult result = build_shell(mesh, options);
         expect_certified(result);
         const RefineReport& refine = *result.report.refine;

@@ -178,14 +178,14 @@ TEST(CutLayers, PinsStayPinsInEveryLayer)
 
 TEST(CutLayers, GrownShellsStayCertified)
 {
-    for (const Method method : {Method::certified, Method::thickest})
+    for (const GrowOptions& options : test::ways_to_grow())
         for (const TriangleMesh& mesh : {test::bumpy_sphere(), test::trefoil(120, 10)}) {
-            const ShellStack whole = stack_of(test::grown(mesh, test::by_method(method)));
+            const ShellStack whole = stack_of(test::grown(mesh, options));
             for (const double grading : {0.5, 1.0, 2.0}) {
                 const LayerResult cut =
-                    cut_layers(whole, layers(3, grading), test::test_of(method));
+                    cut_layers(whole, layers(3, grading), prism_test_of(options));
                 expect_cut_of(whole, cut, 3);
-                test::expect_certified(cut.stack, test::test_of(method));
+                test::expect_certified(cut.stack, prism_test_of(options));
                 EXPECT_LT(cut.report.uncut, mesh.points.size() / 10);
             }
         }

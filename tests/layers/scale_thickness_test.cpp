@@ -80,15 +80,15 @@ TEST(ScaleThickness, HalvesABoxsPillarsExactly)
 
 TEST(ScaleThickness, KeepsGrownShellsCertified)
 {
-    for (const Method method : {Method::certified, Method::thickest})
+    for (const GrowOptions& options : test::ways_to_grow())
         for (const TriangleMesh& mesh :
              {test::trefoil(120, 10), test::bumpy_sphere(),
               test::translated(test::torus(1.0, 0.3, 24, 12), Vec3d(3000, -2000, 1000))}) {
-            const GrowResult grown = test::grown(mesh, test::by_method(method));
+            const GrowResult grown = test::grown(mesh, options);
             for (const double factor : {0.9, 0.5, 0.05}) {
                 PrismShell shell = grown.shell;
-                scaled(shell, grown.split, factor, test::test_of(method));
-                test::expect_certified(one_layer(shell, grown.split), test::test_of(method));
+                scaled(shell, grown.split, factor, prism_test_of(options));
+                test::expect_certified(one_layer(shell, grown.split), prism_test_of(options));
             }
         }
 }

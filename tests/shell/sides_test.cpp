@@ -5,6 +5,7 @@
 #include "core/exact.h"
 #include "core/grid_instances.h"
 #include "support/broken_shells.h"
+#include "support/stacks.h"
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
@@ -65,13 +66,6 @@ GrowOptions lines_only()
 {
     GrowOptions options;
     options.free_moves = options.smooth_directions = false;
-    return options;
-}
-
-GrowOptions thickest()
-{
-    GrowOptions options;
-    options.method = Method::thickest;
     return options;
 }
 
@@ -195,10 +189,9 @@ TEST(Sides, SphereOutwardIsTheSphereAroundIt)
         EXPECT_NEAR(volume(lines), wanted, 2e-3 * wanted);
         for (std::size_t v = 0; v < ball.points.size(); ++v)
             EXPECT_NEAR(lines.layers[0].length(v), thickness, 1e-6 * (1 + thickness));
-        for (const GrowOptions& options : {GrowOptions{}, thickest()}) {
+        for (const GrowOptions& options : test::ways_to_grow()) {
             const ShellStack free = outward(ball, thickness, options);
-            expect_certified(free, options.method == Method::thickest ? PrismTest::chosen_tets
-                                                                      : PrismTest::twelve_tets);
+            expect_certified(free, prism_test_of(options));
             EXPECT_GE(volume(free), volume(lines) * (1 - 1e-3));
         }
     }
@@ -309,10 +302,9 @@ TEST(Sides, NeverExceedsTheThickness)
     std::vector<double> cap(torus.points.size(), 0.2);
     for (std::size_t v = 0; v < cap.size(); v += 3)
         cap[v] = 0.05; // a painted thickness
-    for (const GrowOptions& options : {GrowOptions{}, thickest()}) {
+    for (const GrowOptions& options : test::ways_to_grow()) {
         const ShellStack stack = outward(torus, cap, options);
-        expect_certified(stack, options.method == Method::thickest ? PrismTest::chosen_tets
-                                                                   : PrismTest::twelve_tets);
+        expect_certified(stack, prism_test_of(options));
         const PrismShell& layer = stack.layers[0];
         for (std::size_t v = 0; v < cap.size(); ++v)
             EXPECT_FALSE(exact::longer_than(layer.inner[v], layer.outer[v], cap[v])) << v;
@@ -360,7 +352,7 @@ TEST(Sides, SameBitsForAnyNumberOfThreads)
 {
     const TriangleMesh mesh = test::joined(
         icosphere(1, 2), test::translated(test::torus(1, 0.3, 24, 12), Vec3d(2.4, 0, 0)));
-    GrowOptions options = thickest();
+    GrowOptions options = test::by_method(Method::thickest);
     options.free_rounds = 10;
     const auto with_threads = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -43,9 +43,12 @@ inline GrowOptions by_method(Method method)
     return options;
 }
 
-inline PrismTest test_of(Method method)
+/// Under each test of a prism, and the thickest.
+inline std::vector<GrowOptions> ways_to_grow()
 {
-    return method == Method::thickest ? PrismTest::chosen_tets : PrismTest::twelve_tets;
+    GrowOptions chosen;
+    chosen.prism_test = PrismTest::chosen_tets;
+    return {{}, chosen, by_method(Method::thickest)};
 }
 
 /// A solid without symmetry: bumps of several lengths on a sphere.

@@ -5,6 +5,7 @@
 #include "vdb_shell/growth/schedule.h"
 #include "vdb_shell/options/describe.h"
 #include "vdb_shell/resample/coarsen.h"
+#include "vdb_shell/shell/prism_test.h"
 #include "vdb_shell/shell/tessellate.h"
 #include "vdb_shell/step/directions.h"
 
@@ -20,17 +21,20 @@ namespace vdb_shell
 enum class Method {
     raw,       ///< the lengths of line stepping as they are (the paper): overlaps are reported, not
                ///< prevented
-    certified, ///< grown from a valid start, all twelve tets of each prism positive: every diagonal
-               ///< and every thinner shell is valid too (docs/theory.md, "One prism: the
-               ///< twelve tets")
-    thickest,  ///< thicker: with only the three chosen tets of each prism positive, after a start
-               ///< on coarser surfaces from the first prolongation on, else in the last rounds
+    certified, ///< grown from a valid start, which passes GrowOptions::prism_test throughout
+    thickest,  ///< thicker, for more time: grown on under the three-tet test until it is .998 full
 };
 const NameTable<Method>& names(Method);
 
 /// Each lever is an option of its own; docs/measurements/thickness.md has its gain and cost.
 struct GrowOptions {
     Method method = Method::certified;
+    /// Which tets of a prism growth keeps positive, under Method::certified. With all twelve every
+    /// diagonal and every thinner shell is valid too (docs/theory.md, "One prism: the twelve
+    /// tets"), layers are cut without loss, and coordinates are one-to-one. The three chosen ones
+    /// leave more room: sooner and fuller on large surfaces
+    /// (docs/measurements/enough_fill.md), but those that come after may have to shorten pillars.
+    PrismTest prism_test = PrismTest::twelve_tets;
     bool mend_directions = true;   ///< a direction that sees a triangle from behind, or nearly so,
                                    ///< gives way to the one that sees its worst triangle best
     bool smooth_directions = true; ///< bilateral smoothing of the directions, visibility kept
@@ -40,9 +44,9 @@ struct GrowOptions {
                                ///< is nearly full already (round and convex solids) or thin
     bool free_moves = true;    ///< let inner vertices leave their lines
     bool soft_contacts = true; ///< free moves keep clear of near triangles before they touch
-    bool flips = true;         ///< choose diagonals again while moving (thickest) and for
-                               ///< quality at the end; prolonged prisms that fail get others
-                               ///< anyway
+    bool flips = true;         ///< choose diagonals again while moving, under the three-tet test,
+                               ///< and for quality at the end; prolonged prisms that fail get
+                               ///< others anyway
     /// From so many triangles on, growth begins on a surface of a thousand or two, and comes to the
     /// whole over some in between: sooner, and as thick. Fewer triangles than the default's have
     /// too little of their shape left then. 0: never.
@@ -66,6 +70,9 @@ struct GrowOptions {
     GrowthSchedule schedule;
 };
 OptionList describe(GrowOptions& options);
+
+/// The test that a shell grown with these options passes: Method::thickest has the chosen tets.
+PrismTest prism_test_of(const GrowOptions& options);
 
 struct GrowReport {
     std::size_t rounds = 0;             ///< rounds of free moves
@@ -120,8 +127,8 @@ struct GrowResult {
 /// other side; they bound nothing. `cap` bounds
 /// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).
 /// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back.
-/// `split` is honoured under Method::certified, where any diagonals are valid; with `flips` and
-/// SplitRule::length_descending they are then turned for quality. Method::thickest has its own.
+/// `split` is honoured under the twelve-tet test, where any diagonals are valid; with `flips` and
+/// SplitRule::length_descending they are then turned for quality. The three-tet test has its own.
 /// Same bits for any number of threads. Terminates: rounds are bounded, and in a round each vertex
 /// is tried a bounded number of times.
 /// Precondition: closed, manifold mesh, oriented so that the side to fill lies behind its

@@ -154,9 +154,10 @@ struct GroupSchedule {
 
 /// Relax: the interior-point method of all inner vertices.
 struct BarrierSchedule {
-    /// Mean tets. First barrier weight under the twelve-tet test, where a large one spreads the
-    /// inner vertices, and under the three-tet test after it, where it would undo what is reached.
-    double first_weight_twelve = 1.0, first_weight_three = 0.02;
+    /// Mean tets. First barrier weight from lines, where a large one spreads the inner vertices,
+    /// and under the three-tet test after rounds under the twelve-tet test, where it would undo
+    /// what is reached.
+    double first_weight = 1.0, first_weight_three = 0.02;
     /// First barrier weight at most, over the share of the solid that is still empty: a barrier
     /// that weighs more than what there is to win undoes what is reached.
     double most_weight_over_void = 7;
