@@ -247,11 +247,34 @@ std::vector<PillarEnd> ends_of(const GrowState& s, const std::vector<int>& verti
     return ends;
 }
 
-/// Gives v a pillar while those beside it have none, and then these theirs: a vertex that hardly
-/// sees its triangles has to come before those that are easily served. Under the three-tet test
-/// another pillar can stand in the way even then: with `twelve_within`, prisms so many edges around
-/// are made to pass the twelve-tet test before, and stay so. False, with nothing changed, where one
-/// of them has none in the end. Precondition: BoxTree::index_parents.
+void put(GrowState& s, const PillarEnd& p)
+{
+    s.b[p.vertex] = p.end;
+    s.pinned[p.vertex] = p.end == s.a[p.vertex];
+}
+
+/// Gives v a pillar, none longer than `longest`, and then these vertices theirs, which have none
+/// either: the one first that sees its triangles least, since a vertex that hardly sees them has to
+/// come before those that are easily served. False where one of them has none in the end.
+bool release_in_turn(GrowState& s, int v, std::vector<PillarEnd> others, double longest,
+                     const std::vector<double>& visibility)
+{
+    std::stable_sort(others.begin(), others.end(), [&](const PillarEnd& p, const PillarEnd& q) {
+        return visibility[p.vertex] < visibility[q.vertex];
+    });
+    const auto released = [&](int u, double length) {
+        return release(s, u, length, visibility, PillarsBesidePin::turned);
+    };
+    return released(v, longest) &&
+           std::all_of(others.begin(), others.end(), [&](const PillarEnd& p) {
+               return released(p.vertex, std::max(longest, (p.end - s.a[p.vertex]).length()));
+           });
+}
+
+/// Gives v a pillar while those beside it have none, and then these theirs. Under the three-tet
+/// test another pillar can stand in the way even then: with `twelve_within`, prisms so many edges
+/// around are made to pass the twelve-tet test before, and stay so. False, with nothing changed,
+/// where one of them has none in the end. Precondition: BoxTree::index_parents.
 bool release_before_others(GrowState& s, int v, const std::vector<double>& visibility,
                            std::optional<int> twelve_within = std::nullopt)
 {
@@ -262,42 +285,26 @@ bool release_before_others(GrowState& s, int v, const std::vector<double>& visib
         std::min(mean_edge(*s.mesh, s.a, v), s.schedule.pins.longest * s.diagonal);
     widen_boxes(s, around, longest);
     const std::vector<PillarEnd> before = ends_of(s, around);
-    const auto put = [&s](int u, const Vec3d& end) {
-        s.b[u] = end;
-        s.pinned[u] = end == s.a[u];
-    };
     std::vector<PillarEnd> beside;
     for (const int u : neighbours(*s.mesh, v))
         if (!s.pinned[u])
             beside.push_back({u, s.b[u]});
-    std::stable_sort(beside.begin(), beside.end(), [&](const PillarEnd& p, const PillarEnd& q) {
-        return visibility[p.vertex] < visibility[q.vertex];
-    });
     for (const PillarEnd& p : beside)
-        put(p.vertex, s.a[p.vertex]);
+        put(s, {p.vertex, s.a[p.vertex]});
     // Each release tests all that it changes, so what is valid in the end is so without these pins.
-    const auto released = [&](int u, double length) {
-        return release(s, u, length, visibility, PillarsBesidePin::turned);
-    };
-    const auto all_released = [&] {
-        return released(v, longest) &&
-               std::all_of(beside.begin(), beside.end(), [&](const PillarEnd& p) {
-                   return released(p.vertex, std::max(longest, (p.end - s.a[p.vertex]).length()));
-               });
-    };
     bool done = false;
     if (!twelve_within) {
-        done = all_released();
+        done = release_in_turn(s, v, beside, longest, visibility);
     } else if (shorten_to_twelve_tets(s, faces_at(*s.mesh, vertices_around(s, v, *twelve_within)),
                                       around)) {
         // Whatever passes this test passes the other.
         s.twelve = true;
-        done = all_released();
+        done = release_in_turn(s, v, beside, longest, visibility);
         s.twelve = false;
     }
     if (!done)
         for (const PillarEnd& p : before)
-            put(p.vertex, p.end);
+            put(s, p);
     return done;
 }
 
