@@ -157,6 +157,32 @@ void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed,
         [&](std::size_t begin, std::size_t end) { search.mark_groups(begin, end); }, 4);
 }
 
+/// Marks the faces too in whose prism a witness that has moved may have come to lie, of another
+/// component's as a rule.
+void mark_around_witnesses(const GrowState& s, const std::vector<std::uint8_t>& moved,
+                           std::vector<std::uint8_t>& faces)
+{
+    std::vector<FloatBox> witnesses;
+    if (s.mesh->components > 1)
+        for (const int w : s.witness)
+            if (moved[w])
+                witnesses.push_back(float_box(box_of({s.b[w], s.b[w], s.b[w]})));
+    if (witnesses.empty())
+        return;
+    BoxTree tree;
+    tree.build(std::move(witnesses));
+    for_each_index(
+        faces.size(),
+        [&](std::size_t i) {
+            const int f = static_cast<int>(i);
+            Box prism = box_of(outer_corners(s, f));
+            prism.add(box_of(inner_corners(s, f)));
+            if (!faces[i])
+                tree.for_each_overlap_while(float_box(prism), [&](int) { return !(faces[i] = 1); });
+        },
+        256);
+}
+
 } // namespace
 
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
@@ -199,11 +225,10 @@ std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<
 std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std::uint8_t>& moved)
 {
     const Connectivity& m = *s.mesh;
-    // A witness that moves may come to lie in any prism of another component.
-    const bool all = m.components > 1;
     std::vector<std::uint8_t> faces(m.faces.size());
     for (int f = 0; f < m.face_count(); ++f)
-        faces[f] = all || moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)];
+        faces[f] = moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)];
+    mark_around_witnesses(s, moved, faces);
     return faces;
 }
 
