@@ -6,6 +6,7 @@
 
 #include "growth/diagonals.h"
 
+#include "core/marked.h"
 #include "core/parallel.h"
 #include "growth/move_tests.h"
 
@@ -264,24 +265,21 @@ void order_by_length(GrowState& s)
     }
 }
 
-std::size_t flip_to_mend(GrowState& s, const std::vector<std::uint8_t>& where)
+std::size_t flip_to_mend(GrowState& s, const std::vector<int>& faces)
 {
-    std::vector<std::uint8_t> fails(where.size());
+    std::vector<std::uint8_t> fails(faces.size());
     for_each_index(
         fails.size(),
-        [&](std::size_t i) {
-            const int f = static_cast<int>(i);
-            fails[i] = where[i] && !split_positive(s, f, s.order[f]);
-        },
-        64);
+        [&](std::size_t i) { fails[i] = !split_positive(s, faces[i], s.order[faces[i]]); }, 64);
+    const std::vector<int> failing = marked(fails);
     std::size_t total = 0, before = 0;
     // Serial, since a turned diagonal changes what its neighbours may do, and few fail. Each flip
     // leaves fewer failing tets, so passes end.
     do {
         before = total;
-        for (int f = 0; f < s.mesh->face_count(); ++f)
-            for (int k = 0; fails[f] && k < 3; ++k)
-                if (const std::optional<Seam> seam = seam_from(*s.mesh, {f, k}))
+        for (const int i : failing)
+            for (int k = 0; k < 3; ++k)
+                if (const std::optional<Seam> seam = seam_from(*s.mesh, {faces[i], k}))
                     total += turn_to_mend(s, *seam);
     } while (total != before);
     return total;

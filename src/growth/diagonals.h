@@ -12,10 +12,10 @@ namespace vdb_shell::growth
 /// that does not pass it, some prisms may need another one.
 void order_by_length(GrowState& s);
 
-/// Turns diagonals of the faces marked in `where` whose chosen tets are not all positive, as long
+/// Turns diagonals of these faces, in their order, whose chosen tets are not all positive, as long
 /// as that makes fewer tets fail and no prism that was sound. Positions stay. For the three-tet
 /// test. Returns the number of flips.
-std::size_t flip_to_mend(GrowState& s, const std::vector<std::uint8_t>& where);
+std::size_t flip_to_mend(GrowState& s, const std::vector<int>& faces);
 
 /// One pass that turns diagonals while the sum of the log volumes of the two prisms' tets rises:
 /// room for the barrier. Returns the number of flips.

@@ -6,13 +6,16 @@
 
 #include "growth/violations.h"
 
+#include "core/marked.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "core/triangle_pairs.h"
 #include "growth/move_tests.h"
 #include "growth/other_components.h"
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -157,30 +160,35 @@ void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed,
         [&](std::size_t begin, std::size_t end) { search.mark_groups(begin, end); }, 4);
 }
 
-/// Marks the faces too in whose prism a witness that has moved may have come to lie, of another
-/// component's as a rule.
-void mark_around_witnesses(const GrowState& s, const std::vector<std::uint8_t>& moved,
-                           std::vector<std::uint8_t>& faces)
+/// By face, whether one of these witnesses may have come to lie in its prism.
+std::vector<std::uint8_t> prisms_near(const GrowState& s, const std::vector<int>& witnesses)
 {
-    std::vector<FloatBox> witnesses;
-    if (s.mesh->components > 1)
-        for (const int w : s.witness)
-            if (moved[w])
-                witnesses.push_back(float_box(box_of({s.b[w], s.b[w], s.b[w]})));
-    if (witnesses.empty())
-        return;
+    std::vector<FloatBox> points;
+    points.reserve(witnesses.size());
+    for (const int w : witnesses)
+        points.push_back(float_box(box_of({s.b[w], s.b[w], s.b[w]})));
     BoxTree tree;
-    tree.build(std::move(witnesses));
+    tree.build(std::move(points));
+    std::vector<std::uint8_t> near(s.mesh->faces.size(), 0);
     for_each_index(
-        faces.size(),
+        near.size(),
         [&](std::size_t i) {
             const int f = static_cast<int>(i);
             Box prism = box_of(outer_corners(s, f));
             prism.add(box_of(inner_corners(s, f)));
-            if (!faces[i])
-                tree.for_each_overlap_while(float_box(prism), [&](int) { return !(faces[i] = 1); });
+            tree.for_each_overlap_while(float_box(prism), [&](int) { return !(near[i] = 1); });
         },
         256);
+    return near;
+}
+
+/// Those of the witnesses that can tell something, of which moved(vertex) is true.
+template <class Moved> std::vector<int> witnesses_of(const GrowState& s, const Moved& moved)
+{
+    std::vector<int> found;
+    if (s.mesh->components > 1)
+        std::copy_if(s.witness.begin(), s.witness.end(), std::back_inserter(found), moved);
+    return found;
 }
 
 } // namespace
@@ -199,6 +207,41 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
     // and contact tests are the dearer ones.
     mark_contacts(s, changed, bad);
     return {bad.begin(), bad.end()};
+}
+
+std::vector<int> violating_among(GrowState& s, const std::vector<int>& changed)
+{
+    for (const int f : changed)
+        s.inner_tree.replace(static_cast<std::size_t>(f), float_box_of(inner_corners(s, f)));
+    std::vector<std::vector<int>> bad_beside(changed.size());
+    for_each_index(
+        changed.size(),
+        [&](std::size_t i) {
+            const int f = changed[i];
+            std::vector<int>& bad = bad_beside[i];
+            if (!prism_valid(s, f) || holds_component(s, f)) {
+                bad.push_back(f);
+                return;
+            }
+            const InnerTriangle triangle(s, f);
+            const FloatBox box = float_box_of(triangle.corners());
+            s.inner_tree.for_each_overlap(box, [&](int g) {
+                if (g != f && triangle.meets_inner(g))
+                    bad.push_back(g);
+            });
+            bool meets = !bad.empty();
+            if (!meets)
+                s.outer_tree.for_each_overlap_while(
+                    box, [&](int g) { return !(meets = triangle.meets_outer(g)); });
+            if (meets)
+                bad.push_back(f);
+        },
+        16);
+    std::vector<int> all;
+    for (const std::vector<int>& bad : bad_beside)
+        all.insert(all.end(), bad.begin(), bad.end());
+    sort_unique(all);
+    return all;
 }
 
 bool faces_valid(const GrowState& s, const std::vector<int>& faces)
@@ -222,13 +265,39 @@ std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<
     return corners;
 }
 
+std::vector<int> free_corners_of(const GrowState& s, const std::vector<int>& bad)
+{
+    std::vector<int> corners;
+    for (const int f : bad)
+        for (int k = 0; k < 3; ++k)
+            if (const int v = s.mesh->corner(f, k); !s.pinned[v])
+                corners.push_back(v);
+    sort_unique(corners);
+    return corners;
+}
+
 std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std::uint8_t>& moved)
 {
     const Connectivity& m = *s.mesh;
-    std::vector<std::uint8_t> faces(m.faces.size());
+    const std::vector<int> witnesses = witnesses_of(s, [&](int w) { return moved[w] != 0; });
+    std::vector<std::uint8_t> faces =
+        witnesses.empty() ? std::vector<std::uint8_t>(m.faces.size()) : prisms_near(s, witnesses);
     for (int f = 0; f < m.face_count(); ++f)
-        faces[f] = moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)];
-    mark_around_witnesses(s, moved, faces);
+        if (moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)])
+            faces[f] = 1;
+    return faces;
+}
+
+std::vector<int> faces_around(const GrowState& s, const std::vector<int>& moved)
+{
+    std::vector<int> faces = faces_at(*s.mesh, moved);
+    const std::vector<int> witnesses =
+        witnesses_of(s, [&](int w) { return std::binary_search(moved.begin(), moved.end(), w); });
+    if (witnesses.empty())
+        return faces;
+    const std::vector<int> near = marked(prisms_near(s, witnesses));
+    faces.insert(faces.end(), near.begin(), near.end());
+    sort_unique(faces);
     return faces;
 }
 

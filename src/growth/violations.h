@@ -18,14 +18,24 @@ namespace vdb_shell::growth
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
                                           bool first);
 
+/// The same by their numbers, ascending, in time that does not depend on all other faces.
+/// Preconditions: `changed` ascending, each once; of the inner tree BoxTree::index_parents; no
+/// crowds (Connectivity::has_crowds).
+std::vector<int> violating_among(GrowState& s, const std::vector<int>& changed);
+
 /// Whether none of these would be a violation. Precondition: the inner tree's boxes hold the inner
 /// triangles.
 bool faces_valid(const GrowState& s, const std::vector<int>& faces);
 
 /// The corners of such faces that are not pinned.
 std::vector<std::uint8_t> free_corners_of(const GrowState& s, const std::vector<std::uint8_t>& bad);
+/// The same by their numbers, those of the corners ascending.
+std::vector<int> free_corners_of(const GrowState& s, const std::vector<int>& bad);
 
-/// The faces to test again once these vertices have moved.
+/// The faces to test again once these vertices have moved: those that hold one, and those in whose
+/// prism a component may have come to lie.
 std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std::uint8_t>& moved);
+/// The same by their numbers, both ascending.
+std::vector<int> faces_around(const GrowState& s, const std::vector<int>& moved);
 
 } // namespace vdb_shell::growth

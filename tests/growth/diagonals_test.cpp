@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace
@@ -61,7 +62,9 @@ TEST(Diagonals, AreTurnedUntilFewerPrismsFailAndNoneThatWasSound)
     GrowState& s = sphere.s;
     const std::vector<int> before = sphere.failing();
     const std::vector<Vec3d> places = s.b;
-    EXPECT_GT(flip_to_mend(s, std::vector<std::uint8_t>(before.size(), 1)), 10U);
+    std::vector<int> all(before.size());
+    std::iota(all.begin(), all.end(), 0);
+    EXPECT_GT(flip_to_mend(s, all), 10U);
     EXPECT_EQ(s.b, places);
     const std::vector<int> after = sphere.failing();
     // What is left has no sound split, or one that a neighbour would pay for.
@@ -88,16 +91,13 @@ TEST(Diagonals, OfOtherFacesAreTurnedOnlyWithThem)
     GrowState& s = sphere.s;
     const std::vector<int> before = sphere.failing();
     const std::vector<std::uint8_t> orders = s.order;
-    EXPECT_EQ(flip_to_mend(s, std::vector<std::uint8_t>(before.size(), 0)), 0U);
+    EXPECT_EQ(flip_to_mend(s, {}), 0U);
     EXPECT_EQ(s.order, orders);
     // One that can be mended alone: nothing changes but it and those beside it.
-    std::vector<std::uint8_t> one(before.size(), 0);
     for (std::size_t f = 0; f < before.size(); ++f) {
         if (before[f] == 0)
             continue;
-        one.assign(one.size(), 0);
-        one[f] = 1;
-        if (flip_to_mend(s, one) == 0)
+        if (flip_to_mend(s, {int(f)}) == 0)
             continue;
         for (int g = 0; g < s.mesh->face_count(); ++g)
             if (!s.mesh->share_a_corner(int(f), g)) {
