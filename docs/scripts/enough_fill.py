@@ -17,9 +17,10 @@ from scan_figures import meshes_of
 
 RUNS = {"0.9": ["--enough-fill", "0.9"], "0.95": ["--enough-fill", "0.95"], "0.97": ["--enough-fill", "0.97"],
         "0.98": ["--enough-fill", "0.98"], "default": [], "0.99": ["--enough-fill", "0.99"],
-        "0.995": ["--enough-fill", "0.995"], "thickest, 0.98": ["--thickest", "--enough-fill", "0.98"],
-        "thickest, 0.9855": ["--thickest", "--enough-fill", "0.9855"],
-        "thickest, 0.995": ["--thickest", "--enough-fill", "0.995"], "thickest": ["--thickest"]}
+        "0.995": ["--enough-fill", "0.995"], "for speed": ["--for", "speed"],
+        "three tets, 0.9855": ["--prism-test", "chosen-tets", "--enough-fill", "0.9855"],
+        "three tets": ["--prism-test", "chosen-tets"],
+        "three tets, 0.995": ["--prism-test", "chosen-tets", "--enough-fill", "0.995"], "thickest": ["--thickest"]}
 
 
 def measured(command, mesh, default):

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """How full the default's shells are on large surfaces that nobody made for a textbook, for docs/measurements/scans.md.
 
-    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST] [--wall] [--thickest]
+    scan_figures.py COMMAND docs/measurements/scans.md FOLDER ... [--before OTHER_COMMAND] [--meshes LIST] [--wall] [--flags="FLAGS"]
 
 LIST has a line "tuning NAME" or "judging NAME" for each mesh, found as NAME.obj or NAME.off in one of the folders; what
 is not there is left out and named. --before is a binary of an older version. Each build is one run on one thread; times
 are processor times, so other work on the machine matters little. Where TetGen is installed its time is measured too.
 --wall: also the wall time of a build with a .vdb on all threads over TetGen's, the better of two runs each, for a machine
-that does nothing else. --thickest: with that flag, for docs/measurements/scans_thickest.md.
+that does nothing else. --flags: with these, for docs/measurements/scans_thickest.md and scans_speed.md.
 """
 import argparse
 import pathlib
@@ -34,7 +34,7 @@ def arguments():
     parser.add_argument("folders", type=pathlib.Path, nargs="+")
     parser.add_argument("--before", help="the binary of an older version")
     parser.add_argument("--wall", action="store_true")
-    parser.add_argument("--thickest", action="store_const", const=["--thickest"], default=[], dest="flags")
+    parser.add_argument("--flags", type=str.split, default=[])
     parser.add_argument("--meshes", type=pathlib.Path,
                         default=pathlib.Path(__file__).parent.parent / "measurements/scan_meshes.txt")
     return parser.parse_args()

@@ -29,8 +29,8 @@ namespace
 // Percent of the stage's time: on the scans boot and skull a seventh goes into what comes after.
 constexpr double kShortenedAt = 85;
 
-// Where fewer than one face in so many is to be tested again, going through all of them costs more
-// than looking for each by itself (1,120,000 faces: .03 s a round, as 3,000 single ones).
+// Where fewer than one face in so many fails, going through all of them costs more than looking for
+// each by itself: .03 s a round of 1,120,000 faces, and half of 60 rounds were of ten or fewer.
 constexpr std::size_t kFewOf = 512;
 
 /// Shortens v's pillar by its share, which grows by the factor.
