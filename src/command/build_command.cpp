@@ -176,8 +176,9 @@ void require_sensible(const BuildArguments& arguments)
     if (arguments.outputs.paths.empty() && arguments.report.empty() && arguments.quiet)
         throw InvalidOption("no output, no report and --quiet: nothing would come of the work");
     require_format(arguments.mesh, arguments.format);
-    require_sensible(arguments.shell, !arguments.thickness_grid.empty());
+    // By the purpose's name, where it has set what is wrong.
     require_fit(arguments.purpose, arguments.shell);
+    require_sensible(arguments.shell, !arguments.thickness_grid.empty());
     require_program(arguments.shell.core_fill);
     if (!arguments.remesh_map.empty())
         require_map_extension(arguments.remesh_map);

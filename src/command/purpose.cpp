@@ -56,6 +56,8 @@ void require_fit(Purpose purpose, const ShellOptions& options)
         hindrance = "of pillars scaled down (--thickness-scale)";
     else if (purpose == Purpose::speed && options.grow.coarse_from == 0)
         hindrance = "that is grown from lines alone (--coarse-from)";
+    else if (purpose == Purpose::speed && options.side == Side::outward)
+        hindrance = "outside, which has no solid to fill (--side)";
     if (hindrance)
         throw InvalidOption(std::string("--for ") + name_in_table(purpose) +
                             " is not for a shell " + hindrance);

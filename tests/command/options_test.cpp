@@ -411,6 +411,7 @@ TEST_F(Options, ContradictoryWishesAreRefusedByNameAndLeaveTheOutputAlone)
     refused("--for simulation --no-taper", {"--for simulation", "--no-taper"});
     refused("--for thickness --method raw", {"--for thickness", "--method"});
     refused("--for speed --coarse-from 0", {"--for speed", "--coarse-from"});
+    refused("--for speed --side outward", {"--for speed", "--side"});
     refused("--thickest --prism-test twelve-tets", {"--prism-test", "--method certified"});
     refused("--for thickness --taper-tet-cost 4", {"--taper-tet-cost", "--taper"});
     refused("--want-amips 5 --method raw", {"--want", "--method"});
