@@ -27,49 +27,99 @@ constexpr double kBarycentricSlack = 1e-9;
 /// and for the one voxel that depth_lines.cpp goes beyond the box.
 constexpr double kLargestCoordinate = double(1 << 30);
 
-/// Barycentric coordinates come from the cross products over the determinant (Cramer's rule). An
-/// inverted tet needs no case of its own: numerator and denominator change their signs together.
-IndexTet index_tet(const TetMesh& mesh, std::size_t t, const VoxelLattice& lattice,
-                   const std::vector<double>& value)
+/// Corners in index space, and the voxel centres that lie between them.
+IndexTet boxed_tet(const TetMesh& mesh, std::size_t t, const VoxelLattice& lattice)
 {
     IndexTet tet;
-    std::array<Vec3d, 4> corner;
     Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
     for (std::size_t i = 0; i < 4; ++i) {
-        corner[i] =
+        tet.corner[i] =
             (Vec3d(mesh.points[mesh.tets[t][int(i)]]) - lattice.origin) / lattice.voxel_size;
-        low = openvdb::math::minComponent(low, corner[i]);
-        high = openvdb::math::maxComponent(high, corner[i]);
+        low = openvdb::math::minComponent(low, tet.corner[i]);
+        high = openvdb::math::maxComponent(high, tet.corner[i]);
     }
     for (int axis = 0; axis < 3; ++axis) {
         tet.low[axis] = int(std::ceil(low[axis]));
         tet.high[axis] = int(std::floor(high[axis]));
     }
-    tet.origin = corner[0];
-    const Vec3d b = corner[1] - corner[0], c = corner[2] - corner[0], d = corner[3] - corner[0];
+    return tet;
+}
+
+/// A tet between voxel centres has none. In a coarse grid these are most.
+bool has_centres_between(const IndexTet& tet)
+{
+    return tet.low.x() <= tet.high.x() && tet.low.y() <= tet.high.y() &&
+           tet.low.z() <= tet.high.z();
+}
+
+/// Barycentric coordinates come from the cross products over the determinant (Cramer's rule). An
+/// inverted tet needs no case of its own: numerator and denominator change their signs together.
+void set_coordinates(IndexTet& tet)
+{
+    const auto& [a, p, q, r] = tet.corner;
+    const Vec3d b = p - a, c = q - a, d = r - a;
     const double det = b.dot(c.cross(d));
     // Flat tets have no interior, so they are left out. So are those whose determinant is so small
     // that the slopes overflow.
     tet.flat = det == 0.0;
     if (tet.flat)
-        return tet;
+        return;
     const std::array<Vec3d, 3> slopes{c.cross(d) / det, d.cross(b) / det, b.cross(c) / det};
     tet.barycentric[0] = {1.0, -(slopes[0] + slopes[1] + slopes[2])};
-    for (const Vec3d& slope : slopes)
-        tet.flat = tet.flat || !std::isfinite(slope.lengthSqr());
+    for (std::size_t i = 0; i < 3; ++i) {
+        tet.barycentric[i + 1] = {0.0, slopes[i]};
+        tet.flat = tet.flat || !std::isfinite(slopes[i].lengthSqr());
+    }
+}
+
+/// The value is linear in the tet, so it is the mean of the corners' values weighted by their
+/// barycentric coordinates.
+void set_value(IndexTet& tet, const openvdb::Vec4I& points, const double* value)
+{
     for (std::size_t i = 0; i < 4; ++i) {
-        if (i > 0)
-            tet.barycentric[i] = {0.0, slopes[i - 1]};
-        if (value.empty())
-            continue;
-        // It is linear in the tet, so it is the mean of the corners' values weighted by their
-        // barycentric coordinates.
-        const double corner_value = value[mesh.tets[t][int(i)]];
+        const double corner_value = value[points[int(i)]];
         tet.value.value += corner_value * tet.barycentric[i].value;
         tet.value.slope += corner_value * tet.barycentric[i].slope;
     }
-    return tet;
 }
+
+/// The rows of voxels along y that lines along z through a tet may come from.
+class Shadow
+{
+public:
+    explicit Shadow(const IndexTet& tet) : corner_(tet.corner)
+    {
+        // Far above the rounding of places and the slack of coordinates, which moves a face by no
+        // more than that share of the tet.
+        slack_ = 1e-6 * (1.0 + (tet.high - tet.low).asVec3d().length());
+    }
+
+    /// First and last y at this x; none where the first is above the last.
+    std::array<int, 2> rows_at(int x) const
+    {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        const auto add = [&](double y) { low = std::min(low, y), high = std::max(high, y); };
+        // The shadow is convex, so it lies between the places where edges pass x.
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const Vec3d &p = corner_[i], &q = corner_[j];
+                const double to_p = p[0] - x, to_q = q[0] - x;
+                if (std::abs(to_p) <= slack_)
+                    add(p[1]);
+                if (std::abs(to_q) <= slack_)
+                    add(q[1]);
+                if ((to_p < 0) != (to_q < 0))
+                    add(p[1] + (q[1] - p[1]) * (to_p / (to_p - to_q)));
+            }
+        if (low > high)
+            return {0, -1};
+        return {int(std::ceil(low - slack_)), int(std::floor(high + slack_))};
+    }
+
+private:
+    const std::array<Vec3d, 4>& corner_;
+    double slack_;
+};
 
 /// Each face bounds z from below or from above, by the sign of its coordinate's slope along z; a
 /// face that is parallel to z bounds x and y only. Dividing by the slope here saves a division for
@@ -77,7 +127,7 @@ IndexTet index_tet(const TetMesh& mesh, std::size_t t, const VoxelLattice& latti
 TetLines lines_through(const IndexTet& tet)
 {
     TetLines lines;
-    lines.origin_x = tet.origin[0], lines.origin_y = tet.origin[1];
+    lines.origin_x = tet.corner[0][0], lines.origin_y = tet.corner[0][1];
     lines.slack = kBarycentricSlack;
     lines.low_z = tet.low.z(), lines.high_z = tet.high.z();
     for (const Affine& weight : tet.barycentric) {
@@ -86,7 +136,7 @@ TetLines lines_through(const IndexTet& tet)
             lines.side[lines.sides++] = {weight.value, weight.slope[0], weight.slope[1]};
         else
             (slope > 0.0 ? lines.floor[lines.floors++] : lines.ceiling[lines.ceilings++]) = {
-                tet.origin[2] - (weight.value + kBarycentricSlack) / slope,
+                tet.corner[0][2] - (weight.value + kBarycentricSlack) / slope,
                 -weight.slope[0] / slope, -weight.slope[1] / slope};
     }
     return lines;
@@ -99,12 +149,13 @@ bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
 {
     // Far above the rounding error of heights and weights.
     constexpr double kHeightSlack = 1e-6, kRounding = 1e-13;
-    const double x_low = std::max(tet.low.x(), leaf_x) - tet.origin[0];
-    const double x_high = std::min(tet.high.x(), leaf_x + kLeafSize - 1) - tet.origin[0];
-    const double y_low = std::max(tet.low.y(), leaf_y) - tet.origin[1];
-    const double y_high = std::min(tet.high.y(), leaf_y + kLeafSize - 1) - tet.origin[1];
+    const Vec3d& origin = tet.corner[0];
+    const double x_low = std::max(tet.low.x(), leaf_x) - origin[0];
+    const double x_high = std::min(tet.high.x(), leaf_x + kLeafSize - 1) - origin[0];
+    const double y_low = std::max(tet.low.y(), leaf_y) - origin[1];
+    const double y_high = std::min(tet.high.y(), leaf_y + kLeafSize - 1) - origin[1];
     const double size = (tet.high - tet.low).asVec3d().length() + 1.0;
-    double low = tet.low.z() - tet.origin[2], high = tet.high.z() - tet.origin[2];
+    double low = tet.low.z() - origin[2], high = tet.high.z() - origin[2];
     for (const Affine& weight : tet.barycentric) {
         const Vec3d& slope = weight.slope;
         const double slack =
@@ -126,15 +177,25 @@ bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
 
 void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<TetJob>& jobs)
 {
-    // A tet between voxel centres has an empty box and no job. In a coarse grid these are most.
-    if (tet.flat || tet.low.x() > tet.high.x() || tet.low.y() > tet.high.y() ||
-        tet.low.z() > tet.high.z())
-        return;
+    const Shadow shadow(tet);
     // The shift rounds towards minus infinity, as leaf coordinates need.
-    for (int x = tet.low.x() >> kLeafBits; x <= tet.high.x() >> kLeafBits; ++x)
-        for (int y = tet.low.y() >> kLeafBits; y <= tet.high.y() >> kLeafBits; ++y)
-            if (may_meet(tet, x * kLeafSize, y * kLeafSize))
-                jobs.push_back({x, y, index});
+    for (int leaf_x = tet.low.x() >> kLeafBits; leaf_x <= tet.high.x() >> kLeafBits; ++leaf_x) {
+        int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
+        const int end = std::min(tet.high.x(), leaf_x * kLeafSize + kLeafSize - 1);
+        for (int x = std::max(tet.low.x(), leaf_x * kLeafSize); x <= end; ++x) {
+            const auto [from, to] = shadow.rows_at(x);
+            if (from > to)
+                continue;
+            first = std::min(first, from);
+            last = std::max(last, to);
+        }
+        // Long thin tets pass between most lines, and then nothing is asked of their half-spaces.
+        if (first > last)
+            continue;
+        for (int leaf_y = first >> kLeafBits; leaf_y <= last >> kLeafBits; ++leaf_y)
+            if (may_meet(tet, leaf_x * kLeafSize, leaf_y * kLeafSize))
+                jobs.push_back({leaf_x, leaf_y, index});
+    }
 }
 
 void require_voxels_in_range(const TetMesh& mesh, const VoxelLattice& lattice,
@@ -154,21 +215,27 @@ void require_voxels_in_range(const TetMesh& mesh, const VoxelLattice& lattice,
                                     text_of(voxel_size));
 }
 
-/// The jobs of each part come in the same order whichever thread does which part.
-std::vector<std::vector<TetJob>> list_jobs(const TetMesh& mesh, const std::vector<double>& value,
-                                           const VoxelLattice& lattice,
-                                           const std::vector<std::uint8_t>& wanted,
-                                           std::vector<std::vector<IndexTet>>& tets)
+/// In parts of a fixed size, so that the jobs of each come in the same order whichever thread does
+/// which part.
+std::vector<std::vector<TetJob>> list_jobs(const TetColumns& columns,
+                                           const std::vector<std::uint8_t>& wanted)
 {
-    std::vector<std::vector<TetJob>> jobs(tets.size());
+    constexpr std::size_t kTetsInPart = 256;
+    const std::size_t count = columns.mesh.tets.size();
+    std::vector<std::vector<TetJob>> jobs((count + kTetsInPart - 1) / kTetsInPart);
     for_each_index(
-        tets.size(),
+        jobs.size(),
         [&](std::size_t i) {
-            const std::size_t end = std::min((i + 1) * kTetsInPart, mesh.tets.size());
+            const std::size_t end = std::min((i + 1) * kTetsInPart, count);
             for (std::size_t t = i * kTetsInPart; t < end; ++t) {
-                tets[i].push_back(index_tet(mesh, t, lattice, value));
-                if (wanted.empty() || wanted[t])
-                    add_jobs(tets[i].back(), std::uint32_t(t), jobs[i]);
+                if (!wanted.empty() && !wanted[t])
+                    continue;
+                IndexTet tet = boxed_tet(columns.mesh, t, columns.lattice);
+                if (!has_centres_between(tet))
+                    continue;
+                set_coordinates(tet);
+                if (!tet.flat)
+                    add_jobs(tet, std::uint32_t(t), jobs[i]);
             }
         },
         1);
@@ -188,27 +255,43 @@ std::vector<std::size_t> column_starts(const std::vector<TetJob>& jobs)
 
 } // namespace
 
+std::array<int, 2> heights_of(const TetColumns& columns, const TetJob& job)
+{
+    const IndexTet tet = boxed_tet(columns.mesh, job.tet, columns.lattice);
+    return {tet.low.z(), tet.high.z()};
+}
+
+IndexTet tet_of(const TetColumns& columns, const TetJob& job)
+{
+    IndexTet tet = boxed_tet(columns.mesh, job.tet, columns.lattice);
+    set_coordinates(tet);
+    if (columns.value)
+        set_value(tet, columns.mesh.tets[job.tet], columns.value);
+    return tet;
+}
+
 void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
 {
-    const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
-    const int y_begin = std::max(tet.low.y(), leaf_y);
-    const int y_end = std::min(tet.high.y(), leaf_y + kLeafSize - 1);
     const int x_begin = std::max(tet.low.x(), leaf_x);
-    if (x_begin > x_end)
-        return;
-    // The lines begin at the leaf's own y, so the groups of eight are the same for all tets of a
-    // column. Those outside of the tet's box are computed as well and left out below.
-    std::array<LineEnds, std::size_t(kLeafSize)> ends_over;
-    find_line_ends(lines_through(tet), x_begin, std::size_t(x_end - x_begin) + 1, leaf_y,
-                   ends_over.data());
+    const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
+    const Shadow shadow(tet);
+    const TetLines through = lines_through(tet);
     for (int x = x_begin; x <= x_end; ++x) {
-        const LineEnds& ends = ends_over[std::size_t(x - x_begin)];
+        const auto [from, to] = shadow.rows_at(x);
+        const int y_begin = std::max({tet.low.y(), leaf_y, from});
+        const int y_end = std::min({tet.high.y(), leaf_y + kLeafSize - 1, to});
+        if (y_begin > y_end)
+            continue;
+        // The lines begin at the leaf's own y, so the groups of eight are the same for all tets of
+        // a column. Those outside of the tet's shadow are computed as well and left out.
+        LineEnds ends;
+        find_line_ends(through, x, 1, leaf_y, &ends);
         for (int y = y_begin; y <= y_end; ++y) {
             const auto k = std::size_t(y - leaf_y);
             if (ends.first[k] > ends.last[k])
                 continue;
-            const double value =
-                tet.value.slope[0] * (x - tet.origin[0]) + tet.value.slope[1] * (y - tet.origin[1]);
+            const double value = tet.value.slope[0] * (x - tet.corner[0][0]) +
+                                 tet.value.slope[1] * (y - tet.corner[0][1]);
             part.lines[part.count++] = {(x - leaf_x) * kLeafSize + y - leaf_y, ends.first[k],
                                         ends.last[k], value};
         }
@@ -220,14 +303,13 @@ TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value,
                        const std::vector<std::uint8_t>& wanted)
 {
     require_voxels_in_range(mesh, lattice, name);
-    TetColumns columns;
-    columns.tets.resize((mesh.tets.size() + kTetsInPart - 1) / kTetsInPart);
+    TetColumns columns{mesh, value.empty() ? nullptr : value.data(), lattice, {}, {}, {}};
     if (!value.empty()) {
         const auto ends = std::minmax_element(value.begin(), value.end());
         columns.range = {*ends.first, *ends.second};
     }
     columns.jobs = bucket_sort_by_column<TetJob>(
-        list_jobs(mesh, value, lattice, wanted, columns.tets),
+        list_jobs(columns, wanted),
         [](const TetJob& job) {
             return std::array<std::int64_t, 2>{job.x, job.y};
         },

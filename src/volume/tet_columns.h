@@ -52,7 +52,7 @@ struct Affine {
 
 /// A tet in index space: barycentric coordinates as functions of place.
 struct IndexTet {
-    openvdb::Vec3d origin{0.0};
+    std::array<openvdb::Vec3d, 4> corner; ///< the first is the origin of the functions
     std::array<Affine, 4> barycentric;
     Affine value;             ///< of what the points have; 0 where they have nothing
     openvdb::Coord low, high; ///< voxel centres inside lie between, inclusive
@@ -85,23 +85,23 @@ struct TetJob {
     }
 };
 
-constexpr std::size_t kTetsInPart = 256;
-
-/// Tets in parts of a fixed size, and what is to be done, sorted by column. The size does not
-/// depend on the number of threads.
+/// What is to be done, sorted by column. Tets in index space are made again for each job: keeping
+/// them would take more memory than all else, and reading them as long.
 struct TetColumns {
-    std::vector<std::vector<IndexTet>> tets;
+    const TetMesh& mesh;
+    const double* value; ///< by point, or none
+    VoxelLattice lattice;
     std::vector<TetJob> jobs;
     std::vector<std::size_t> starts; ///< of each column's jobs, and the end of all
     ValueRange range;
-
-    const IndexTet& tet_of(const TetJob& job) const
-    {
-        return tets[job.tet / kTetsInPart][job.tet % kTetsInPart];
-    }
 };
 
-/// `value`: by point, or empty. `wanted`: by tet, whether it counts; empty: all do. Throws
+/// The first and the last voxel along z whose centre may lie in the tet.
+std::array<int, 2> heights_of(const TetColumns& columns, const TetJob& job);
+IndexTet tet_of(const TetColumns& columns, const TetJob& job);
+
+/// `value`: by point, or empty; it and the mesh have to stay. `wanted`: by tet, whether it counts;
+/// empty: all do. Throws
 /// InvalidOption, as shell_depth_grid does, its message opened by `name`.
 TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value,
                        const VoxelLattice& lattice, const char* name,
@@ -155,8 +155,9 @@ LeafColumn<Leaf> fill_column(const TetColumns& tets, std::size_t index,
     const TetJob* last = tets.jobs.data() + tets.starts[index + 1];
     int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
     for (const TetJob* job = first; job != last; ++job) {
-        low = std::min(low, tets.tet_of(*job).low.z());
-        high = std::max(high, tets.tet_of(*job).high.z());
+        const auto [from, to] = heights_of(tets, *job);
+        low = std::min(low, from);
+        high = std::max(high, to);
     }
     LeafColumn<Leaf> column{
         first->x * kLeafSize, first->y * kLeafSize, low & ~(kLeafSize - 1), background, {}};
@@ -164,8 +165,9 @@ LeafColumn<Leaf> fill_column(const TetColumns& tets, std::size_t index,
     column.leaf.resize(std::size_t(high - column.low_z) / kLeafSize + 1);
     while (last-- != first) {
         TetInColumn part;
-        find_lines(tets.tet_of(*last), column.x, column.y, part);
-        fill(column, *last, tets.tet_of(*last), part);
+        const IndexTet tet = tet_of(tets, *last);
+        find_lines(tet, column.x, column.y, part);
+        fill(column, *last, tet, part);
     }
     return column;
 }

@@ -24,7 +24,7 @@ openvdb::FloatGrid::Ptr tet_values_grid(const TetMesh& tets, const std::vector<d
             // 64 rows: one row is little work beside it.
             std::array<DepthRow, 64> rows;
             std::size_t count = 0;
-            const DepthAlongZ along{tet.value.value, tet.value.slope[2], tet.origin[2],
+            const DepthAlongZ along{tet.value.value, tet.value.slope[2], tet.corner[0][2],
                                     columns.range.least, columns.range.most};
             for_rows(column, part,
                      [&](float* values, const TetInColumn::Line& line, int z, int begin, int end) {
