@@ -101,8 +101,7 @@ std::array<int, 2> heights_of(const TetColumns& columns, const TetJob& job);
 IndexTet tet_of(const TetColumns& columns, const TetJob& job);
 
 /// `value`: by point, or empty; it and the mesh have to stay. `wanted`: by tet, whether it counts;
-/// empty: all do. Throws
-/// InvalidOption, as shell_depth_grid does, its message opened by `name`.
+/// empty: all do. Throws InvalidOption, as shell_depth_grid does, its message opened by `name`.
 TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value,
                        const VoxelLattice& lattice, const char* name,
                        const std::vector<std::uint8_t>& wanted = {});
