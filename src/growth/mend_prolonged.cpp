@@ -132,18 +132,25 @@ std::vector<std::uint8_t> mend_placed(GrowState& s, const StageProgress& progres
         progress.stop_if_interrupted(100 - std::ldexp(100, -round));
         const bool first = round == 0;
         const bool moving = round < schedule.moving_rounds;
-        // Another diagonal costs no volume, and nearly every prism that fails has one that does.
-        if (chosen)
-            flip_to_mend(s, marked(faces_around(s, moved)));
-        if (moving)
+        std::vector<std::uint8_t> changed;
+        const auto look_at_moved = [&] {
+            changed = faces_around(s, moved);
+            // Another diagonal costs no volume, and nearly every prism that fails has one that
+            // does.
+            if (chosen)
+                flip_to_mend(s, marked(changed));
+        };
+        // Diagonals come before moves as well: what they put right need not move.
+        if (chosen || !moving)
+            look_at_moved();
+        if (moving) {
             untangle(s, first ? schedule.first_sweeps : schedule.sweeps, look, moved,
                      chosen ? UntangledTets::chosen : UntangledTets::twelve);
-        std::vector<std::uint8_t> changed = faces_around(s, moved);
+            look_at_moved();
+        }
         if (first)
             std::transform(changed.begin(), changed.end(), failing.begin(), changed.begin(),
                            std::bit_or<>());
-        if (chosen)
-            flip_to_mend(s, marked(changed));
         const std::vector<std::uint8_t> bad =
             violating_faces(s, changed, first && from != MendFrom::failures);
         if (!moving && few(s, bad)) {

@@ -24,6 +24,11 @@ namespace vdb_shell::growth
 namespace
 {
 
+bool prism_fails(const GrowState& s, int f)
+{
+    return !prism_valid(s, f) || holds_component(s, f);
+}
+
 using Marks = std::vector<std::atomic<std::uint8_t>>;
 
 // Only ones are ever written, and a test is left out only if all that it could mark is marked. So
@@ -200,7 +205,7 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
     Marks bad(changed.size());
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
-        if (changed[f] && (!prism_valid(s, f) || holds_component(s, f)))
+        if (changed[f] && prism_fails(s, f))
             mark(bad[f]);
     });
     // A face that fails already is not tested for contacts: its pillars will be shortened anyway,
@@ -219,7 +224,7 @@ std::vector<int> violating_among(GrowState& s, const std::vector<int>& changed)
         [&](std::size_t i) {
             const int f = changed[i];
             std::vector<int>& bad = bad_beside[i];
-            if (!prism_valid(s, f) || holds_component(s, f)) {
+            if (prism_fails(s, f)) {
                 bad.push_back(f);
                 return;
             }
@@ -247,8 +252,7 @@ std::vector<int> violating_among(GrowState& s, const std::vector<int>& changed)
 bool faces_valid(const GrowState& s, const std::vector<int>& faces)
 {
     // Contact tests are the dearer ones.
-    return std::all_of(faces.begin(), faces.end(),
-                       [&](int f) { return prism_valid(s, f) && !holds_component(s, f); }) &&
+    return std::none_of(faces.begin(), faces.end(), [&](int f) { return prism_fails(s, f); }) &&
            std::all_of(faces.begin(), faces.end(),
                        [&](int f) { return inner_triangle_clear(s, f); });
 }

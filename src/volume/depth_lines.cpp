@@ -53,15 +53,13 @@ HWY_INLINE void find_ends(const TetLines& tet, double dx, Doubles dy, std::int32
     store(to_integers(rounded_down(greater(high, least))), last);
 }
 
-void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEnds* ends)
+void find_line_ends(const TetLines& tet, int x, int y, LineEnds& ends)
 {
     const Doubles up_to_three = Doubles::load(kUpToThree);
-    for (std::size_t i = 0; i < count; ++i) {
-        const double dx = (x + static_cast<int>(i)) - tet.origin_x;
-        for (std::size_t from = 0; from < std::size_t(kLeafSize); from += kDoubleLanes)
-            find_ends(tet, dx, y + double(from) - tet.origin_y + up_to_three,
-                      ends[i].first.data() + from, ends[i].last.data() + from);
-    }
+    const double dx = x - tet.origin_x;
+    for (std::size_t from = 0; from < std::size_t(kLeafSize); from += kDoubleLanes)
+        find_ends(tet, dx, y + double(from) - tet.origin_y + up_to_three, ends.first.data() + from,
+                  ends.last.data() + from);
 }
 
 /// The sum is made in double and rounded to float once, after the clamp. The clamp is needed
@@ -101,9 +99,9 @@ namespace vdb_shell
 HWY_EXPORT(find_line_ends);
 HWY_EXPORT(fill_depth_rows);
 
-void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEnds* ends)
+void find_line_ends(const TetLines& tet, int x, int y, LineEnds& ends)
 {
-    VDB_SHELL_KERNEL(find_line_ends)(tet, x, count, y, ends);
+    VDB_SHELL_KERNEL(find_line_ends)(tet, x, y, ends);
 }
 
 void fill_depth_rows(const DepthRow* rows, std::size_t count, const DepthAlongZ& depth)

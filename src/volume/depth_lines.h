@@ -33,8 +33,8 @@ struct LineEnds {
     std::array<std::int32_t, kLeafSize> first, last;
 };
 
-/// The lines over x, x + 1 and so on, `count` times eight, beginning at y.
-void find_line_ends(const TetLines& tet, int x, std::size_t count, int y, LineEnds* ends);
+/// The eight lines over x that begin at y.
+void find_line_ends(const TetLines& tet, int x, int y, LineEnds& ends);
 
 /// Voxels `begin` to `end` of the eight of a leaf's row, the first of them at z.
 struct DepthRow {

@@ -285,7 +285,7 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
         // The lines begin at the leaf's own y, so the groups of eight are the same for all tets of
         // a column. Those outside of the tet's shadow are computed as well and left out.
         LineEnds ends;
-        find_line_ends(through, x, 1, leaf_y, &ends);
+        find_line_ends(through, x, leaf_y, ends);
         for (int y = y_begin; y <= y_end; ++y) {
             const auto k = std::size_t(y - leaf_y);
             if (ends.first[k] > ends.last[k])

@@ -289,7 +289,8 @@ TEST(Simd, DepthsAlongLinesAreTheSameOnAllTargets)
                     plane = {numbers.next(), numbers.next(), numbers.next()};
             lines.slack = 1e-9, lines.low_z = -7, lines.high_z = 12;
             std::array<LineEnds, 8> ends;
-            find_line_ends(lines, -3, ends.size(), 2, ends.data());
+            for (std::size_t i = 0; i < ends.size(); ++i)
+                find_line_ends(lines, -3 + int(i), 2, ends[i]);
             append(bytes, ends);
             std::array<float, 16> values{};
             const std::array<DepthRow, 2> rows{{{values.data(), numbers.next(), -8, 3, 8},
