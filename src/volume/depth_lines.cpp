@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The two inner loops of depth_grid.cpp, for eight lines or eight voxels at a time: where lines
-// along z enter and leave a tet, and the depths of a leaf's row. The file is compiled once for each
-// instruction set that Highway knows, and the best one is chosen when the program runs. The groups
-// have four doubles and eight floats on all of them, so the lines are always taken in the same
-// groups. A trap: the includes above HWY_BEFORE_NAMESPACE are seen once, all that follows several
-// times.
+// The inner loops of tet_columns.cpp and tet_values_grid.cpp, for eight rows, lines or voxels at a
+// time: which rows a tet's shadow meets, where lines along z enter and leave it, and the depths of
+// a leaf's row. The file is compiled once for each instruction set that Highway knows, and the best
+// one is chosen when the program runs. The groups have four doubles and eight floats on all of
+// them, so the lines are always taken in the same groups. A trap: the includes above
+// HWY_BEFORE_NAMESPACE are seen once, all that follows several times.
 
 #include "core/simd.h"
 
@@ -29,6 +29,34 @@ using namespace simd::HWY_NAMESPACE;
 
 alignas(kLanesAlignment) constexpr double kUpToThree[kDoubleLanes] = {0, 1, 2, 3};
 alignas(kLanesAlignment) constexpr float kUpToSeven[kLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+HWY_INLINE void find_rows_at(const TetShadow& shadow, Doubles x, std::int32_t* first,
+                             std::int32_t* last)
+{
+    // Out of reach of every tet, and an integer.
+    const Doubles far(double(1 << 30));
+    Doubles low = far, high = -far;
+    const auto add = [&](auto which, Doubles y) {
+        lower_to(low, select(which, y, far));
+        raise_to(high, select(which, y, -far));
+    };
+    // The shadow is convex, so it lies between the places where edges pass x.
+    for (const TetShadow::Edge& edge : shadow.edge)
+        add((x > edge.x) & (x <= edge.end_x), edge.y + edge.slope * (x - edge.x));
+    // An edge that is nearly parallel to y passes x anywhere between its ends.
+    for (const TetShadow::Corner& corner : shadow.corner)
+        add((x >= corner.x - shadow.slack) & (x <= corner.x + shadow.slack), Doubles(corner.y));
+    store(to_integers(rounded_up(low - shadow.slack)), first);
+    store(to_integers(rounded_down(high + shadow.slack)), last);
+}
+
+void find_rows(const TetShadow& shadow, int x, Rows& rows)
+{
+    const Doubles up_to_three = Doubles::load(kUpToThree);
+    for (std::size_t from = 0; from < std::size_t(kLeafSize); from += kDoubleLanes)
+        find_rows_at(shadow, x + double(from) + up_to_three, rows.first.data() + from,
+                     rows.last.data() + from);
+}
 
 HWY_INLINE void find_ends(const TetLines& tet, double dx, Doubles dy, std::int32_t* first,
                           std::int32_t* last)
@@ -96,8 +124,14 @@ HWY_AFTER_NAMESPACE();
 namespace vdb_shell
 {
 
+HWY_EXPORT(find_rows);
 HWY_EXPORT(find_line_ends);
 HWY_EXPORT(fill_depth_rows);
+
+void find_rows(const TetShadow& shadow, int x, Rows& rows)
+{
+    VDB_SHELL_KERNEL(find_rows)(shadow, x, rows);
+}
 
 void find_line_ends(const TetLines& tet, int x, int y, LineEnds& ends)
 {

@@ -13,6 +13,29 @@ namespace vdb_shell
 /// Voxels along an edge of a leaf of OpenVDB's trees.
 inline constexpr int kLeafSize = 8;
 
+/// A tet seen along z, in index space.
+struct TetShadow {
+    /// From its end of the smaller x on; one that is parallel to y has no slope.
+    struct Edge {
+        double x, y, end_x, slope;
+    };
+    struct Corner {
+        double x, y;
+    };
+    std::array<Edge, 6> edge;
+    std::array<Corner, 4> corner;
+    double slack = 0; ///< voxels by which the shadow is taken to be larger
+};
+
+/// Rows of voxels along y that lines along z through the tet may come from, for x, x + 1 and so on:
+/// `first` above `last` where there is none.
+struct Rows {
+    std::array<std::int32_t, kLeafSize> first, last;
+};
+
+/// The rows of eight x from this one on. Precondition: coordinates below 2^30.
+void find_rows(const TetShadow& shadow, int x, Rows& rows);
+
 /// Where lines along z enter and leave a tet: between the highest of the floors and the lowest of
 /// the ceilings, where all sides are positive.
 struct TetLines {

@@ -28,13 +28,12 @@ constexpr double kBarycentricSlack = 1e-9;
 constexpr double kLargestCoordinate = double(1 << 30);
 
 /// Corners in index space, and the voxel centres that lie between them.
-IndexTet boxed_tet(const TetMesh& mesh, std::size_t t, const VoxelLattice& lattice)
+IndexTet boxed_tet(const TetColumns& columns, std::size_t t)
 {
     IndexTet tet;
     Vec3d low(std::numeric_limits<double>::infinity()), high = -low;
     for (std::size_t i = 0; i < 4; ++i) {
-        tet.corner[i] =
-            (Vec3d(mesh.points[mesh.tets[t][int(i)]]) - lattice.origin) / lattice.voxel_size;
+        tet.corner[i] = columns.points[columns.mesh.tets[t][int(i)]];
         low = openvdb::math::minComponent(low, tet.corner[i]);
         high = openvdb::math::maxComponent(high, tet.corner[i]);
     }
@@ -83,43 +82,24 @@ void set_value(IndexTet& tet, const openvdb::Vec4I& points, const double* value)
     }
 }
 
-/// The rows of voxels along y that lines along z through a tet may come from.
-class Shadow
+TetShadow shadow_of(const IndexTet& tet)
 {
-public:
-    explicit Shadow(const IndexTet& tet) : corner_(tet.corner)
-    {
-        // Far above the rounding of places and the slack of coordinates, which moves a face by no
-        // more than that share of the tet.
-        slack_ = 1e-6 * (1.0 + (tet.high - tet.low).asVec3d().length());
+    TetShadow shadow;
+    // Far above the rounding of places and the slack of coordinates, which moves a face by no more
+    // than that share of the tet.
+    shadow.slack = 1e-6 * (1.0 + (tet.high - tet.low).asVec3d().length());
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+        shadow.corner[i] = {tet.corner[i][0], tet.corner[i][1]};
+        for (std::size_t j = 0; j < i; ++j) {
+            const bool ascending = tet.corner[i][0] < tet.corner[j][0];
+            const Vec3d &p = tet.corner[ascending ? i : j], &q = tet.corner[ascending ? j : i];
+            const double width = q[0] - p[0];
+            shadow.edge[edges++] = {p[0], p[1], q[0], width > 0 ? (q[1] - p[1]) / width : 0.0};
+        }
     }
-
-    /// First and last y at this x; none where the first is above the last.
-    std::array<int, 2> rows_at(int x) const
-    {
-        double low = std::numeric_limits<double>::infinity(), high = -low;
-        const auto add = [&](double y) { low = std::min(low, y), high = std::max(high, y); };
-        // The shadow is convex, so it lies between the places where edges pass x.
-        for (std::size_t i = 0; i < 4; ++i)
-            for (std::size_t j = 0; j < i; ++j) {
-                const Vec3d &p = corner_[i], &q = corner_[j];
-                const double to_p = p[0] - x, to_q = q[0] - x;
-                if (std::abs(to_p) <= slack_)
-                    add(p[1]);
-                if (std::abs(to_q) <= slack_)
-                    add(q[1]);
-                if ((to_p < 0) != (to_q < 0))
-                    add(p[1] + (q[1] - p[1]) * (to_p / (to_p - to_q)));
-            }
-        if (low > high)
-            return {0, -1};
-        return {int(std::ceil(low - slack_)), int(std::floor(high + slack_))};
-    }
-
-private:
-    const std::array<Vec3d, 4>& corner_;
-    double slack_;
-};
+    return shadow;
+}
 
 /// Each face bounds z from below or from above, by the sign of its coordinate's slope along z; a
 /// face that is parallel to z bounds x and y only. Dividing by the slope here saves a division for
@@ -177,13 +157,16 @@ bool may_meet(const IndexTet& tet, int leaf_x, int leaf_y)
 
 void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<TetJob>& jobs)
 {
-    const Shadow shadow(tet);
+    const TetShadow shadow = shadow_of(tet);
     // The shift rounds towards minus infinity, as leaf coordinates need.
     for (int leaf_x = tet.low.x() >> kLeafBits; leaf_x <= tet.high.x() >> kLeafBits; ++leaf_x) {
+        const int origin = leaf_x * kLeafSize;
+        Rows rows;
+        find_rows(shadow, origin, rows);
         int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
-        const int end = std::min(tet.high.x(), leaf_x * kLeafSize + kLeafSize - 1);
-        for (int x = std::max(tet.low.x(), leaf_x * kLeafSize); x <= end; ++x) {
-            const auto [from, to] = shadow.rows_at(x);
+        const int end = std::min(tet.high.x() - origin, kLeafSize - 1);
+        for (int x = std::max(tet.low.x() - origin, 0); x <= end; ++x) {
+            const int from = rows.first[std::size_t(x)], to = rows.last[std::size_t(x)];
             if (from > to)
                 continue;
             first = std::min(first, from);
@@ -198,21 +181,26 @@ void add_jobs(const IndexTet& tet, std::uint32_t index, std::vector<TetJob>& job
     }
 }
 
-void require_voxels_in_range(const TetMesh& mesh, const VoxelLattice& lattice,
-                             const std::string& name)
+std::vector<Vec3d> points_in_voxels(const TetMesh& mesh, const VoxelLattice& lattice,
+                                    const std::string& name)
 {
     const double voxel_size = lattice.voxel_size;
     if (!(voxel_size > 0.0) || !std::isfinite(voxel_size))
         throw InvalidOption(name + ": voxel size " + text_of(voxel_size) +
                             " is not positive and finite");
-    for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    std::vector<Vec3d> points(mesh.points.size());
+    for_each_index(
+        points.size(),
+        [&](std::size_t i) { points[i] = (Vec3d(mesh.points[i]) - lattice.origin) / voxel_size; },
+        1024);
+    for (std::size_t i = 0; i < points.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
-            if (!(std::abs((mesh.points[i][axis] - lattice.origin[axis]) / voxel_size) <
-                  kLargestCoordinate))
+            if (!(std::abs(points[i][axis]) < kLargestCoordinate))
                 throw InvalidOption(name + ": point " + std::to_string(i) + ", coordinate " +
                                     text_of(double(mesh.points[i][axis])) +
                                     ": too far from the origin for voxel size " +
                                     text_of(voxel_size));
+    return points;
 }
 
 /// In parts of a fixed size, so that the jobs of each come in the same order whichever thread does
@@ -230,7 +218,7 @@ std::vector<std::vector<TetJob>> list_jobs(const TetColumns& columns,
             for (std::size_t t = i * kTetsInPart; t < end; ++t) {
                 if (!wanted.empty() && !wanted[t])
                     continue;
-                IndexTet tet = boxed_tet(columns.mesh, t, columns.lattice);
+                IndexTet tet = boxed_tet(columns, t);
                 if (!has_centres_between(tet))
                     continue;
                 set_coordinates(tet);
@@ -257,13 +245,18 @@ std::vector<std::size_t> column_starts(const std::vector<TetJob>& jobs)
 
 std::array<int, 2> heights_of(const TetColumns& columns, const TetJob& job)
 {
-    const IndexTet tet = boxed_tet(columns.mesh, job.tet, columns.lattice);
-    return {tet.low.z(), tet.high.z()};
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int i = 0; i < 4; ++i) {
+        const double z = columns.points[columns.mesh.tets[job.tet][i]][2];
+        low = std::min(low, z);
+        high = std::max(high, z);
+    }
+    return {int(std::ceil(low)), int(std::floor(high))};
 }
 
 IndexTet tet_of(const TetColumns& columns, const TetJob& job)
 {
-    IndexTet tet = boxed_tet(columns.mesh, job.tet, columns.lattice);
+    IndexTet tet = boxed_tet(columns, job.tet);
     set_coordinates(tet);
     if (columns.value)
         set_value(tet, columns.mesh.tets[job.tet], columns.value);
@@ -274,12 +267,13 @@ void find_lines(const IndexTet& tet, int leaf_x, int leaf_y, TetInColumn& part)
 {
     const int x_begin = std::max(tet.low.x(), leaf_x);
     const int x_end = std::min(tet.high.x(), leaf_x + kLeafSize - 1);
-    const Shadow shadow(tet);
     const TetLines through = lines_through(tet);
+    Rows rows;
+    find_rows(shadow_of(tet), leaf_x, rows);
     for (int x = x_begin; x <= x_end; ++x) {
-        const auto [from, to] = shadow.rows_at(x);
-        const int y_begin = std::max({tet.low.y(), leaf_y, from});
-        const int y_end = std::min({tet.high.y(), leaf_y + kLeafSize - 1, to});
+        const auto row = std::size_t(x - leaf_x);
+        const int y_begin = std::max({tet.low.y(), leaf_y, rows.first[row]});
+        const int y_end = std::min({tet.high.y(), leaf_y + kLeafSize - 1, rows.last[row]});
         if (y_begin > y_end)
             continue;
         // The lines begin at the leaf's own y, so the groups of eight are the same for all tets of
@@ -302,8 +296,9 @@ TetColumns tet_columns(const TetMesh& mesh, const std::vector<double>& value,
                        const VoxelLattice& lattice, const char* name,
                        const std::vector<std::uint8_t>& wanted)
 {
-    require_voxels_in_range(mesh, lattice, name);
-    TetColumns columns{mesh, value.empty() ? nullptr : value.data(), lattice, {}, {}, {}};
+    TetColumns columns{
+        mesh, value.empty() ? nullptr : value.data(), points_in_voxels(mesh, lattice, name), {}, {},
+        {}};
     if (!value.empty()) {
         const auto ends = std::minmax_element(value.begin(), value.end());
         columns.range = {*ends.first, *ends.second};

@@ -89,8 +89,8 @@ struct TetJob {
 /// them would take more memory than all else, and reading them as long.
 struct TetColumns {
     const TetMesh& mesh;
-    const double* value; ///< by point, or none
-    VoxelLattice lattice;
+    const double* value;                ///< by point, or none
+    std::vector<openvdb::Vec3d> points; ///< of the mesh, in index space
     std::vector<TetJob> jobs;
     std::vector<std::size_t> starts; ///< of each column's jobs, and the end of all
     ValueRange range;
