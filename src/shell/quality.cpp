@@ -26,7 +26,8 @@ using openvdb::Vec3d;
 using Corners = std::array<Vec3d, 4>;
 
 constexpr std::size_t kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-constexpr std::size_t kOpposite[6][2] = {{2, 3}, {1, 3}, {1, 2}, {0, 3}, {0, 2}, {0, 1}};
+/// Of the face across from each corner, seen from outside of a positive tet.
+constexpr std::size_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
 {
@@ -48,26 +49,35 @@ struct Dihedral {
     double angle() const { return std::atan2(sine, cosine); }
 };
 
-Dihedral dihedral(const Vec3d& from, const Vec3d& to, const Vec3d& left, const Vec3d& right)
+/// Normals of the faces, as long as twice their areas.
+std::array<Vec3d, 4> face_normals(const Corners& p)
 {
-    // The length of the edge and the areas of both faces are factors of the sine and of the cosine
-    // alike, so nothing is normalised, and there is nothing to divide by where a face has no area.
-    // The length of a cross product is never negative, which is why the angle does not tell the
-    // orientation.
-    const Vec3d edge = to - from;
-    const Vec3d first = edge.cross(left - from), second = edge.cross(right - from);
-    return {first.cross(second).length(), first.dot(second)};
+    std::array<Vec3d, 4> normal;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const auto& face = kFaces[i];
+        normal[i] = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
+    }
+    return normal;
+}
+
+/// Between two faces of a tet.
+Dihedral dihedral(const Vec3d& first, const Vec3d& second)
+{
+    // The areas of both faces are factors of the sine and of the cosine alike, so nothing is
+    // normalised, and there is nothing to divide by where a face has no area. The length of a cross
+    // product is never negative, which is why the angle does not tell the orientation.
+    return {first.cross(second).length(), -first.dot(second)};
 }
 
 struct DihedralRange {
     double min, max;
 };
-DihedralRange dihedral_range(const Corners& p)
+DihedralRange dihedral_range(const std::array<Vec3d, 4>& normal)
 {
     std::array<Dihedral, 6> at;
     std::array<double, 6> rank;
     for (std::size_t e = 0; e < 6; ++e) {
-        at[e] = dihedral(p[kEdges[e][0]], p[kEdges[e][1]], p[kOpposite[e][0]], p[kOpposite[e][1]]);
+        at[e] = dihedral(normal[kEdges[e][0]], normal[kEdges[e][1]]);
         rank[e] = at[e].rank();
     }
     const auto [most, least] = std::minmax_element(rank.begin(), rank.end());
@@ -75,15 +85,18 @@ DihedralRange dihedral_range(const Corners& p)
             at[std::size_t(most - rank.begin())].angle()};
 }
 
-double ratio_of_edges(const Corners& p)
+struct EdgeRange {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+};
+EdgeRange edge_range(const Corners& p)
 {
-    double longest = 0, shortest = std::numeric_limits<double>::infinity();
+    EdgeRange squared;
     for (const auto& edge : kEdges) {
-        const double squared = (p[edge[1]] - p[edge[0]]).lengthSqr();
-        longest = std::max(longest, squared);
-        shortest = std::min(shortest, squared);
+        const double length = (p[edge[1]] - p[edge[0]]).lengthSqr();
+        squared.shortest = std::min(squared.shortest, length);
+        squared.longest = std::max(squared.longest, length);
     }
-    return shortest > 0 ? std::sqrt(longest / shortest) : std::numeric_limits<double>::infinity();
+    return {std::sqrt(squared.shortest), std::sqrt(squared.longest)};
 }
 
 /// A spread is of finite values.
@@ -95,16 +108,11 @@ Spread spread_of_finite(std::vector<double> values)
     return spread_of(std::move(values));
 }
 
-double height_ratio(const Corners& p)
+double height_ratio(const Corners& p, const std::array<Vec3d, 4>& normal, double longest_edge)
 {
-    double longest = 0, largest_double_area = 0;
-    for (const auto& edge : kEdges)
-        longest = std::max(longest, (p[edge[1]] - p[edge[0]]).length());
-    for (std::size_t i = 0; i < 4; ++i) {
-        const Vec3d& q = p[(i + 1) % 4];
-        const Vec3d normal = (p[(i + 2) % 4] - q).cross(p[(i + 3) % 4] - q);
-        largest_double_area = std::max(largest_double_area, normal.length());
-    }
+    double largest_double_area = 0;
+    for (const Vec3d& n : normal)
+        largest_double_area = std::max(largest_double_area, n.length());
     if (largest_double_area == 0)
         return 0;
     // Each face times its height gives the same volume, so the largest face has the smallest
@@ -112,7 +120,7 @@ double height_ratio(const Corners& p)
     const double smallest_height =
         std::abs(six_volumes(p[0], p[1], p[2], p[3])) / largest_double_area;
     constexpr double kRegular = 0.81649658092772603; // height of the regular tet of edge 1
-    return smallest_height / (longest * kRegular);
+    return smallest_height / (longest_edge * kRegular);
 }
 
 } // namespace
@@ -163,14 +171,17 @@ double mean_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d
 
 TetShape shape_of(const std::array<Vec3d, 4>& p)
 {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double ratio = mean_ratio(p[0], p[1], p[2], p[3]);
-    const DihedralRange range = dihedral_range(p);
+    const std::array<Vec3d, 4> normal = face_normals(p);
+    const DihedralRange range = dihedral_range(normal);
+    const EdgeRange edges = edge_range(p);
     return {ratio,
             range.min,
             range.max,
-            height_ratio(p),
-            ratio > 0 ? 3 / ratio : std::numeric_limits<double>::infinity(),
-            ratio_of_edges(p)};
+            height_ratio(p, normal, edges.longest),
+            ratio > 0 ? 3 / ratio : kInfinity,
+            edges.shortest > 0 ? edges.longest / edges.shortest : kInfinity};
 }
 
 TetShape shape_of(const TetMesh& mesh, std::size_t t)
