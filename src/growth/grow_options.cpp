@@ -73,7 +73,10 @@ OptionList describe(GrowOptions& o)
          option("min_quality", o.min_quality, "--min-quality",
                 "Mean ratio that tets should reach, at a cost in thickness; 0 asks for none")
              .needing("--method certified thickest")
-             .within(at_least(0).below(1))});
+             .within(at_least(0).below(1)),
+         option("stop_reasons", o.stop_reasons, "--stop-reasons",
+                "Ask each vertex what holds it back, for the report")
+             .needing("--method certified thickest")});
 }
 
 OptionList describe(RefineOptions& o)

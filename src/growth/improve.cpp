@@ -83,7 +83,9 @@ Improved improve(GrowState& s, const TriangleMesh& mesh, const MeshOrder& order,
     Improved improved;
     std::size_t ripples = 0;
     const auto choose = [&] { ripples = choose_diagonals(s, mesh, order, options, split, report); };
-    const auto probe = [&] { improved.stop = probe_stops(s); };
+    const auto probe = [&] {
+        improved.stop = options.stop_reasons ? probe_stops(s) : plain_stops(s);
+    };
     if (s.twelve && !(options.min_quality > 0)) {
         // With all twelve tets tested the stops do not depend on the diagonals.
         run_together(choose, probe);

@@ -39,17 +39,27 @@ StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
     return met ? StopReason::outer_contact : StopReason::none;
 }
 
+/// pinned, thickness, or not_asked where a step has to tell.
+StopReason plain_reason(const GrowState& s, int v)
+{
+    if (s.pinned[v])
+        return StopReason::pinned;
+    const double room = s.cap[v] - (s.b[v] - s.a[v]).length();
+    return std::isfinite(room) && room <= s.schedule.stops.at_cap * s.cap[v] + s.rounding
+               ? StopReason::thickness
+               : StopReason::not_asked;
+}
+
 /// `in_crowd`: one of thousands around a vertex, each of which would ask about all of its
 /// triangles.
 StopReason reason_at(const GrowState& s, int v, double step, bool in_crowd, NearTriangles& near)
 {
-    if (s.pinned[v])
-        return StopReason::pinned;
     // The cap first: a vertex at its cap has no room for a step that could meet anything.
+    const StopReason plain = plain_reason(s, v);
+    if (plain != StopReason::not_asked)
+        return plain;
     const Vec3d arm = s.b[v] - s.a[v];
     const double length = arm.length(), room = s.cap[v] - length;
-    if (std::isfinite(room) && room <= s.schedule.stops.at_cap * s.cap[v] + s.rounding)
-        return StopReason::thickness;
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
     if (!tets_positive_at(s, v, x))
         return StopReason::prism;
@@ -71,6 +81,14 @@ std::vector<StopReason> probe_stops(GrowState& s)
         for (std::size_t v = begin; v < end; ++v)
             stop[v] = reason_at(s, static_cast<int>(v), step, in_crowd[v] != 0, near);
     });
+    return stop;
+}
+
+std::vector<StopReason> plain_stops(const GrowState& s)
+{
+    std::vector<StopReason> stop(s.b.size());
+    for_each_index(stop.size(),
+                   [&](std::size_t v) { stop[v] = plain_reason(s, static_cast<int>(v)); });
     return stop;
 }
 

@@ -13,4 +13,7 @@ namespace vdb_shell::growth
 /// of inner triangles.
 std::vector<StopReason> probe_stops(GrowState& s);
 
+/// What needs no step: pinned and thickness; not_asked for all others.
+std::vector<StopReason> plain_stops(const GrowState& s);
+
 } // namespace vdb_shell::growth

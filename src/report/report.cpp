@@ -237,7 +237,7 @@ ordered_json costs_json(const std::vector<StageCost>& stages)
 
 /// Of the whole report: raised when a key comes, goes or changes its meaning
 /// (docs/schema/report.schema.json).
-constexpr int kSchema = 4;
+constexpr int kSchema = 5;
 
 /// What was read and what became of it before lines were stepped.
 void add_surface(ordered_json& json, const ShellReport& report)

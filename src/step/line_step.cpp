@@ -214,6 +214,8 @@ const char* name_of(StopReason reason)
         return "pinned";
     case StopReason::core:
         return "core";
+    case StopReason::not_asked:
+        return "not_asked";
     }
     assert(false && "a stop reason without a name");
     return "";

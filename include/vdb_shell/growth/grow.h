@@ -66,6 +66,11 @@ struct GrowOptions {
     /// than 1; 0 asks for nothing. Inner vertices of tets below it are moved for better tets at the
     /// end, at a cost in thickness; those that cannot reach it are counted in the report.
     double min_quality = 0;
+    /// Whether each vertex is asked at the end what holds it back: shell.stop, for the report. Some
+    /// four microseconds a vertex (1,120,000 triangles of docs/measurements/size.md, two threads).
+    /// Without, it is told for pinned vertices and those at their cap; all others have
+    /// StopReason::not_asked.
+    bool stop_reasons = true;
     /// Every other number that steers growth. None bears on validity.
     GrowthSchedule schedule;
 };
@@ -126,7 +131,8 @@ struct GrowResult {
 /// `stepped` gives the first lengths to try (line stepping) where they exceed half the ray to the
 /// other side; they bound nothing. `cap` bounds
 /// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).
-/// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back.
+/// Vertices that no direction serves are pinned. shell.stop tells what holds each vertex back,
+/// as far as GrowOptions::stop_reasons wants that.
 /// `split` is honoured under the twelve-tet test, where any diagonals are valid; with `flips` and
 /// SplitRule::length_descending they are then turned for quality. The three-tet test has its own.
 /// Same bits for any number of threads. Terminates: rounds are bounded, and in a round each vertex

@@ -45,8 +45,10 @@ enum class StopReason : std::uint8_t {
     outer_contact, ///< growth: the inner surface would touch the outer one
     pinned,        ///< growth: no valid length at all
     core,          ///< the finished pillar ended at a core (obstacles/core_feet.h)
+    not_asked,     ///< growth: not pinned, shorter than allowed, and nobody wanted to know why
+                   ///< (GrowOptions::stop_reasons)
 };
-inline constexpr int kStopReasonCount = 14;
+inline constexpr int kStopReasonCount = 15;
 
 /// Name for reports: "stop_test", "thickness", ...
 const char* name_of(StopReason reason);

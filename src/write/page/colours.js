@@ -8,7 +8,7 @@ const kScales = {
 };
 // Neighbours in the list differ in lightness as well as in hue.
 const kKinds = ["#9aa5b1", "#b08d57", "#3b7dd8", "#7a5195", "#2f9e8f", "#145a6e", "#5c5c5c", "#8dc26f",
-  "#c9b458", "#e8833a", "#5aa9e6", "#c2395b", "#d7263d", "#8c564b"];
+  "#c9b458", "#e8833a", "#5aa9e6", "#c2395b", "#d7263d", "#8c564b", "#c4b7d4"];
 const kPin = "#e3173e";
 const kCoreColour = [164, 176, 190];
 const kPlain = [214, 198, 172];
