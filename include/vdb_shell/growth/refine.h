@@ -20,8 +20,8 @@ enum class RefineBy {
     contacts, ///< its area times the mean over its corners of how much shorter their pillars are
               ///< than their neighbours', where a contact, a prism or a stop test ends them, or
               ///< nobody asked (GrowOptions::stop_reasons)
-    voids, ///< the volume that its prism leaves empty: half the way to the next inner triangle
-    area,  ///< its area; with a share of 1 all triangles are cut: uniform subdivision in rounds
+    voids,    ///< the volume that its prism leaves empty: half the way to the next inner triangle
+    area,     ///< its area; with a share of 1 all triangles are cut: uniform subdivision in rounds
 };
 const NameTable<RefineBy>& names(RefineBy);
 
