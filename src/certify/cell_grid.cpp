@@ -10,7 +10,7 @@
 
 #include "certify/cell_grid.h"
 
-#include "certify/tet_faces.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 

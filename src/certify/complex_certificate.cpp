@@ -16,7 +16,6 @@
 #include "certify/certificate_findings.h"
 #include "certify/free_faces.h"
 #include "certify/prism_checks.h"
-#include "certify/tet_faces.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
@@ -24,6 +23,7 @@
 #include "mesh/exact_winding.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_contacts.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <cassert>

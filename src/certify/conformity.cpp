@@ -14,9 +14,9 @@
 #include "core/sort_unique.h"
 #include "vdb_shell/shell/shared_points.h"
 
-#include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 #include "core/stage_stop.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <array>

@@ -11,11 +11,11 @@
 
 #include "certify/certificate_findings.h"
 #include "certify/free_faces.h"
-#include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "mesh/exact_volume.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <cassert>

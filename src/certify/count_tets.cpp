@@ -9,11 +9,11 @@
 
 #include "certify/cell_grid.h"
 #include "certify/points_in_planes.h"
-#include "certify/tet_faces.h"
 #include "core/exact.h"
 #include "core/orient3d_filter.h"
 #include "core/parallel.h"
 #include "core/simd.h"
+#include "shell/tet_faces.h"
 
 #include <cmath>
 #include <limits>

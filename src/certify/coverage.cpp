@@ -16,10 +16,10 @@
 #include "certify/cell_grid.h"
 #include "certify/count_tets.h"
 #include "certify/solid_cells.h"
-#include "certify/tet_faces.h"
 #include "core/counter_random.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <atomic>

@@ -9,9 +9,9 @@
 
 #include "vdb_shell/shell/shared_points.h"
 
-#include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 #include "core/disjoint_sets.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <array>

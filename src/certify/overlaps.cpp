@@ -12,11 +12,11 @@
 #include "vdb_shell/shell/tessellate.h"
 
 #include "certify/certificate_findings.h"
-#include "certify/tet_faces.h"
 #include "core/box_pairs.h"
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <cassert>

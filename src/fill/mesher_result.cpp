@@ -8,10 +8,10 @@
 
 #include "vdb_shell/shell/quality.h"
 
-#include "certify/tet_faces.h"
 #include "core/bucket_sort.h"
 #include "core/exact.h"
 #include "core/stage_stop.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <array>

@@ -39,7 +39,6 @@ StopReason met_on_way(const GrowState& s, int v, const Vec3d& x)
     return met ? StopReason::outer_contact : StopReason::none;
 }
 
-/// pinned, thickness, or not_asked where a step has to tell.
 StopReason plain_reason(const GrowState& s, int v)
 {
     if (s.pinned[v])
@@ -50,14 +49,12 @@ StopReason plain_reason(const GrowState& s, int v)
                : StopReason::not_asked;
 }
 
-/// `in_crowd`: one of thousands around a vertex, each of which would ask about all of its
-/// triangles.
-StopReason reason_at(const GrowState& s, int v, double step, bool in_crowd, NearTriangles& near)
+/// What a step meets. Precondition: no plain reason, for a vertex at its cap has no room for a step
+/// that could meet anything. `in_crowd`: one of thousands around a vertex, each of which would ask
+/// about all of its triangles.
+StopReason reason_of_step(const GrowState& s, int v, double step, bool in_crowd,
+                          NearTriangles& near)
 {
-    // The cap first: a vertex at its cap has no room for a step that could meet anything.
-    const StopReason plain = plain_reason(s, v);
-    if (plain != StopReason::not_asked)
-        return plain;
     const Vec3d arm = s.b[v] - s.a[v];
     const double length = arm.length(), room = s.cap[v] - length;
     const Vec3d x = rounded(s.b[v] + arm * (std::min(step, room) / length));
@@ -73,13 +70,14 @@ std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = s.schedule.stops.step * s.diagonal;
     s.inner_tree.refit(inner_boxes(s));
-    std::vector<StopReason> stop(s.b.size());
+    std::vector<StopReason> stop = plain_stops(s);
     std::vector<std::uint8_t> in_crowd(s.b.size());
     leave_out_crowds(s, in_crowd);
     for_each_range(stop.size(), [&](std::size_t begin, std::size_t end) {
         NearTriangles near;
         for (std::size_t v = begin; v < end; ++v)
-            stop[v] = reason_at(s, static_cast<int>(v), step, in_crowd[v] != 0, near);
+            if (stop[v] == StopReason::not_asked)
+                stop[v] = reason_of_step(s, static_cast<int>(v), step, in_crowd[v] != 0, near);
     });
     return stop;
 }

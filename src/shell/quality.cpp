@@ -11,6 +11,7 @@
 #include "vdb_shell/shell/quality.h"
 
 #include "core/parallel.h"
+#include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <array>
@@ -26,8 +27,6 @@ using openvdb::Vec3d;
 using Corners = std::array<Vec3d, 4>;
 
 constexpr std::size_t kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
-/// Of the face across from each corner, seen from outside of a positive tet.
-constexpr std::size_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
 {
@@ -54,7 +53,7 @@ std::array<Vec3d, 4> face_normals(const Corners& p)
 {
     std::array<Vec3d, 4> normal;
     for (std::size_t i = 0; i < 4; ++i) {
-        const auto& face = kFaces[i];
+        const openvdb::Vec3I face = tet_face({0, 1, 2, 3}, i);
         normal[i] = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
     }
     return normal;

@@ -292,6 +292,15 @@ TEST(Simd, DepthsAlongLinesAreTheSameOnAllTargets)
             for (std::size_t i = 0; i < ends.size(); ++i)
                 find_line_ends(lines, -3 + int(i), 2, ends[i]);
             append(bytes, ends);
+            TetShadow shadow;
+            for (TetShadow::Edge& edge : shadow.edge)
+                edge = {numbers.next(), numbers.next(), numbers.next(), numbers.next()};
+            for (TetShadow::Corner& corner : shadow.corner)
+                corner = {numbers.next(), numbers.next()};
+            shadow.slack = 0.25;
+            Rows rows_met;
+            find_rows(shadow, -3, rows_met);
+            append(bytes, rows_met);
             std::array<float, 16> values{};
             const std::array<DepthRow, 2> rows{{{values.data(), numbers.next(), -8, 3, 8},
                                                 {values.data() + 8, numbers.next(), 0, 0, 5}}};
