@@ -37,8 +37,11 @@ struct TwoSurfaces {
 TwoSurfaces lay_together(const PrismShell& shell, const std::vector<char>& pinned)
 {
     TwoSurfaces both;
+    both.points.reserve(2 * shell.outer.size());
     both.points = shell.outer;
     both.points.insert(both.points.end(), shell.inner.begin(), shell.inner.end());
+    both.faces.reserve(2 * shell.triangles.size());
+    both.source.reserve(2 * shell.triangles.size());
     both.faces = shell.triangles;
     both.outer_count = shell.triangles.size();
     const auto shift = static_cast<std::uint32_t>(shell.outer.size());

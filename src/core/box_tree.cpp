@@ -14,6 +14,7 @@
 
 #include <cassert>
 #include <limits>
+#include <map>
 
 namespace vdb_shell
 {
@@ -24,6 +25,8 @@ namespace
 constexpr int kLeaf = 4; ///< boxes of one at most
 // Below this many boxes a second thread costs more than it saves.
 constexpr int kParallel = 512;
+// Boxes of a subtree whose nodes one thread makes: a tenth of a millisecond's work.
+constexpr int kSubtree = 2048;
 
 } // namespace
 
@@ -38,11 +41,13 @@ void BoxTree::build(std::vector<FloatBox> boxes)
 {
     const std::size_t count = boxes.size();
     nodes_.clear();
+    subtrees_.clear();
+    upper_.clear();
     item_.resize(count);
     boxes_.resize(count);
     if (count == 0)
         return;
-    std::vector<Item> items(count);
+    RawVector<Item> items(count);
     for_each_index(
         count,
         [&](std::size_t i) {
@@ -62,8 +67,7 @@ void BoxTree::build(std::vector<FloatBox> boxes)
     // Of tens of millions of boxes these, and room for nodes that are not needed, take gigabytes.
     boxes = {};
     items = {};
-    nodes_.reserve(count_nodes(0, static_cast<int>(count)));
-    add_node(0, static_cast<int>(count));
+    add_all_nodes();
     fit_nodes();
 }
 
@@ -90,15 +94,27 @@ template <class Visit> void BoxTree::for_each_child(int begin, int end, const Vi
     }
 }
 
-std::size_t BoxTree::count_nodes(int begin, int end)
+/// Of a range by its number of boxes: on each level of a tree there are two numbers at most.
+class BoxTree::NodeCounts
 {
-    std::size_t nodes = 1;
-    if (end - begin > kLeaf)
-        for_each_child(begin, end, [&](int from, int to) { nodes += count_nodes(from, to); });
-    return nodes;
-}
+public:
+    std::size_t of(int boxes)
+    {
+        if (boxes <= kLeaf)
+            return 1;
+        const auto found = counted_.find(boxes);
+        if (found != counted_.end())
+            return found->second;
+        std::size_t nodes = 1;
+        for_each_child(0, boxes, [&](int from, int to) { nodes += of(to - from); });
+        return counted_[boxes] = nodes;
+    }
 
-void BoxTree::split(std::vector<Item>& items, int begin, int end)
+private:
+    std::map<int, std::size_t> counted_;
+};
+
+void BoxTree::split(RawVector<Item>& items, int begin, int end)
 {
     if (end - begin <= kLeaf)
         return;
@@ -131,21 +147,53 @@ void BoxTree::split(std::vector<Item>& items, int begin, int end)
     run_together([&] { split(items, begin, middle); }, [&] { split(items, middle, end); });
 }
 
-int BoxTree::add_node(int begin, int end)
+void BoxTree::add_all_nodes()
 {
-    const auto id = nodes_.size();
-    nodes_.push_back({FourBoxes::none(), {}, 0, end - begin <= kLeaf});
-    unsigned lane = 0;
-    if (nodes_[id].leaf) {
-        for (int place = begin; place < end; ++place)
-            nodes_[id].child[lane++] = place;
-        nodes_[id].children = lane;
-        return static_cast<int>(id);
+    NodeCounts counts;
+    const auto boxes = static_cast<int>(item_.size());
+    nodes_.resize(counts.of(boxes));
+    add_upper_node(0, 0, boxes, counts);
+    for_each_index(
+        subtrees_.size(),
+        [&](std::size_t i) {
+            std::size_t next = subtrees_[i].node;
+            add_nodes(subtrees_[i].begin, subtrees_[i].end, next);
+        },
+        1);
+}
+
+/// Makes the nodes above the subtrees and lists these.
+void BoxTree::add_upper_node(std::size_t id, int begin, int end, NodeCounts& counts)
+{
+    if (end - begin <= kSubtree) {
+        subtrees_.push_back({id, counts.of(end - begin), begin, end});
+        return;
     }
-    for_each_child(begin, end,
-                   [&](int from, int to) { nodes_[id].child[lane++] = add_node(from, to); });
-    nodes_[id].children = lane;
-    return static_cast<int>(id);
+    upper_.push_back(id);
+    Node& n = nodes_[id];
+    n = {FourBoxes::none(), {}, 0, false};
+    std::size_t next = id + 1;
+    for_each_child(begin, end, [&](int from, int to) {
+        n.child[n.children++] = static_cast<int>(next);
+        add_upper_node(next, from, to, counts);
+        next += counts.of(to - from);
+    });
+}
+
+/// `next`: the number of the first node, then the one after the last.
+void BoxTree::add_nodes(int begin, int end, std::size_t& next)
+{
+    Node& n = nodes_[next++];
+    n = {FourBoxes::none(), {}, 0, end - begin <= kLeaf};
+    if (n.leaf) {
+        for (int place = begin; place < end; ++place)
+            n.child[n.children++] = place;
+        return;
+    }
+    for_each_child(begin, end, [&](int from, int to) {
+        n.child[n.children++] = static_cast<int>(next);
+        add_nodes(from, to, next);
+    });
 }
 
 void BoxTree::refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed)
@@ -198,25 +246,42 @@ void BoxTree::replace(std::size_t i, const FloatBox& box)
          at = lane_of_node_[static_cast<std::size_t>(at.node)]) {
         Node& n = nodes_[static_cast<std::size_t>(at.node)];
         n.box.set(at.lane, around);
-        around = n.box.get(0);
-        for (unsigned lane = 1; lane < n.children; ++lane)
-            around.add(n.box.get(lane));
+        around = n.around();
+    }
+}
+
+FloatBox BoxTree::Node::around() const
+{
+    FloatBox all = box.get(0);
+    for (unsigned lane = 1; lane < children; ++lane)
+        all.add(box.get(lane));
+    return all;
+}
+
+void BoxTree::fit_subtree(const Subtree& subtree)
+{
+    std::vector<FloatBox> around(subtree.nodes);
+    // Each node stands before its children, so going backwards finds the boxes of all children
+    // ready.
+    for (std::size_t i = subtree.nodes; i-- > 0;) {
+        Node& n = nodes_[subtree.node + i];
+        for (unsigned lane = 0; lane < n.children; ++lane) {
+            const auto child = static_cast<std::size_t>(n.child[lane]);
+            const FloatBox& box = n.leaf ? boxes_[child] : around[child - subtree.node];
+            n.box.set(lane, box);
+            lane == 0 ? void(around[i] = box) : around[i].add(box);
+        }
     }
 }
 
 void BoxTree::fit_nodes()
 {
-    std::vector<FloatBox> around(nodes_.size());
-    // Each node stands before its children, so going backwards finds the boxes of all children
-    // ready. This takes linear time and one thread, since it is little work next to the splits.
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
-        Node& n = nodes_[i];
-        for (unsigned lane = 0; lane < n.children; ++lane) {
-            const auto child = static_cast<std::size_t>(n.child[lane]);
-            const FloatBox& box = n.leaf ? boxes_[child] : around[child];
-            n.box.set(lane, box);
-            lane == 0 ? void(around[i] = box) : around[i].add(box);
-        }
+    for_each_index(
+        subtrees_.size(), [&](std::size_t i) { fit_subtree(subtrees_[i]); }, 1);
+    for (std::size_t i = upper_.size(); i-- > 0;) {
+        Node& n = nodes_[upper_[i]];
+        for (unsigned lane = 0; lane < n.children; ++lane)
+            n.box.set(lane, nodes_[static_cast<std::size_t>(n.child[lane])].around());
     }
 }
 

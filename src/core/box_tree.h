@@ -3,6 +3,7 @@
 
 #include "core/box_ray.h"
 #include "core/float_box.h"
+#include "core/raw_vector.h"
 
 #include <openvdb/Types.h>
 
@@ -179,6 +180,8 @@ private:
         std::array<int, kWide> child; ///< a node; in a leaf a place among the boxes
         unsigned children;
         bool leaf;
+
+        FloatBox around() const;
     };
     struct Item;
     // The tree is split at medians, twice a node, so its depth stays below 17.
@@ -186,10 +189,18 @@ private:
     static constexpr std::size_t kGroup = 16;
 
     static int middle_of(int begin, int end);
-    static void split(std::vector<Item>& items, int begin, int end);
+    /// The node over a range of boxes, and all below it, which stand behind it.
+    struct Subtree {
+        std::size_t node, nodes;
+        int begin, end;
+    };
+    class NodeCounts;
+    static void split(RawVector<Item>& items, int begin, int end);
     template <class Visit> static void for_each_child(int begin, int end, const Visit& visit);
-    static std::size_t count_nodes(int begin, int end);
-    int add_node(int begin, int end);
+    void add_upper_node(std::size_t id, int begin, int end, NodeCounts& counts);
+    void add_nodes(int begin, int end, std::size_t& next);
+    void add_all_nodes();
+    void fit_subtree(const Subtree& subtree);
     void fit_nodes();
 
     /// Calls visit(place), until it returns false, for every box that is met, leaving out what lies
@@ -269,9 +280,12 @@ private:
         }
         return met;
     }
-    std::vector<int> item_;       ///< in the order of the leaves
-    std::vector<FloatBox> boxes_; ///< of the items, in that order
-    std::vector<Node> nodes_;     ///< each before its children
+    RawVector<int> item_;       ///< in the order of the leaves
+    RawVector<FloatBox> boxes_; ///< of the items, in that order
+    RawVector<Node> nodes_;     ///< each before its children
+    /// What a thread takes at a time, and the nodes above these, each before its children.
+    std::vector<Subtree> subtrees_;
+    std::vector<std::size_t> upper_;
     /// Of index_parents: the place of each item; the node and the lane that hold a place, and the
     /// node and the lane that hold a node, of the root -1.
     struct Lane {

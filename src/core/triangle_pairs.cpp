@@ -121,6 +121,7 @@ public:
         : points_(points), triangles_(triangles), keep_(keep), wanted_(wanted), stop_(interrupter),
           crowds_(points.size())
     {
+        asked_.reserve(triangles.size());
         for (std::uint32_t t = 0; t < triangles.size(); ++t)
             if (left_out.empty() || !left_out[t])
                 asked_.push_back(t);
@@ -161,7 +162,7 @@ private:
     std::vector<FloatBox> boxes_of_asked() const
     {
         std::vector<FloatBox> boxes = triangle_boxes(points_, triangles_);
-        for (std::size_t i = 0; i < asked_.size(); ++i)
+        for (std::size_t i = 0; i < asked_.size() && asked_.size() < triangles_.size(); ++i)
             boxes[i] = boxes[asked_[i]];
         boxes.resize(asked_.size());
         return boxes;
@@ -186,7 +187,7 @@ private:
                         tree.for_each_of(group, [&](int i) { crowded[std::size_t(i)] = 1; });
             },
             1);
-        look_at_crowded(crowded);
+        look_at_crowded(std::move(tree), crowded);
     }
 
     bool look_at_group(const BoxTree& tree, std::size_t group, BoxTree::Near& near,
@@ -195,48 +196,81 @@ private:
         return tree.for_each_overlap_of(
             group, tree, near, [](int) { return true; },
             [&](int i, int j) {
-                const std::uint32_t s = asked_[std::size_t(i)], t = asked_[std::size_t(j)];
                 // Each pair is found from both of its boxes, and once is enough. What `keep`
                 // rejects is dropped here, before it takes memory.
-                if (s < t && !meet_in_a_crowd(s, t) && keep_(s, t))
-                    pairs.push_back({s, t});
+                keep_if_larger(asked_[std::size_t(i)], asked_[std::size_t(j)], pairs);
             },
             kMostNearGroup);
     }
 
     /// The pairs of triangles of groups that were not looked at: with the other triangles, of which
-    /// they missed the larger ones, and among themselves.
-    void look_at_crowded(const std::vector<char>& crowded)
+    /// they missed the larger ones, and among themselves. Lets go of the tree of all.
+    void look_at_crowded(BoxTree tree, const std::vector<char>& crowded)
     {
         if (std::find(crowded.begin(), crowded.end(), 1) == crowded.end())
             return;
         const std::vector<FloatBox> boxes = boxes_of_asked();
-        std::vector<std::uint32_t> places, others;
-        std::vector<FloatBox> of_others;
+        std::vector<std::uint32_t> places;
         std::vector<TrianglePiece> pieces;
         for (std::uint32_t i = 0; i < crowded.size(); ++i) {
-            const std::uint32_t t = asked_[i];
-            if (crowded[i]) {
-                places.push_back(i);
-                pieces.emplace_back(points_, triangles_[t], t, marks_of(t));
+            if (!crowded[i])
                 continue;
-            }
-            others.push_back(t);
-            of_others.push_back(boxes[i]);
+            const std::uint32_t t = asked_[i];
+            places.push_back(i);
+            pieces.emplace_back(points_, triangles_[t], t, marks_of(t));
         }
-        BoxTree tree;
-        tree.build(std::move(of_others));
-        std::vector<std::vector<Pair>> found(places.size() + 1);
+        // Most meet few others of a crowd, as the spikes of a rough surface do.
+        std::vector<std::vector<Pair>> found(places.size());
+        std::vector<char> many(places.size());
         for_each_index(places.size(), [&](std::size_t p) {
-            const std::uint32_t s = asked_[places[p]];
-            tree.for_each_overlap(boxes[places[p]], [&](int other) {
-                const std::uint32_t t = others[std::size_t(other)];
-                if (s < t && !stop_.wanted() && !meet_in_a_crowd(s, t) && keep_(s, t))
-                    found[p].push_back({s, t});
+            std::size_t met = 0;
+            tree.for_each_overlap_while(boxes[places[p]], [&](int place) {
+                if (crowded[std::size_t(place)])
+                    return ++met <= kMostNearGroup;
+                keep_if_larger(asked_[places[p]], asked_[std::size_t(place)], found[p]);
+                return true;
             });
+            many[p] = met > kMostNearGroup;
         });
+        // Of tens of millions of boxes two trees at a time would take gigabytes.
+        tree = {};
+        if (std::find(many.begin(), many.end(), 1) != many.end())
+            look_without_crowded(boxes, crowded, places, many, found);
+        found.emplace_back();
         list(CrowdedPairs<TrianglePiece>(std::move(pieces), wanted_, stop_), found.back());
         take(found);
+    }
+
+    /// The same for triangles that meet many of a crowd, in a tree without these: of n that all
+    /// meet there are n^2 pairs.
+    void look_without_crowded(const std::vector<FloatBox>& boxes, const std::vector<char>& crowded,
+                              const std::vector<std::uint32_t>& places,
+                              const std::vector<char>& many,
+                              std::vector<std::vector<Pair>>& found) const
+    {
+        std::vector<std::uint32_t> others;
+        std::vector<FloatBox> of_others;
+        for (std::size_t i = 0; i < crowded.size(); ++i)
+            if (!crowded[i]) {
+                others.push_back(asked_[i]);
+                of_others.push_back(boxes[i]);
+            }
+        BoxTree tree;
+        tree.build(std::move(of_others));
+        for_each_index(places.size(), [&](std::size_t p) {
+            if (!many[p])
+                return;
+            found[p].clear();
+            tree.for_each_overlap(boxes[places[p]], [&](int other) {
+                keep_if_larger(asked_[places[p]], others[std::size_t(other)], found[p]);
+            });
+        });
+    }
+
+    void keep_if_larger(std::uint32_t s, std::uint32_t t, std::vector<Pair>& pairs) const
+    {
+        if (s < t && !stop_.wanted() && !meet_in_a_crowd(s, t) && keep_(s, t))
+            pairs.push_back({s, t});
     }
 
     void take(std::vector<std::vector<Pair>>& found)

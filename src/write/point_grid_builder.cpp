@@ -77,14 +77,15 @@ void append(const PointIndexGrid& index, PointDataTree& tree, const std::string&
     std::vector<PointDataTree::LeafNodeType*> leaves;
     tree.getNodes(leaves);
     const auto fill = [&](std::size_t k) {
-        auto& array = leaves[k]->attributeArray(position);
-        openvdb::points::AttributeWriteHandle<T> handle(array);
-        openvdb::Index row = 0;
+        // The typed array and not a handle, which calls a function for each value.
+        auto& array =
+            openvdb::points::TypedAttributeArray<T>::cast(leaves[k]->attributeArray(position));
+        array.expand(/*fill=*/false);
+        openvdb::Index to = 0;
         for (const auto point : index.tree().probeConstLeaf(leaves[k]->origin())->indices()) {
             const T* values = column.values + point * column.stride;
             for (openvdb::Index element = 0; element < column.elements; ++element)
-                handle.set(row, element, values[element]);
-            ++row;
+                array.setUnsafe(to++, values[element]);
         }
         // Floats are left as they are: compacting takes -0 and 0 for the same value.
         if (std::is_integral_v<T>)

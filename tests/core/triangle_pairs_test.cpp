@@ -121,6 +121,25 @@ TEST(overlapping_triangles, miss_no_pair_of_layers_that_cross)
     EXPECT_EQ(soup.found(), pairs);
 }
 
+// Of layers whose boxes all overlap, small triangles that cross them or lie between them. A layer's
+// box meets more layers than are looked at one by one, or few enough.
+TEST(overlapping_triangles, miss_no_pair_of_a_crowd_and_others)
+{
+    for (const std::size_t count : {900U, 1500U}) {
+        Soup soup = layers(count, 0.25F);
+        std::mt19937 random(3);
+        std::uniform_real_distribution<float> place(300, 400), depth(0, float(count));
+        for (int i = 0; i < 400; ++i) {
+            const float x = place(random), y = place(random), z = 700 - x - y + depth(random);
+            const float height = 0.01F * float(i);
+            soup.add(Vec3s(x, y, z), Vec3s(x + 1, y, z - 1), Vec3s(x, y, z + height));
+        }
+        const Pairs pairs = by_brute_force(soup);
+        EXPECT_GT(pairs.size(), 300u);
+        EXPECT_EQ(soup.found(), pairs) << count;
+    }
+}
+
 /// Triangles that share corners and edges by index, up to all of them: around point 0, or around
 /// the edge of points 0 and 1, with other points in few places, so that many touch.
 Soup random_stars(std::size_t count, int reach, bool around_an_edge)
