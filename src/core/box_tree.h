@@ -183,17 +183,17 @@ private:
 
         FloatBox around() const;
     };
+    /// The node over a range of boxes, and all below it, which stand behind it.
+    struct Subtree {
+        std::size_t node, nodes;
+        int begin, end;
+    };
     struct Item;
     // The tree is split at medians, twice a node, so its depth stays below 17.
     static constexpr int kStack = 64;
     static constexpr std::size_t kGroup = 16;
 
     static int middle_of(int begin, int end);
-    /// The node over a range of boxes, and all below it, which stand behind it.
-    struct Subtree {
-        std::size_t node, nodes;
-        int begin, end;
-    };
     class NodeCounts;
     static void split(RawVector<Item>& items, int begin, int end);
     template <class Visit> static void for_each_child(int begin, int end, const Visit& visit);

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <new>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,8 @@ namespace vdb_shell
 
 /// Makes elements that are given no value without one.
 template <typename T> struct RawAllocator : std::allocator<T> {
+    // The standard library asks for this name.
+    // NOLINTNEXTLINE(readability-identifier-naming)
     template <typename U> struct rebind {
         using other = RawAllocator<U>;
     };
