@@ -27,16 +27,20 @@ constexpr std::size_t kGroupsInPart = 16;
 
 } // namespace
 
+FloatBox triangle_box(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& triangle)
+{
+    FloatBox box = FloatBox::around(points[triangle[0]]);
+    for (int corner = 1; corner < 3; ++corner)
+        box.add(points[triangle[corner]]);
+    return box;
+}
+
 std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
                                      const std::vector<openvdb::Vec3I>& triangles)
 {
     std::vector<FloatBox> boxes(triangles.size());
-    for_each_index(triangles.size(), [&](std::size_t t) {
-        FloatBox box = FloatBox::around(points[triangles[t][0]]);
-        for (int corner = 1; corner < 3; ++corner)
-            box.add(points[triangles[t][corner]]);
-        boxes[t] = box;
-    });
+    for_each_index(triangles.size(),
+                   [&](std::size_t t) { boxes[t] = triangle_box(points, triangles[t]); });
     return boxes;
 }
 

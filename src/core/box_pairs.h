@@ -15,7 +15,8 @@
 namespace vdb_shell
 {
 
-/// The tight box of each triangle.
+/// The tight box of one triangle, and of each.
+FloatBox triangle_box(const std::vector<openvdb::Vec3s>& points, const openvdb::Vec3I& triangle);
 std::vector<FloatBox> triangle_boxes(const std::vector<openvdb::Vec3s>& points,
                                      const std::vector<openvdb::Vec3I>& triangles);
 

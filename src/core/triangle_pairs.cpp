@@ -159,10 +159,13 @@ private:
     {
         return any_crowd_ && BoxTree::have_common(marks_of(s), marks_of(t));
     }
+    FloatBox box_of(std::uint32_t t) const { return triangle_box(points_, triangles_[t]); }
     std::vector<FloatBox> boxes_of_asked() const
     {
         std::vector<FloatBox> boxes = triangle_boxes(points_, triangles_);
-        for (std::size_t i = 0; i < asked_.size() && asked_.size() < triangles_.size(); ++i)
+        if (asked_.size() == triangles_.size())
+            return boxes;
+        for (std::size_t i = 0; i < asked_.size(); ++i)
             boxes[i] = boxes[asked_[i]];
         boxes.resize(asked_.size());
         return boxes;
@@ -209,7 +212,6 @@ private:
     {
         if (std::find(crowded.begin(), crowded.end(), 1) == crowded.end())
             return;
-        const std::vector<FloatBox> boxes = boxes_of_asked();
         std::vector<std::uint32_t> places;
         std::vector<TrianglePiece> pieces;
         for (std::uint32_t i = 0; i < crowded.size(); ++i) {
@@ -223,19 +225,20 @@ private:
         std::vector<std::vector<Pair>> found(places.size());
         std::vector<char> many(places.size());
         for_each_index(places.size(), [&](std::size_t p) {
+            const std::uint32_t s = asked_[places[p]];
             std::size_t met = 0;
-            tree.for_each_overlap_while(boxes[places[p]], [&](int place) {
+            tree.for_each_overlap_while(box_of(s), [&](int place) {
                 if (crowded[std::size_t(place)])
                     return ++met <= kMostNearGroup;
-                keep_if_larger(asked_[places[p]], asked_[std::size_t(place)], found[p]);
-                return true;
+                keep_if_larger(s, asked_[std::size_t(place)], found[p]);
+                return !stop_.wanted();
             });
             many[p] = met > kMostNearGroup;
         });
         // Of tens of millions of boxes two trees at a time would take gigabytes.
         tree = {};
         if (std::find(many.begin(), many.end(), 1) != many.end())
-            look_without_crowded(boxes, crowded, places, many, found);
+            look_without_crowded(crowded, places, many, found);
         found.emplace_back();
         list(CrowdedPairs<TrianglePiece>(std::move(pieces), wanted_, stop_), found.back());
         take(found);
@@ -243,7 +246,7 @@ private:
 
     /// The same for triangles that meet many of a crowd, in a tree without these: of n that all
     /// meet there are n^2 pairs.
-    void look_without_crowded(const std::vector<FloatBox>& boxes, const std::vector<char>& crowded,
+    void look_without_crowded(const std::vector<char>& crowded,
                               const std::vector<std::uint32_t>& places,
                               const std::vector<char>& many,
                               std::vector<std::vector<Pair>>& found) const
@@ -253,23 +256,25 @@ private:
         for (std::size_t i = 0; i < crowded.size(); ++i)
             if (!crowded[i]) {
                 others.push_back(asked_[i]);
-                of_others.push_back(boxes[i]);
+                of_others.push_back(box_of(asked_[i]));
             }
         BoxTree tree;
         tree.build(std::move(of_others));
         for_each_index(places.size(), [&](std::size_t p) {
             if (!many[p])
                 return;
+            const std::uint32_t s = asked_[places[p]];
             found[p].clear();
-            tree.for_each_overlap(boxes[places[p]], [&](int other) {
-                keep_if_larger(asked_[places[p]], others[std::size_t(other)], found[p]);
+            tree.for_each_overlap_while(box_of(s), [&](int other) {
+                keep_if_larger(s, others[std::size_t(other)], found[p]);
+                return !stop_.wanted();
             });
         });
     }
 
     void keep_if_larger(std::uint32_t s, std::uint32_t t, std::vector<Pair>& pairs) const
     {
-        if (s < t && !stop_.wanted() && !meet_in_a_crowd(s, t) && keep_(s, t))
+        if (s < t && !meet_in_a_crowd(s, t) && keep_(s, t))
             pairs.push_back({s, t});
     }
 

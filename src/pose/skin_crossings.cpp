@@ -8,6 +8,7 @@
 
 #include "pose/skin_crossings.h"
 
+#include "core/box_pairs.h"
 #include "core/box_tree.h"
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
@@ -73,11 +74,7 @@ private:
     }
     FloatBox box_of(std::size_t triangle) const
     {
-        const Vec3I& t = parts_.stack.triangles()[triangle];
-        FloatBox box = FloatBox::around(skin_[t[0]]);
-        box.add(skin_[t[1]]);
-        box.add(skin_[t[2]]);
-        return box;
+        return triangle_box(skin_, parts_.stack.triangles()[triangle]);
     }
 
     std::vector<std::uint8_t> marked_triangles() const
