@@ -33,6 +33,8 @@ SCANS = ["scans/boot", "scans/hammer", "scans/skull"]
 TUNING = [*CLEAN_MESHES[::2], "scans/boot", "scans/skull"]
 RESOLUTIONS = [64, 128, 256]
 MOST_FACES = 330000
+# Kinds of work, by what numbers are called.
+WORK = {"": {}, "Speed": {"for": "speed"}, "Thickest": {"method": "thickest"}}
 # From so many triangles on growth begins on a coarser surface (--coarse-from).
 COARSE_FROM = 5000
 
@@ -60,9 +62,12 @@ def variants(faces):
     for rounds in (1, 2):
         if 1000 <= faces << (2 * rounds) <= MOST_FACES:
             yield {"resolution": 256, "subdivide": rounds}
-    if faces <= 6000:
-        yield {"resolution": 256, "method": "thickest"}
-    yield {"resolution": 256, "layers": 3}
+    for more in WORK.values():
+        if more:
+            yield from ({"resolution": resolution, **more} for resolution in RESOLUTIONS)
+            if 1000 <= faces << 2 <= MOST_FACES:
+                yield {"resolution": 256, "subdivide": 1, **more}
+        yield {"resolution": 256, "layers": 3, **more}
     yield {"resolution": 256, "side": "both"}
 
 
@@ -207,12 +212,13 @@ def processor():
     return names[0] if names else "unknown"
 
 
-def lines_and_rows(runs, prefix, words):
+def lines_and_rows(runs, prefix, words, quantities=QUANTITIES):
     """Numbers as the header has them, by name; rows of the table of errors."""
     # Subdivided surfaces judge only: those that come in such sizes are rougher, and growth goes on longer on them.
     tuning = numpy.array([run["mesh"] in TUNING and "subdivide" not in run for run in runs])
     lines, rows = {}, []
-    for quantity, name in QUANTITIES.items():
+    for quantity in quantities:
+        name = QUANTITIES[quantity]
         numbers, errors = fitted(runs, quantity, tuning)
         name = f"k{prefix}{name}"
         lines[name] = f"inline constexpr CostNumbers {name}{{{', '.join('%.4g' % number for number in numbers)}}};"
@@ -239,11 +245,16 @@ def source(what, count, build):
 
 
 def fit(results, header, page, build):
-    everything = [run for run in json.loads(results.read_text()).values() if "seconds" in run]
-    # Outward shells and --thickest are not modelled: they are another kind of work.
-    runs = [run for run in everything if "side" not in run and "method" not in run]
-    lines, rows = lines_and_rows(runs, "", "")
-    write_numbers(header, lines, [source("builds", len(runs), build)])
+    # Outward shells are not modelled: they are another kind of work.
+    everything = [run for run in json.loads(results.read_text()).values() if "seconds" in run and "side" not in run]
+    made, rows = {}, []
+    for prefix, more in WORK.items():
+        runs = [run for run in everything if all(run.get(key) == more.get(key) for key in ("for", "method"))]
+        # A .vdb is as large whatever it took to make.
+        lines, errors = lines_and_rows(runs, prefix, f"{prefix.lower()}: " * bool(prefix), ["seconds", "memory"] if prefix else QUANTITIES)
+        made.update(lines)
+        rows += errors
+    write_numbers(header, made, [source("builds", len(everything), build)])
     replace_tables(page, table(HEAD, rows), "estimate")
 
 

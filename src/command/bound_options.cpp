@@ -286,6 +286,17 @@ void require_needs(BoundOptions& bound)
 
 } // namespace
 
+std::vector<std::string> flags_of(const Option& option)
+{
+    std::vector<std::string> flags = option.names;
+    flags.insert(flags.begin(), option.flag);
+    if (const std::string negation = negation_of(option); !negation.empty())
+        flags.push_back(negation);
+    if (!option.shorthand.empty())
+        flags.push_back(option.shorthand);
+    return flags;
+}
+
 BoundOptions bind(CLI::App& app, OptionSections sections)
 {
     BoundOptions bound;

@@ -32,6 +32,10 @@ struct BoundOptions {
     std::vector<BoundOption> options;
 };
 
+/// All words by which the option can be given, the negation of a flag and the shorthand with them.
+/// Precondition: it has a flag.
+std::vector<std::string> flags_of(const Option& option);
+
 /// Adds a flag for every option that has one, group by group, with help made of the descriptions.
 /// The fields must still have their defaults; parsing does not change them, apply() does.
 BoundOptions bind(CLI::App& app, OptionSections sections);

@@ -22,6 +22,7 @@
 #include "command/page_command.h"
 #include "command/pose_command.h"
 #include "command/repair_command.h"
+#include "command/unknown_words.h"
 #include "command/usd_command.h"
 #include "command/volumes_command.h"
 #include "options/option_json.h"
@@ -153,6 +154,7 @@ struct Call::Parts {
     void add_file_commands();
     std::vector<CommandEntry> entries() const;
     Subcommand& given();
+    std::string told_unknown();
 };
 
 /// From a shell to volumes.
@@ -273,6 +275,21 @@ Subcommand& Call::Parts::given()
     throw std::logic_error("the parser wants a command");
 }
 
+/// The same. The parser lists words from the back.
+std::string Call::Parts::told_unknown()
+{
+    const Subcommand& command = given();
+    std::vector<std::string> flags{"--help"};
+    for (const BoundOptions* bound : {&command.bound, &std::as_const(global)})
+        for (const BoundOption& one : bound->options)
+            if (!one.option.flag.empty())
+                for (std::string& flag : flags_of(one.option))
+                    flags.push_back(std::move(flag));
+    std::vector<std::string> words = app.remaining(true);
+    std::reverse(words.begin(), words.end());
+    return command::told_unknown(words, command.app->get_name(), flags);
+}
+
 std::vector<std::string> words_of(const std::vector<std::string>& given)
 {
     std::vector<std::string> words;
@@ -333,6 +350,8 @@ void Call::parse(const std::vector<std::string>& words)
                                         ? " is no option of every command, and no command is given"
                                         : " is no command"),
                                CLI::ExitCodes::ExtrasError);
+    } catch (const CLI::ExtrasError&) {
+        throw CLI::ExtrasError(parts_->told_unknown(), CLI::ExitCodes::ExtrasError);
     }
     apply(parts_->global);
 }

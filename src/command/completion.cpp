@@ -15,18 +15,6 @@ namespace vdb_shell::command
 namespace
 {
 
-/// All words by which the option can be given, the negation of a flag and the shorthand with them.
-std::vector<std::string> flags_of(const Option& option)
-{
-    std::vector<std::string> flags = option.names;
-    flags.insert(flags.begin(), option.flag);
-    if (const std::string negation = negation_of(option); !negation.empty())
-        flags.push_back(negation);
-    if (!option.shorthand.empty())
-        flags.push_back(option.shorthand);
-    return flags;
-}
-
 /// What to offer after each flag that takes a value: its choices, files, or nothing for numbers.
 void write_values(std::ostream& out, const CommandEntry& command)
 {

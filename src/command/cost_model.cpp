@@ -105,7 +105,7 @@ std::vector<std::string> not_counted(const BuildArguments& a)
             names.emplace_back(name);
     };
     add(s.side != Side::inward, "--side");
-    add(s.grow.method != Method::certified, "--method");
+    add(s.grow.method == Method::raw, "--method raw");
     add(s.mend, "--mend");
     add(s.repair.has_value(), "--repair");
     add(s.wrap.wanted, "--wrap");
@@ -117,6 +117,23 @@ std::vector<std::string> not_counted(const BuildArguments& a)
     add(s.core_fill.wanted(), "--core-fill");
     add(!a.cores.empty(), "--core");
     return names;
+}
+
+/// Seconds and memory of a build by what it asks of growth. `--for speed` is what was measured of
+/// the three-tet test; with more fill than that it takes up to as long as the default.
+struct BuildNumbers {
+    const CostNumbers &seconds, &memory;
+};
+BuildNumbers numbers_for(const GrowOptions& grow)
+{
+    // That of samples/presets/speed.json.
+    constexpr double kSpeedFill = 0.975;
+    if (grow.method == Method::thickest)
+        return {kThickestSecondsNumbers, kThickestMemoryNumbers};
+    if (grow.method == Method::certified && grow.prism_test == PrismTest::chosen_tets &&
+        grow.enough_fill && *grow.enough_fill <= kSpeedFill)
+        return {kSpeedSecondsNumbers, kSpeedMemoryNumbers};
+    return {kSecondsNumbers, kMemoryNumbers};
 }
 
 /// A shell of a surface in these voxels; 0: without volumes.
@@ -172,8 +189,9 @@ CallCost estimate_build(const BuildArguments& arguments)
     cost.file = arguments.mesh.string();
     cost.triangles = size.triangles;
     cost.voxel_size = voxel * unit;
-    cost.cpu_seconds = sum_of(kSecondsNumbers, size);
-    cost.memory = sum_of(kMemoryNumbers, size);
+    const BuildNumbers numbers = numbers_for(shell.grow);
+    cost.cpu_seconds = sum_of(numbers.seconds, size);
+    cost.memory = sum_of(numbers.memory, size);
     cost.disk = disk_of(arguments.outputs, size, kVdbNumbers);
     cost.not_counted = not_counted(arguments);
     return cost;

@@ -52,7 +52,8 @@ OptionList describe(GrowOptions& o)
          option("free_moves", o.free_moves, "--free-moves", "Let inner vertices leave their lines"),
          option("soft_contacts", o.soft_contacts, "--soft-contacts",
                 "Keep clear of near triangles before they touch"),
-         option("flips", o.flips, "--flips", "Turn diagonals for room and for quality"),
+         option("flips", o.flips, "--flips",
+                "Turn diagonals for room and for quality; prisms that fail get others anyway"),
          option("coarse_from", o.coarse_from, "--coarse-from",
                 "Triangles from which on growth begins on a coarser surface; 0: never")
              .needing("--method certified thickest")

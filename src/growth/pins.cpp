@@ -14,6 +14,7 @@
 #include "growth/other_components.h"
 #include "growth/pillars_around_pin.h"
 #include "growth/trust_radius.h"
+#include "mesh/most_visible.h"
 
 #include <algorithm>
 #include <array>
@@ -168,6 +169,11 @@ std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& 
 constexpr int kReach = 4;
 constexpr std::size_t kMostWithinReach = 2000;
 
+// Under the three-tet test halving a pillar can make prisms beside it fail, so that theirs have to
+// be halved too. That ends within five edges for all pins that were seen, but for those of one mesh
+// (libigl's decimated-max): three of its six shells were left one pin, and none within twelve.
+constexpr std::array<int, 2> kReachesUnderThree{kReach + 1, 3 * kReach};
+
 /// The vertices within so many edges of v, v among them; none where there are too many.
 std::vector<int> vertices_around(const GrowState& s, int v, int rings = kReach)
 {
@@ -199,13 +205,36 @@ void widen_boxes(GrowState& s, const std::vector<int>& vertices, double longest)
     }
 }
 
+void put(GrowState& s, const PillarEnd& p)
+{
+    s.b[p.vertex] = p.end;
+    s.pinned[p.vertex] = p.end == s.a[p.vertex];
+}
+
+/// Half of u's pillar; where that does not see all triangles around u, as pillars under the
+/// three-tet test need not, in the direction that sees them best.
+Vec3d halved_arm(const GrowState& s, int u)
+{
+    std::vector<Vec3d> normals;
+    for (const FaceCorner& at : star(*s.mesh, u)) {
+        const Vec3d& p = s.a[s.mesh->corner(at.face, (at.local + 1) % 3)];
+        const Vec3d& q = s.a[s.mesh->corner(at.face, (at.local + 2) % 3)];
+        const Vec3d n = (q - s.a[u]).cross(p - s.a[u]);
+        if (n.lengthSqr() > 0)
+            normals.push_back(n / n.length());
+    }
+    const Vec3d arm = 0.5 * (s.b[u] - s.a[u]);
+    return smallest_dot(normals, arm) > 0 ? arm : arm.length() * most_visible(normals);
+}
+
 /// Makes these prisms pass the twelve-tet test, under the three-tet test: of those that fail all
 /// pillars are halved together, for single ones could not be, none but those of the vertices
-/// `around`. Where pillars see their triangles that ends, since the two ends of a short prism are
-/// nearly alike. False where it does not. Precondition: the boxes of the inner tree hold what may
+/// `around`. As pillars see their triangles then, that ends, since the two ends of a short prism
+/// are nearly alike. What is as short as a rounding becomes one of the `pins`. False where a pillar
+/// beyond `around` would have to be halved. Precondition: the boxes of the inner tree hold what may
 /// be changed.
 bool shorten_to_twelve_tets(GrowState& s, const std::vector<int>& prisms,
-                            const std::vector<int>& around)
+                            const std::vector<int>& around, std::vector<PillarEnd>& pins)
 {
     constexpr int kRounds = 24; // a float has no more bits to lose
     const auto passes = [&](int f) {
@@ -225,10 +254,12 @@ bool shorten_to_twelve_tets(GrowState& s, const std::vector<int>& prisms,
                     shortened.push_back(u);
         sort_unique(shortened);
         for (const int u : shortened) {
-            const Vec3d end = rounded(s.a[u] + 0.5 * (s.b[u] - s.a[u]));
-            if (end == s.a[u] || !std::binary_search(around.begin(), around.end(), u))
+            if (!std::binary_search(around.begin(), around.end(), u))
                 return false;
-            s.b[u] = end;
+            const Vec3d end = rounded(s.a[u] + halved_arm(s, u));
+            if (end == s.a[u])
+                pins.push_back({u, s.b[u]});
+            put(s, {u, end});
         }
         look = faces_at(*s.mesh, shortened);
         look.insert(look.end(), failing.begin(), failing.end());
@@ -247,59 +278,51 @@ std::vector<PillarEnd> ends_of(const GrowState& s, const std::vector<int>& verti
     return ends;
 }
 
-void put(GrowState& s, const PillarEnd& p)
-{
-    s.b[p.vertex] = p.end;
-    s.pinned[p.vertex] = p.end == s.a[p.vertex];
-}
-
-/// Gives v a pillar, none longer than `longest`, and then these vertices theirs, which have none
-/// either: the one first that sees its triangles least, since a vertex that hardly sees them has to
-/// come before those that are easily served. False where one of them has none in the end.
-bool release_in_turn(GrowState& s, int v, std::vector<PillarEnd> others, double longest,
+/// Gives these vertices, which have none, a pillar, none longer than `longest` or than it was: the
+/// one first that sees its triangles least, since a vertex that hardly sees them has to come before
+/// those that are easily served. False where one of them has none in the end.
+bool release_in_turn(GrowState& s, std::vector<PillarEnd> pins, double longest,
                      const std::vector<double>& visibility)
 {
-    std::stable_sort(others.begin(), others.end(), [&](const PillarEnd& p, const PillarEnd& q) {
+    std::stable_sort(pins.begin(), pins.end(), [&](const PillarEnd& p, const PillarEnd& q) {
         return visibility[p.vertex] < visibility[q.vertex];
     });
-    const auto released = [&](int u, double length) {
-        return release(s, u, length, visibility, PillarsBesidePin::turned);
-    };
-    return released(v, longest) &&
-           std::all_of(others.begin(), others.end(), [&](const PillarEnd& p) {
-               return released(p.vertex, std::max(longest, (p.end - s.a[p.vertex]).length()));
-           });
+    return std::all_of(pins.begin(), pins.end(), [&](const PillarEnd& p) {
+        const double length = std::max(longest, (p.end - s.a[p.vertex]).length());
+        return release(s, p.vertex, length, visibility, PillarsBesidePin::turned);
+    });
 }
 
-/// Gives v a pillar while those beside it have none, and then these theirs. Under the three-tet
+/// Gives v a pillar while those beside it have none that see their triangles better, and then these
+/// theirs. Under the three-tet
 /// test another pillar can stand in the way even then: with `twelve_within`, prisms so many edges
 /// around are made to pass the twelve-tet test before, and stay so. False, with nothing changed,
 /// where one of them has none in the end. Precondition: BoxTree::index_parents.
 bool release_before_others(GrowState& s, int v, const std::vector<double>& visibility,
-                           std::optional<int> twelve_within = std::nullopt)
+                           int reach = kReach, std::optional<int> twelve_within = std::nullopt)
 {
-    const std::vector<int> around = vertices_around(s, v, kReach + (twelve_within ? 1 : 0));
+    const std::vector<int> around = vertices_around(s, v, reach);
     if (around.empty())
         return false;
     const double longest =
         std::min(mean_edge(*s.mesh, s.a, v), s.schedule.pins.longest * s.diagonal);
     widen_boxes(s, around, longest);
     const std::vector<PillarEnd> before = ends_of(s, around);
-    std::vector<PillarEnd> beside;
+    std::vector<PillarEnd> pins{{v, s.a[v]}};
     for (const int u : neighbours(*s.mesh, v))
         if (!s.pinned[u])
-            beside.push_back({u, s.b[u]});
-    for (const PillarEnd& p : beside)
+            pins.push_back({u, s.b[u]});
+    for (const PillarEnd& p : pins)
         put(s, {p.vertex, s.a[p.vertex]});
     // Each release tests all that it changes, so what is valid in the end is so without these pins.
     bool done = false;
     if (!twelve_within) {
-        done = release_in_turn(s, v, beside, longest, visibility);
+        done = release_in_turn(s, pins, longest, visibility);
     } else if (shorten_to_twelve_tets(s, faces_at(*s.mesh, vertices_around(s, v, *twelve_within)),
-                                      around)) {
+                                      around, pins)) {
         // Whatever passes this test passes the other.
         s.twelve = true;
-        done = release_in_turn(s, v, beside, longest, visibility);
+        done = release_in_turn(s, pins, longest, visibility);
         s.twelve = false;
     }
     if (!done)
@@ -314,9 +337,12 @@ bool release_last(GrowState& s, int v, const std::vector<double>& visibility)
 {
     if (release_before_others(s, v, visibility))
         return true;
-    for (int rings = kReach - 1; rings > 0 && !s.twelve; --rings)
-        if (release_before_others(s, v, visibility, rings))
-            return true;
+    if (s.twelve)
+        return false;
+    for (const int reach : kReachesUnderThree)
+        for (int rings = kReach - 1; rings > 0; --rings)
+            if (release_before_others(s, v, visibility, reach, rings))
+                return true;
     return false;
 }
 

@@ -9,6 +9,7 @@
 
 #include "options/option_json.h"
 
+#include "options/near_names.h"
 #include "options/parse_json.h"
 #include "options/shown_text.h"
 #include "vdb_shell/core/error.h"
@@ -63,6 +64,29 @@ Option* find_by_key(OptionList& options, const std::string& key)
     return found == options.end() ? nullptr : &*found;
 }
 
+/// What an object of that section may have.
+std::vector<std::string> keys_of(const OptionSection& section)
+{
+    std::vector<std::string> keys;
+    for (const Option& option : section.options)
+        if (!option.key.empty())
+            keys.push_back(option.key);
+    return keys;
+}
+
+/// Sections, and options with theirs before them: "level_set.resolution".
+std::vector<std::string> all_keys_of(const OptionSections& sections)
+{
+    std::vector<std::string> keys;
+    for (const OptionSection& section : sections) {
+        if (!section.key.empty())
+            keys.push_back(section.key);
+        for (const std::string& key : keys_of(section))
+            keys.push_back(section.key.empty() ? key : section.key + "." + key);
+    }
+    return keys;
+}
+
 /// A section that can be off has null for "off" and an object, of any size, for "on". That flag is
 /// set before the entries, so that they go into options that exist.
 void set_section(const ordered_json& json, OptionSection& section, const std::string& name)
@@ -81,7 +105,8 @@ void set_section(const ordered_json& json, OptionSection& section, const std::st
         const std::string full = name + ": " + section.key + "." + shown_key(entry.key());
         Option* option = find_by_key(section.options, entry.key());
         if (!option)
-            throw InvalidOption(full + " is no option");
+            throw InvalidOption(full + " is no option" +
+                                hint_of_near(entry.key(), keys_of(section)));
         assign(*option, value_of(entry.value(), full), full);
     }
 }
@@ -206,7 +231,8 @@ void set_from_json(const ordered_json& json, OptionSections& sections, const std
 {
     for (const auto& entry : json.items())
         if (!set_entry(entry.key(), entry.value(), sections, name))
-            throw InvalidOption(name + ": " + shown_key(entry.key()) + " is no option");
+            throw InvalidOption(name + ": " + shown_key(entry.key()) + " is no option" +
+                                hint_of_near(entry.key(), all_keys_of(sections)));
 }
 
 void set_known_from_json(const ordered_json& json, OptionSections& sections,

@@ -73,6 +73,17 @@ void require_wishes_possible(const ShellOptions& options)
                                                 "(--side) has no solid to fill");
 }
 
+/// Under the three-tet test a prism keeps the diagonals that have room, so that no rule can hold.
+void require_split_counts(const ShellOptions& options)
+{
+    const bool grown_by_three =
+        options.grow.method != Method::raw && prism_test_of(options.grow) == PrismTest::chosen_tets;
+    if (grown_by_three && options.split.rule != SplitOptions().rule)
+        throw InvalidOption("split: no rule (--split) counts under the three-tet test "
+                            "(--prism-test chosen-tets, --method thickest), where growth chooses "
+                            "the diagonals");
+}
+
 /// What is filled lies inside of a certified shell that itself lies inside of the surface.
 void require_core_fill_possible(const ShellOptions& options)
 {
@@ -141,6 +152,7 @@ void require_sensible(const ShellOptions& options, bool thickness_grid)
     require_taper_possible(options);
     require_wishes_possible(options);
     require_core_fill_possible(options);
+    require_split_counts(options);
     // A line outward always has a thickness: a tenth of the diagonal where the user gives none
     // (shell/sides.h).
     if (options.side != Side::outward && options.line_step.test == StopTest::none &&

@@ -84,6 +84,15 @@ TEST_F(Estimate, MoreWorkCostsMore)
                   .at("seconds")
                   .get<double>(),
               plain);
+    const std::string large = mesh_file("large.obj", icosphere(1.0, 5));
+    const auto processor = [&](const std::string& more) {
+        return of(large + " " + more).at("cpu_seconds").get<double>();
+    };
+    EXPECT_LT(processor("--for speed"), processor(""));
+    EXPECT_EQ(processor("--for speed"), processor("--prism-test chosen-tets --enough-fill .95"));
+    EXPECT_EQ(processor("--prism-test chosen-tets"), processor("")) << "as long or less";
+    EXPECT_GT(processor("--thickest"), processor(""));
+    EXPECT_GT(processor("--thickest --layers 3"), processor("--thickest"));
     EXPECT_EQ(base.at("disk_bytes"), 0) << "nothing would be written";
     for (const char* extension : {".vdb", ".vtu", ".obj"}) {
         std::string capitals = extension;
@@ -105,6 +114,8 @@ TEST_F(Estimate, WhatItDoesNotKnowIsSaid)
     const std::string sphere = mesh_file("s.obj", icosphere(1.0, 2));
     EXPECT_EQ(of(sphere).at("not_counted"), json::array());
     EXPECT_EQ(of(sphere + " --side both --taper").at("not_counted"), json({"--side", "--taper"}));
+    EXPECT_EQ(of(sphere + " --thickest").at("not_counted"), json::array());
+    EXPECT_EQ(of(sphere + " --method raw").at("not_counted"), json({"--method raw"}));
     const Outcome text = run("estimate " + sphere + " " + sphere + " --wrap");
     EXPECT_NE(text.out.find("s.obj: 320 triangles"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find("not counted: --wrap"), std::string::npos) << text.out;

@@ -243,6 +243,10 @@ TEST_F(Options, AFileOfOptionsMayBeAnything)
     refused("{\"" + large, ExitCode::read_error, "is no JSON");
     refused(R"({"parameters": 3})", ExitCode::usage_error, "parameters is 3, must be an object");
     refused(R"({"": 3})", ExitCode::usage_error, "\"\" is no option");
+    refused(R"({"level_set": {"resolutoin": 20}})", ExitCode::usage_error,
+            "level_set.resolutoin is no option; near it: resolution");
+    refused(R"({"resolution": 20})", ExitCode::usage_error,
+            "resolution is no option; near it: wrap.resolution, level_set.resolution");
     refused(R"({"level_set": {"resolution": 20.5}})", ExitCode::usage_error,
             "level_set.resolution is 20.5, must be a whole number");
     expect_refusal("build none.obj -o x.vdb" + preset(R"({"level_set": {"resolution": 20.0}})"),
@@ -259,6 +263,18 @@ TEST_F(Options, UnknownWordsAreNamed)
         EXPECT_EQ(result.status, ExitCode::usage_error);
         EXPECT_EQ(result.err.rfind("bogus is no command\n", 0), 0u) << result.err;
     }
+    // The option before what may be its value, with those that may be meant; and nothing is read.
+    expect_no_call("build --resolutoin 5 none.obj",
+                   {"--resolutoin is no option of build; near it: --resolution\n"});
+    expect_no_call("build none.obj other.obj --bogus=3", {"--bogus is no option of build\n"});
+    expect_no_call("inspect none.obj --section s.png", {"--section is no option of inspect"});
+    expect_no_call("build none.obj --section s.png",
+                   {"near it: --section-axis, --section-position\n"});
+    expect_no_call("build none.obj other.obj", {"other.obj is one word too many for build\n"});
+    expect_no_call("build none.obj -- --layers",
+                   {"--layers is one word too many for build; behind --"});
+    const Outcome told = run("--errors json build none.obj --layres 2");
+    EXPECT_EQ(json::parse(told.err).at("option"), "--layres") << told.err;
     for (const std::string& command :
          {"build cube -o " + file("x.vdb"), std::string("inspect cube")})
         expect_refusal(command, ExitCode::read_error, {"cube: ", ".obj", ".bgeo.sc", ".vdb"});

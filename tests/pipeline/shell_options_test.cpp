@@ -89,6 +89,23 @@ TEST(ShellOptions, DefaultsAreSensible)
     EXPECT_EQ(options_json(options_from_json("{}")), options_json(ShellOptions{}));
 }
 
+TEST(ShellOptions, NoRuleForDiagonalsIsTakenWhereGrowthChoosesThem)
+{
+    ShellOptions options;
+    options.split.rule = SplitRule::vertex_index;
+    EXPECT_NO_THROW(require_sensible(options)) << "twelve tets";
+    options.grow.method = Method::thickest;
+    EXPECT_THROW(require_sensible(options), InvalidOption);
+    options.grow.method = Method::certified;
+    options.grow.prism_test = PrismTest::chosen_tets;
+    EXPECT_THROW(require_sensible(options), InvalidOption);
+    options.grow.method = Method::raw;
+    EXPECT_NO_THROW(require_sensible(options)) << "nothing grows";
+    options.grow.method = Method::thickest;
+    options.split.rule = SplitRule::length_descending;
+    EXPECT_NO_THROW(require_sensible(options));
+}
+
 TEST(ShellOptions, EveryValueOutOfRangeIsRefusedByFlagByKeyAndByField)
 {
     std::size_t bounds = 0;
@@ -189,8 +206,8 @@ TEST(ShellOptions, UnknownKeysAndWrongKindsAreNamed)
         }
         return "accepted";
     };
-    EXPECT_EQ(said(R"({"grow": {"metod": "raw"}})"), "a.json: grow.metod is no option");
-    EXPECT_EQ(said(R"({"grown": {}})"), "a.json: grown is no option");
+    EXPECT_EQ(said(R"({"grow": {"metod": "raw"}})"), "a.json: grow.metod is no option; near it: method");
+    EXPECT_EQ(said(R"({"grown": {}})"), "a.json: grown is no option; near it: grow");
     EXPECT_EQ(said(R"({"side": "up"})"),
               "a.json: side is up, must be one of inward, outward, both");
     EXPECT_EQ(said(R"({"grow": {"flips": 1}})"), "a.json: grow.flips is 1, must be true or false");
