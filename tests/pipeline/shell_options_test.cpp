@@ -206,7 +206,8 @@ TEST(ShellOptions, UnknownKeysAndWrongKindsAreNamed)
         }
         return "accepted";
     };
-    EXPECT_EQ(said(R"({"grow": {"metod": "raw"}})"), "a.json: grow.metod is no option; near it: method");
+    EXPECT_EQ(said(R"({"grow": {"metod": "raw"}})"),
+              "a.json: grow.metod is no option; near it: method");
     EXPECT_EQ(said(R"({"grown": {}})"), "a.json: grown is no option; near it: grow");
     EXPECT_EQ(said(R"({"side": "up"})"),
               "a.json: side is up, must be one of inward, outward, both");
