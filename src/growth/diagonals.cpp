@@ -175,21 +175,70 @@ std::optional<Seam> seam_from(const Connectivity& m, const FaceCorner& from)
     return std::nullopt;
 }
 
-/// Turns the seam's diagonal if fewer of its prisms' tets fail then, and no prism that was sound.
-bool turn_to_mend(GrowState& s, const Seam& seam)
+/// The orders of both prisms with the seam's diagonal turned, if fewer of their tets fail then, and
+/// no prism that was sound. Negative where not.
+std::array<int, 2> mending_orders(const GrowState& s, const Seam& seam)
 {
     const int f = seam.from.face, g = seam.across.face;
     const auto [f_order, g_order] = turned_orders(s, seam);
     if (f_order < 0 || g_order < 0)
-        return false;
+        return {-1, -1};
     const int f_before = failing_tets(s, f, s.order[f]), g_before = failing_tets(s, g, s.order[g]);
     const int f_after = failing_tets(s, f, f_order), g_after = failing_tets(s, g, g_order);
     if (f_after + g_after >= f_before + g_before || (f_before == 0 && f_after > 0) ||
         (g_before == 0 && g_after > 0))
-        return false;
-    s.order[f] = static_cast<std::uint8_t>(f_order);
-    s.order[g] = static_cast<std::uint8_t>(g_order);
-    return true;
+        return {-1, -1};
+    return {f_order, g_order};
+}
+
+/// The edges of some prisms, three of each, and whether they are to be looked at.
+struct EdgesToMend {
+    std::vector<int> faces; ///< ascending
+    std::vector<std::optional<Seam>> seam;
+    std::vector<std::uint8_t> look;
+
+    /// Those of the face, if it is one of these.
+    void look_at(int face)
+    {
+        const auto at = std::lower_bound(faces.begin(), faces.end(), face);
+        if (at != faces.end() && *at == face)
+            std::fill_n(look.begin() + 3 * (at - faces.begin()), 3, std::uint8_t(1));
+    }
+
+    /// What a changed order of the face bears on.
+    void look_around(const Connectivity& m, int face)
+    {
+        look_at(face);
+        for (int k = 0; k < 3; ++k)
+            if (const std::optional<Seam> beside = seam_from(m, {face, k}))
+                look_at(beside->across.face);
+    }
+};
+
+/// Of these faces, those whose tets are not all positive; their edges are looked at where turning
+/// the diagonal would mend something.
+EdgesToMend edges_to_mend(const GrowState& s, const std::vector<int>& faces)
+{
+    std::vector<std::uint8_t> fails(faces.size());
+    for_each_index(
+        fails.size(),
+        [&](std::size_t i) { fails[i] = !split_positive(s, faces[i], s.order[faces[i]]); }, 64);
+    EdgesToMend edges;
+    for (const int i : marked(fails))
+        edges.faces.push_back(faces[i]);
+    edges.seam.resize(3 * edges.faces.size());
+    edges.look.resize(edges.seam.size());
+    for_each_index(
+        edges.faces.size(),
+        [&](std::size_t i) {
+            for (int k = 0; k < 3; ++k) {
+                std::optional<Seam>& seam = edges.seam[3 * i + std::size_t(k)];
+                seam = seam_from(*s.mesh, {edges.faces[i], k});
+                edges.look[3 * i + std::size_t(k)] = seam && mending_orders(s, *seam)[0] >= 0;
+            }
+        },
+        64);
+    return edges;
 }
 
 /// The orders of both prisms with the seam's diagonal turned, if that is better: score(f, order) of
@@ -267,20 +316,29 @@ void order_by_length(GrowState& s)
 
 std::size_t flip_to_mend(GrowState& s, const std::vector<int>& faces)
 {
-    std::vector<std::uint8_t> fails(faces.size());
-    for_each_index(
-        fails.size(),
-        [&](std::size_t i) { fails[i] = !split_positive(s, faces[i], s.order[faces[i]]); }, 64);
-    const std::vector<int> failing = marked(fails);
+    EdgesToMend edges = edges_to_mend(s, faces);
     std::size_t total = 0, before = 0;
-    // Serial, since a turned diagonal changes what its neighbours may do, and few fail. Each flip
-    // leaves fewer failing tets, so passes end.
+    // Turning is serial, since a turned diagonal changes what its neighbours may do. An edge is
+    // looked at again only once one of its prisms has been turned. Each flip leaves fewer failing
+    // tets, so passes end.
     do {
         before = total;
-        for (const int i : failing)
-            for (int k = 0; k < 3; ++k)
-                if (const std::optional<Seam> seam = seam_from(*s.mesh, {faces[i], k}))
-                    total += turn_to_mend(s, *seam);
+        for (std::size_t i = 0; i < edges.look.size(); ++i) {
+            if (!edges.look[i])
+                continue;
+            edges.look[i] = 0;
+            if (!edges.seam[i])
+                continue;
+            const int f = edges.seam[i]->from.face, g = edges.seam[i]->across.face;
+            const auto [f_order, g_order] = mending_orders(s, *edges.seam[i]);
+            if (f_order < 0)
+                continue;
+            s.order[f] = static_cast<std::uint8_t>(f_order);
+            s.order[g] = static_cast<std::uint8_t>(g_order);
+            ++total;
+            edges.look_around(*s.mesh, f);
+            edges.look_around(*s.mesh, g);
+        }
     } while (total != before);
     return total;
 }

@@ -12,7 +12,7 @@ namespace vdb_shell::growth
 /// that does not pass it, some prisms may need another one.
 void order_by_length(GrowState& s);
 
-/// Turns diagonals of these faces, in their order, whose chosen tets are not all positive, as long
+/// Turns diagonals of these faces, which ascend, whose chosen tets are not all positive, as long
 /// as that makes fewer tets fail and no prism that was sound. Positions stay. For the three-tet
 /// test. Returns the number of flips.
 std::size_t flip_to_mend(GrowState& s, const std::vector<int>& faces);
