@@ -26,7 +26,6 @@
 #include "command/usd_command.h"
 #include "command/volumes_command.h"
 #include "options/option_json.h"
-#include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -154,7 +153,6 @@ struct Call::Parts {
     void add_file_commands();
     std::vector<CommandEntry> entries() const;
     Subcommand& given();
-    std::string told_unknown();
 };
 
 /// From a shell to volumes.
@@ -275,21 +273,6 @@ Subcommand& Call::Parts::given()
     throw std::logic_error("the parser wants a command");
 }
 
-/// The same. The parser lists words from the back.
-std::string Call::Parts::told_unknown()
-{
-    const Subcommand& command = given();
-    std::vector<std::string> flags{"--help"};
-    for (const BoundOptions* bound : {&command.bound, &std::as_const(global)})
-        for (const BoundOption& one : bound->options)
-            if (!one.option.flag.empty())
-                for (std::string& flag : flags_of(one.option))
-                    flags.push_back(std::move(flag));
-    std::vector<std::string> words = app.remaining(true);
-    std::reverse(words.begin(), words.end());
-    return command::told_unknown(words, command.app->get_name(), flags);
-}
-
 std::vector<std::string> words_of(const std::vector<std::string>& given)
 {
     std::vector<std::string> words;
@@ -344,14 +327,15 @@ void Call::parse(const std::vector<std::string>& words)
         // The parser asks for a command before it asks what the words are.
         if (!parts_->app.get_subcommands().empty() || unknown.empty())
             throw;
-        const bool is_flag = unknown.front().rfind('-', 0) == 0;
-        throw CLI::ExtrasError(shown_in_part(unknown.front()) +
-                                   (is_flag
-                                        ? " is no option of every command, and no command is given"
-                                        : " is no command"),
+        throw CLI::ExtrasError(told_no_command(unknown.front(), parts_->entries()),
                                CLI::ExitCodes::ExtrasError);
     } catch (const CLI::ExtrasError&) {
-        throw CLI::ExtrasError(parts_->told_unknown(), CLI::ExitCodes::ExtrasError);
+        std::vector<std::string> unknown = parts_->app.remaining(true);
+        // The parser lists them from the back.
+        std::reverse(unknown.begin(), unknown.end());
+        throw CLI::ExtrasError(
+            told_unknown(unknown, parts_->given().app->get_name(), parts_->entries()),
+            CLI::ExitCodes::ExtrasError);
     }
     apply(parts_->global);
 }

@@ -9,10 +9,42 @@
 
 namespace vdb_shell::command
 {
+namespace
+{
+
+/// By which options can be given to the command, those of every command with them.
+std::vector<std::string> all_flags(const std::string& command,
+                                   const std::vector<CommandEntry>& commands)
+{
+    std::vector<std::string> all{"--help"};
+    for (const CommandEntry& entry : commands) {
+        if (entry.name != command && !entry.name.empty())
+            continue;
+        for (const BoundOption& bound : entry.bound->options)
+            if (!bound.option.flag.empty())
+                for (std::string& flag : flags_of(bound.option))
+                    all.push_back(std::move(flag));
+    }
+    return all;
+}
+
+} // namespace
+
+std::string told_no_command(const std::string& word, const std::vector<CommandEntry>& commands)
+{
+    if (word.rfind('-', 0) == 0)
+        return shown_in_part(word) + " is no option of every command, and no command is given";
+    std::vector<std::string> names;
+    for (const CommandEntry& command : commands)
+        if (!command.name.empty())
+            names.push_back(command.name);
+    return shown_in_part(word) + " is no command" + hint_of_near(word, names);
+}
 
 std::string told_unknown(const std::vector<std::string>& words, const std::string& command,
-                         const std::vector<std::string>& flags)
+                         const std::vector<CommandEntry>& commands)
 {
+    const std::vector<std::string> flags = all_flags(command, commands);
     // A flag may have its value behind an =.
     const auto flag_in = [](const std::string& word) { return word.substr(0, word.find('=')); };
     const auto exists = [&](const std::string& word) {

@@ -263,6 +263,7 @@ TEST_F(Options, UnknownWordsAreNamed)
         EXPECT_EQ(result.status, ExitCode::usage_error);
         EXPECT_EQ(result.err.rfind("bogus is no command\n", 0), 0u) << result.err;
     }
+    expect_no_call("bild cube.obj", {"bild is no command; near it: build\n"});
     // The option before what may be its value, with those that may be meant; and nothing is read.
     expect_no_call("build --resolutoin 5 none.obj",
                    {"--resolutoin is no option of build; near it: --resolution\n"});
