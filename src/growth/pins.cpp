@@ -162,11 +162,13 @@ std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& 
     return pins;
 }
 
-// What is released changes pillars beside it, and turning one of them shortens those beside that:
-// from the vertices around a pin so far as this. There are some hundred vertices within it; where
-// there are many more, triangles crowd around one of them, and all that follows would take the
-// square of their number.
-constexpr int kReach = 4;
+// A release changes pillars up to two edges away: those beside the pin, and where one of these is
+// turned, those beside that. Their triangles reach one edge farther.
+constexpr int kChangedByRelease = 3;
+// Those beside a pin are released as well. There are some hundred vertices within so many edges;
+// where there are many more, triangles crowd around one of them, and all that follows would take
+// the square of their number.
+constexpr int kReach = kChangedByRelease + 1;
 constexpr std::size_t kMostWithinReach = 2000;
 
 // Under the three-tet test halving a pillar can make prisms beside it fail, so that theirs have to
@@ -230,11 +232,12 @@ Vec3d halved_arm(const GrowState& s, int u)
 /// Makes these prisms pass the twelve-tet test, under the three-tet test: of those that fail all
 /// pillars are halved together, for single ones could not be, none but those of the vertices
 /// `around`. As pillars see their triangles then, that ends, since the two ends of a short prism
-/// are nearly alike. What is as short as a rounding becomes one of the `pins`. False where a pillar
-/// beyond `around` would have to be halved. Precondition: the boxes of the inner tree hold what may
-/// be changed.
+/// are nearly alike. What is as short as a rounding becomes one of the `pins`, but only of the
+/// vertices `near`. False where another pillar would have to be halved or taken away. Precondition:
+/// the boxes of the inner tree hold what may be changed.
 bool shorten_to_twelve_tets(GrowState& s, const std::vector<int>& prisms,
-                            const std::vector<int>& around, std::vector<PillarEnd>& pins)
+                            const std::vector<int>& around, const std::vector<int>& near,
+                            std::vector<PillarEnd>& pins)
 {
     constexpr int kRounds = 24; // a float has no more bits to lose
     const auto passes = [&](int f) {
@@ -254,9 +257,10 @@ bool shorten_to_twelve_tets(GrowState& s, const std::vector<int>& prisms,
                     shortened.push_back(u);
         sort_unique(shortened);
         for (const int u : shortened) {
-            if (!std::binary_search(around.begin(), around.end(), u))
-                return false;
             const Vec3d end = rounded(s.a[u] + halved_arm(s, u));
+            const std::vector<int>& allowed = end == s.a[u] ? near : around;
+            if (!std::binary_search(allowed.begin(), allowed.end(), u))
+                return false;
             if (end == s.a[u])
                 pins.push_back({u, s.b[u]});
             put(s, {u, end});
@@ -293,11 +297,11 @@ bool release_in_turn(GrowState& s, std::vector<PillarEnd> pins, double longest,
     });
 }
 
-/// Gives v a pillar while those beside it have none that see their triangles better, and then these
-/// theirs. Under the three-tet
-/// test another pillar can stand in the way even then: with `twelve_within`, prisms so many edges
-/// around are made to pass the twelve-tet test before, and stay so. False, with nothing changed,
-/// where one of them has none in the end. Precondition: BoxTree::index_parents.
+/// Takes their pillars from v and those beside it, and gives all of them one in turn. Under the
+/// three-tet test another pillar can stand in the way even then: with `twelve_within`, prisms so
+/// many edges around are made to pass the twelve-tet test before, and stay so. Nothing farther from
+/// v than `reach` edges changes. False, with nothing changed, where one of them has none in the
+/// end. Precondition: BoxTree::index_parents.
 bool release_before_others(GrowState& s, int v, const std::vector<double>& visibility,
                            int reach = kReach, std::optional<int> twelve_within = std::nullopt)
 {
@@ -319,7 +323,8 @@ bool release_before_others(GrowState& s, int v, const std::vector<double>& visib
     if (!twelve_within) {
         done = release_in_turn(s, pins, longest, visibility);
     } else if (shorten_to_twelve_tets(s, faces_at(*s.mesh, vertices_around(s, v, *twelve_within)),
-                                      around, pins)) {
+                                      around, vertices_around(s, v, reach - kChangedByRelease),
+                                      pins)) {
         // Whatever passes this test passes the other.
         s.twelve = true;
         done = release_in_turn(s, pins, longest, visibility);
