@@ -22,7 +22,10 @@ enum class Method {
     raw,       ///< the lengths of line stepping as they are (the paper): overlaps are reported, not
                ///< prevented
     certified, ///< grown from a valid start, which passes GrowOptions::prism_test throughout
-    thickest,  ///< thicker, for more time: grown on under the three-tet test until it is .998 full
+    thickest,  ///< thicker, for more time: grown on under the three-tet test until it is .998 full;
+               ///< a small surface (no coarser ones) that is not .99 full then, and whose thickness
+               ///< nothing bounds, is grown under that test from the beginning too, and the fuller
+               ///< of the two shells is taken
 };
 const NameTable<Method>& names(Method);
 
