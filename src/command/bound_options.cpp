@@ -297,6 +297,18 @@ std::vector<std::string> flags_of(const Option& option)
     return flags;
 }
 
+std::vector<std::string> flags_of(const BoundOptions& bound)
+{
+    std::vector<std::string> all;
+    for (const BoundOption& one : bound.options) {
+        if (one.option.flag.empty())
+            continue;
+        const std::vector<std::string> flags = flags_of(one.option);
+        all.insert(all.end(), flags.begin(), flags.end());
+    }
+    return all;
+}
+
 BoundOptions bind(CLI::App& app, OptionSections sections)
 {
     BoundOptions bound;

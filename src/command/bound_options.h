@@ -35,6 +35,8 @@ struct BoundOptions {
 /// All words by which the option can be given, the negation of a flag and the shorthand with them.
 /// Precondition: it has a flag.
 std::vector<std::string> flags_of(const Option& option);
+/// Those of all that have a flag, in their order.
+std::vector<std::string> flags_of(const BoundOptions& bound);
 
 /// Adds a flag for every option that has one, group by group, with help made of the descriptions.
 /// The fields must still have their defaults; parsing does not change them, apply() does.

@@ -48,10 +48,8 @@ void write_values(std::ostream& out, const CommandEntry& command)
 
 void write_flags(std::ostream& out, const CommandEntry& command)
 {
-    for (const BoundOption& bound : command.bound->options)
-        if (!bound.option.flag.empty())
-            for (const std::string& flag : flags_of(bound.option))
-                out << ' ' << flag;
+    for (const std::string& flag : flags_of(*command.bound))
+        out << ' ' << flag;
 }
 
 /// What stands beside every command may be given behind it too.

@@ -20,10 +20,8 @@ std::vector<std::string> all_flags(const std::string& command,
     for (const CommandEntry& entry : commands) {
         if (entry.name != command && !entry.name.empty())
             continue;
-        for (const BoundOption& bound : entry.bound->options)
-            if (!bound.option.flag.empty())
-                for (std::string& flag : flags_of(bound.option))
-                    all.push_back(std::move(flag));
+        const std::vector<std::string> flags = flags_of(*entry.bound);
+        all.insert(all.end(), flags.begin(), flags.end());
     }
     return all;
 }

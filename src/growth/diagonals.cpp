@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace vdb_shell::growth
 {
@@ -164,6 +165,12 @@ std::array<int, 2> turned_orders(const GrowState& s, const Seam& seam)
             exchanged(s.order[seam.across.face], seam.across.local, (seam.across.local + 2) % 3)};
 }
 
+void set_orders(GrowState& s, const Seam& seam, const std::array<int, 2>& orders)
+{
+    s.order[seam.from.face] = static_cast<std::uint8_t>(orders[0]);
+    s.order[seam.across.face] = static_cast<std::uint8_t>(orders[1]);
+}
+
 /// The seam along the edge from that corner of its face to the next; none where there is no face
 /// across.
 std::optional<Seam> seam_from(const Connectivity& m, const FaceCorner& from)
@@ -278,11 +285,11 @@ std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join
             // Scores have not changed since it was looked at, unless one of its prisms has turned.
             look[i] = 0;
             const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
-            const auto [f_order, g_order] = better_orders(s, seams.seam[i], score, join);
-            if (f_order < 0 || !split_positive(s, f, f_order) || !split_positive(s, g, g_order))
+            const std::array<int, 2> orders = better_orders(s, seams.seam[i], score, join);
+            if (orders[0] < 0 || !split_positive(s, f, orders[0]) ||
+                !split_positive(s, g, orders[1]))
                 continue;
-            s.order[f] = static_cast<std::uint8_t>(f_order);
-            s.order[g] = static_cast<std::uint8_t>(g_order);
+            set_orders(s, seams.seam[i], orders);
             ++total;
             for (const int face : {f, g})
                 for (const int other : seams.of_face[face])
@@ -324,20 +331,16 @@ std::size_t flip_to_mend(GrowState& s, const std::vector<int>& faces)
     do {
         before = total;
         for (std::size_t i = 0; i < edges.look.size(); ++i) {
-            if (!edges.look[i])
+            const std::optional<Seam>& seam = edges.seam[i];
+            if (!std::exchange(edges.look[i], std::uint8_t(0)) || !seam)
                 continue;
-            edges.look[i] = 0;
-            if (!edges.seam[i])
+            const std::array<int, 2> orders = mending_orders(s, *seam);
+            if (orders[0] < 0)
                 continue;
-            const int f = edges.seam[i]->from.face, g = edges.seam[i]->across.face;
-            const auto [f_order, g_order] = mending_orders(s, *edges.seam[i]);
-            if (f_order < 0)
-                continue;
-            s.order[f] = static_cast<std::uint8_t>(f_order);
-            s.order[g] = static_cast<std::uint8_t>(g_order);
+            set_orders(s, *seam, orders);
             ++total;
-            edges.look_around(*s.mesh, f);
-            edges.look_around(*s.mesh, g);
+            edges.look_around(*s.mesh, seam->from.face);
+            edges.look_around(*s.mesh, seam->across.face);
         }
     } while (total != before);
     return total;

@@ -140,20 +140,14 @@ bool take_more_care(const Connectivity& connectivity, const std::vector<std::uin
     return true;
 }
 
-/// A shell, and the share of the solid that it fills.
-struct Attempt {
-    GrowResult result;
-    double fill = 0;
-};
-
-Attempt grow_once(const Ordered& given, const Connectivity& connectivity,
-                  const std::vector<double>& cap, const GrowOptions& options,
-                  const SplitOptions& split, const StageProgress& progress)
+/// One attempt at the shell.
+GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
+                     const std::vector<double>& cap, const GrowOptions& options,
+                     const SplitOptions& split, const StageProgress& progress)
 {
     const TriangleMesh& mesh = given.mesh;
     GrowState s = make_state(connectivity, mesh.points, cap, options.schedule);
-    Attempt attempt;
-    GrowResult& result = attempt.result;
+    GrowResult result;
     GrowReport& report = result.report;
     // Percent. From levels on it is mostly the start that takes time, else the rounds.
     const double started_at = given.begins_on_levels() ? 60 : 20, relaxed_at = 90;
@@ -175,8 +169,7 @@ Attempt grow_once(const Ordered& given, const Connectivity& connectivity,
     result.shell = shell_of(mesh, s);
     result.shell.stop = std::move(improved.stop);
     result.split = std::move(improved.split);
-    attempt.fill = fill_of(s);
-    return attempt;
+    return result;
 }
 
 /// Whether three tets a prism from the beginning are worth an attempt, beside Method::thickest's
@@ -185,28 +178,32 @@ Attempt grow_once(const Ordered& given, const Connectivity& connectivity,
 /// whose triangles are nearly flat: .94 of the solid instead of .998). Of 27 small surfaces those
 /// that gain more than .001 are less than .99 full.
 bool three_tets_may_be_fuller(const Ordered& given, const std::vector<double>& cap,
-                              const GrowOptions& options, double fill)
+                              const GrowOptions& options)
 {
-    constexpr double kNearlyFull = 0.99;
     return options.method == Method::thickest && given.start.from != GrowFrom::shell &&
-           !given.begins_on_levels() && fill < kNearlyFull &&
+           !given.begins_on_levels() &&
            // A bound on the thickness leaves a void by itself.
            std::all_of(cap.begin(), cap.end(), [](double c) { return !std::isfinite(c); });
 }
 
 /// The fuller of the attempts that the options ask for.
-Attempt grow_fullest(const Ordered& given, const Connectivity& connectivity,
-                     const std::vector<double>& cap, const GrowOptions& options,
-                     const SplitOptions& split, const StageProgress& progress)
+GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
+                        const std::vector<double>& cap, const GrowOptions& options,
+                        const SplitOptions& split, const StageProgress& progress)
 {
-    Attempt first = grow_once(given, connectivity, cap, options, split, progress);
-    if (!three_tets_may_be_fuller(given, cap, options, first.fill))
+    constexpr double kNearlyFull = 0.99;
+    const auto fill = [&](const GrowResult& grown) {
+        return 1 - signed_volume(grown.shell.inner, given.mesh.triangles) /
+                       signed_volume(grown.shell.outer, given.mesh.triangles);
+    };
+    GrowResult first = grow_once(given, connectivity, cap, options, split, progress);
+    if (!three_tets_may_be_fuller(given, cap, options) || fill(first) >= kNearlyFull)
         return first;
     GrowOptions three = options;
     three.method = Method::certified;
     three.prism_test = PrismTest::chosen_tets;
-    Attempt second = grow_once(given, connectivity, cap, three, split, progress);
-    return second.fill > first.fill ? second : first;
+    GrowResult second = grow_once(given, connectivity, cap, three, split, progress);
+    return fill(second) > fill(first) ? second : first;
 }
 
 /// The shell, in the order that the mesh is given in.
@@ -217,7 +214,7 @@ GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOpti
     const TriangleMesh& mesh = given.mesh;
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     while (true) {
-        GrowResult result = grow_fullest(given, connectivity, cap, options, split, progress).result;
+        GrowResult result = grow_fullest(given, connectivity, cap, options, split, progress);
         const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
         const bool any = std::find(turned.begin(), turned.end(), 1) != turned.end();
         // A component that crosses itself encloses as much of either sign as it likes.

@@ -41,9 +41,8 @@ std::vector<Vec3d> points_around(const Vec3d& x)
     return points;
 }
 
-} // namespace
-
-View best_view(const GrowState& s, int v)
+/// With the ends of the pillars beside v where they are, or all of them at the surface.
+View view_of(const GrowState& s, int v, bool with_pillars)
 {
     View view;
     std::vector<Vec3d> normals;
@@ -52,6 +51,8 @@ View best_view(const GrowState& s, int v)
         const int k = s.mesh->corner(at.face, (at.local + 2) % 3);
         for (const int inner_j : {-1, j})
             for (const int inner_k : {-1, k}) {
+                if (!with_pillars && (inner_j >= 0 || inner_k >= 0))
+                    continue;
                 const Vec3d& p = inner_j < 0 ? s.a[j] : s.b[j];
                 const Vec3d& q = inner_k < 0 ? s.a[k] : s.b[k];
                 const Vec3d n = (q - s.a[v]).cross(p - s.a[v]);
@@ -64,6 +65,18 @@ View best_view(const GrowState& s, int v)
     view.direction = most_visible(normals);
     view.least = view.direction.lengthSqr() > 0 ? smallest_dot(normals, view.direction) : 0;
     return view;
+}
+
+} // namespace
+
+View best_view(const GrowState& s, int v)
+{
+    return view_of(s, v, true);
+}
+
+View view_of_surface(const GrowState& s, int v)
+{
+    return view_of(s, v, false);
 }
 
 PillarsAround::PillarsAround(GrowState& s, int v, const std::vector<double>& visibility,

@@ -26,6 +26,9 @@ struct View {
 /// of these tets is positive on one side of a plane through a_v, whatever the pillar's length.
 View best_view(const GrowState& s, int v);
 
+/// The same with no pillar beside v: of the surface's own triangles.
+View view_of_surface(const GrowState& s, int v);
+
 /// The cosine that a view has to reach for nothing around the vertex to be shortened.
 inline double clear_view(const GrowState& s, double visibility)
 {

@@ -14,7 +14,6 @@
 #include "growth/other_components.h"
 #include "growth/pillars_around_pin.h"
 #include "growth/trust_radius.h"
-#include "mesh/most_visible.h"
 
 #include <algorithm>
 #include <array>
@@ -217,16 +216,11 @@ void put(GrowState& s, const PillarEnd& p)
 /// three-tet test need not, in the direction that sees them best.
 Vec3d halved_arm(const GrowState& s, int u)
 {
-    std::vector<Vec3d> normals;
-    for (const FaceCorner& at : star(*s.mesh, u)) {
-        const Vec3d& p = s.a[s.mesh->corner(at.face, (at.local + 1) % 3)];
-        const Vec3d& q = s.a[s.mesh->corner(at.face, (at.local + 2) % 3)];
-        const Vec3d n = (q - s.a[u]).cross(p - s.a[u]);
-        if (n.lengthSqr() > 0)
-            normals.push_back(n / n.length());
-    }
     const Vec3d arm = 0.5 * (s.b[u] - s.a[u]);
-    return smallest_dot(normals, arm) > 0 ? arm : arm.length() * most_visible(normals);
+    const View view = view_of_surface(s, u);
+    const bool sees = std::all_of(view.bounds.begin(), view.bounds.end(),
+                                  [&](const Bound& bound) { return bound.normal.dot(arm) > 0; });
+    return sees ? arm : arm.length() * view.direction;
 }
 
 /// Makes these prisms pass the twelve-tet test, under the three-tet test: of those that fail all
