@@ -12,6 +12,7 @@
 
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "growth/attempts.h"
 #include "growth/improve.h"
 #include "growth/initialise.h"
 #include "growth/lengthen_lines.h"
@@ -27,7 +28,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <utility>
 
 namespace vdb_shell
@@ -52,17 +52,39 @@ struct Ordered {
     const std::vector<Vec3s>& inner; ///< GrowStart::inner
     const GrowStart& start;          ///< but for the inner points
     const MeshOrder& order;
-
-    bool begins_on_levels() const
-    {
-        return start.from == GrowFrom::levels && !start.levels.empty();
-    }
 };
 
-Started start_growth(GrowState& s, const Ordered& given, const GrowOptions& options,
+/// The lines to where the inner points are.
+Directions own_lines(const TriangleMesh& mesh, const GrowState& s, Directions lines)
+{
+    return pillars_to(mesh, shell_of(mesh, s).inner, std::move(lines)).lines;
+}
+
+/// Puts a start from mended lines in place of one from levels if it is the fuller one: beside
+/// needles a prolonged shell loses most of what it has. Which start rounds get farther from is
+/// another question, which attempts answer where they can be afforded.
+void take_mended_if_fuller(GrowState& s, const Ordered& given, const GrowOptions& options,
+                           const StageProgress& progress, Started& started)
+{
+    const double fill = fill_of(s);
+    if (fill >= options.schedule.lines.nearly_full || !s.bounded || bounds_thickness(s.cap) ||
+        !too_large_for_attempts(given.mesh.triangles.size(), options))
+        return;
+    GrowState other = make_state(*s.mesh, given.mesh.points, s.cap, s.schedule);
+    Directions lines = prepare_directions(given.mesh, given.directions, options, true);
+    start_from_lines(other, lines, given.stepped, LineStart::mended, options, progress);
+    if (fill_of(other) <= fill)
+        return;
+    s = std::move(other);
+    started.lines = own_lines(given.mesh, s, std::move(lines));
+    started.predicted_gain.clear();
+}
+
+Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
                      const StageProgress& progress, GrowReport& report)
 {
-    const bool on_levels = given.begins_on_levels();
+    const GrowOptions& options = attempt.options;
+    const bool on_levels = attempt.from == GrowFrom::levels;
     // Smoothing pays where the start is along the lines, not where they are only fallen back on.
     Started started{StartedFrom::lines,
                     prepare_directions(given.mesh, given.directions, options, !on_levels),
@@ -72,13 +94,16 @@ Started start_growth(GrowState& s, const Ordered& given, const GrowOptions& opti
         started.predicted_gain =
             start_from_levels(s, given.mesh, started.lines, given.stepped, given.start.levels,
                               given.order, options, progress, report);
-    } else if (given.start.from == GrowFrom::shell) {
+        take_mended_if_fuller(s, given, options, progress, started);
+    } else if (attempt.from == GrowFrom::shell) {
         s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
         const Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
         mend_prolonged(s, pillars.lines, pillars.length, progress);
-        started.lines = pillars_to(given.mesh, shell_of(given.mesh, s).inner, pillars.lines).lines;
+        started.lines = own_lines(given.mesh, s, pillars.lines);
     } else {
-        start_from_lines(s, started.lines, given.stepped, options, progress);
+        start_from_lines(s, started.lines, given.stepped, attempt.start, options, progress);
+        if (attempt.start == LineStart::mended)
+            started.lines = own_lines(given.mesh, s, std::move(started.lines));
     }
     return started;
 }
@@ -142,16 +167,17 @@ bool take_more_care(const Connectivity& connectivity, const std::vector<std::uin
 
 /// One attempt at the shell.
 GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
-                     const std::vector<double>& cap, const GrowOptions& options,
+                     const std::vector<double>& cap, const Attempt& attempt,
                      const SplitOptions& split, const StageProgress& progress)
 {
     const TriangleMesh& mesh = given.mesh;
+    const GrowOptions& options = attempt.options;
     GrowState s = make_state(connectivity, mesh.points, cap, options.schedule);
     GrowResult result;
     GrowReport& report = result.report;
     // Percent. From levels on it is mostly the start that takes time, else the rounds.
-    const double started_at = given.begins_on_levels() ? 60 : 20, relaxed_at = 90;
-    Started started = start_growth(s, given, options, progress.part(0, started_at), report);
+    const double started_at = attempt.from == GrowFrom::levels ? 60 : 20, relaxed_at = 90;
+    Started started = start_growth(s, given, attempt, progress.part(0, started_at), report);
     report.released += static_cast<std::size_t>(
         release_pins(s, started.lines.visibility, PillarsBesidePin::turned));
     // A prolonged shell has left the lines.
@@ -172,38 +198,46 @@ GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
     return result;
 }
 
-/// Whether three tets a prism from the beginning are worth an attempt, beside Method::thickest's
-/// way from lines, which has twelve first. That way is the fuller one on most surfaces, but beside
-/// needles and between flat walls the twelve lead into a corner (a cube without an eighth, two of
-/// whose triangles are nearly flat: .94 of the solid instead of .998). Of 27 small surfaces those
-/// that gain more than .001 are less than .99 full.
-bool three_tets_may_be_fuller(const Ordered& given, const std::vector<double>& cap,
-                              const GrowOptions& options)
+double fill_of(const PrismShell& shell)
 {
-    return options.method == Method::thickest && given.start.from != GrowFrom::shell &&
-           !given.begins_on_levels() &&
-           // A bound on the thickness leaves a void by itself.
-           std::all_of(cap.begin(), cap.end(), [](double c) { return !std::isfinite(c); });
+    return 1 - signed_volume(shell.inner, shell.triangles) /
+                   signed_volume(shell.outer, shell.triangles);
 }
 
-/// The fuller of the attempts that the options ask for.
+std::ptrdiff_t pins_of(const PrismShell& shell)
+{
+    return std::count(shell.stop.begin(), shell.stop.end(), StopReason::pinned);
+}
+
+bool any_turned(const Connectivity& connectivity, const PrismShell& shell)
+{
+    const std::vector<std::uint8_t> turned = turned_components(connectivity, shell);
+    return std::find(turned.begin(), turned.end(), 1) != turned.end();
+}
+
+/// The shell of the first attempt, and where that is not full enough the fullest of all.
 GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
                         const std::vector<double>& cap, const GrowOptions& options,
                         const SplitOptions& split, const StageProgress& progress)
 {
-    constexpr double kNearlyFull = 0.99;
-    const auto fill = [&](const GrowResult& grown) {
-        return 1 - signed_volume(grown.shell.inner, given.mesh.triangles) /
-                       signed_volume(grown.shell.outer, given.mesh.triangles);
-    };
-    GrowResult first = grow_once(given, connectivity, cap, options, split, progress);
-    if (!three_tets_may_be_fuller(given, cap, options) || fill(first) >= kNearlyFull)
-        return first;
-    GrowOptions three = options;
-    three.method = Method::certified;
-    three.prism_test = PrismTest::chosen_tets;
-    GrowResult second = grow_once(given, connectivity, cap, three, split, progress);
-    return fill(second) > fill(first) ? second : first;
+    const std::vector<Attempt> attempts =
+        attempts_of(given.start, given.mesh.triangles.size(), options);
+    GrowResult fullest = grow_once(given, connectivity, cap, attempts.front(), split, progress);
+    // Such a bound leaves a void by itself.
+    if (bounds_thickness(cap))
+        return fullest;
+    double most = fill_of(fullest.shell);
+    for (std::size_t i = 1; i < attempts.size() && most < enough_for(attempts.front()); ++i) {
+        GrowResult other = grow_once(given, connectivity, cap, attempts[i], split, progress);
+        const double fill = fill_of(other.shell);
+        // A pin costs more than the volume around it: prisms, and all that needs their pillars.
+        if (fill <= most || pins_of(other.shell) > pins_of(fullest.shell) ||
+            any_turned(connectivity, other.shell))
+            continue;
+        most = fill;
+        fullest = std::move(other);
+    }
+    return fullest;
 }
 
 /// The shell, in the order that the mesh is given in.

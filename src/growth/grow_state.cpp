@@ -149,6 +149,11 @@ double fill_of(const GrowState& s)
     return s.bounded ? 1 - ratio : ratio - 1;
 }
 
+bool bounds_thickness(const std::vector<double>& cap)
+{
+    return std::any_of(cap.begin(), cap.end(), [](double c) { return c > 0 && std::isfinite(c); });
+}
+
 std::vector<FloatBox> inner_boxes(const GrowState& s)
 {
     std::vector<FloatBox> boxes(s.mesh->faces.size());

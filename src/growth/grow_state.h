@@ -119,6 +119,8 @@ double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces);
 Vec3d inner_volume6_gradient(const GrowState& s, int v);
 /// What lies between the surfaces over what the outer one encloses, whichever side it lies on.
 double fill_of(const GrowState& s);
+/// Whether one of these is the user's thickness: neither infinite nor the 0 of a core's vertices.
+bool bounds_thickness(const std::vector<double>& cap);
 
 /// By face, the box of its inner triangle as it is.
 std::vector<FloatBox> inner_boxes(const GrowState& s);

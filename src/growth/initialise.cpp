@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/triangle_piece.h"
 #include "growth/line_directions.h"
+#include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
 #include "growth/ray_hit.h"
@@ -145,11 +146,17 @@ void shrink_until_valid(GrowState& s, const Directions& directions, std::vector<
 }
 
 void start_from_lines(GrowState& s, const Directions& directions,
-                      const std::vector<double>& stepped, const GrowOptions& options,
-                      const StageProgress& progress)
+                      const std::vector<double>& stepped, LineStart start,
+                      const GrowOptions& options, const StageProgress& progress)
 {
+    if (start == LineStart::mended) {
+        // Its pins are few and have room around them, so that growth can release most.
+        s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
+        mend_prolonged(s, directions, first_lengths(s, directions, stepped), progress);
+        return;
+    }
     const std::vector<double> thin = thin_heights(s);
-    if (options.top_down) {
+    if (start == LineStart::shrunk) {
         shrink_until_valid(s, directions, first_lengths(s, directions, stepped), progress);
         if (count_pins(s) == 0)
             return;
@@ -160,7 +167,7 @@ void start_from_lines(GrowState& s, const Directions& directions,
     const std::vector<std::uint8_t> long_pinned = s.pinned;
     const std::ptrdiff_t long_pins = count_pins(s);
     shrink_until_valid(s, directions, thin, progress);
-    if (!options.top_down || count_pins(s) < long_pins)
+    if (start == LineStart::thin || count_pins(s) < long_pins)
         return;
     s.b = long_b;
     s.pinned = long_pinned;

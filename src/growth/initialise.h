@@ -30,11 +30,20 @@ std::vector<double> thin_heights(const GrowState& s);
 void shrink_until_valid(GrowState& s, const Directions& directions, std::vector<double> length,
                         const StageProgress& progress);
 
-/// A valid start along lines: from long lines that are shrunk until they are valid, or a thin one
-/// where that pins fewer vertices or options.top_down is off. `stepped` has the lengths of line
-/// stepping.
+/// What becomes of pillars along lines that are not valid together.
+enum class LineStart {
+    shrunk, ///< long ones; those of prisms that fail are shortened until none fails, so that rounds
+            ///< begin with room on all sides
+    mended, ///< long ones, mended as prolonged ones are (mend_prolonged.h): inner points leave
+            ///< their lines, which beside needles is the only way not to lose most of a pillar
+    thin,   ///< short ones
+};
+
+/// A valid start along lines; in place of a shrunk one a thin one where that pins fewer vertices.
+/// `stepped` has the lengths of line stepping. A mended start is made under the test that the shell
+/// is to pass in the end, the others under the twelve-tet test.
 void start_from_lines(GrowState& s, const Directions& directions,
-                      const std::vector<double>& stepped, const GrowOptions& options,
-                      const StageProgress& progress);
+                      const std::vector<double>& stepped, LineStart start,
+                      const GrowOptions& options, const StageProgress& progress);
 
 } // namespace vdb_shell::growth

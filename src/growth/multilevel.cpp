@@ -130,11 +130,16 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
     return lost;
 }
 
-/// Grows on one level, from what start(state, lines) makes a valid shell. Gives back its inner
-/// points, which growth has not finished.
+/// What has been grown on a level.
+struct LevelShell {
+    std::vector<Vec3d> inner; ///< which growth has not finished
+    double fill;
+};
+
+/// Grows on one level, from what start(state, lines) makes a valid shell.
 template <class Start>
-std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<double>& cap,
-                                 StartedFrom from, const LevelJob& job, const Start& start)
+LevelShell grow_on_level(const TriangleMesh& mesh, const std::vector<double>& cap, StartedFrom from,
+                         const LevelJob& job, const Start& start)
 {
     const Directions lines = lines_of_level(mesh, job.options, from);
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
@@ -152,8 +157,31 @@ std::vector<Vec3d> grow_on_level(const TriangleMesh& mesh, const std::vector<dou
         test_three_tets(s);
         rounds();
     }
+    const double fill = fill_of(s);
     lift_pins(s);
-    return std::move(s.b);
+    return {std::move(s.b), fill};
+}
+
+/// Grows on the coarsest level: from lines, and once more from mended ones where that leads into a
+/// corner, as it does beside needles.
+std::vector<Vec3d> grow_coarsest(const TriangleMesh& mesh, const std::vector<double>& cap,
+                                 const std::vector<double>& stepped, const LevelJob& job)
+{
+    const auto grown_from = [&](LineStart start) {
+        return grow_on_level(mesh, cap, StartedFrom::lines, job,
+                             [&](GrowState& s, const Directions& lines, GrowReport&) {
+                                 start_from_lines(s, lines, stepped, start, job.options,
+                                                  job.progress);
+                             });
+    };
+    LevelShell fullest = grown_from(LineStart::shrunk);
+    if (fullest.fill < job.options.schedule.lines.nearly_full && !bounds_thickness(cap)) {
+        LevelShell mended = grown_from(LineStart::mended);
+        // More than the whole is what a surface encloses that has turned inside out.
+        if (mended.fill > fullest.fill && mended.fill <= 1)
+            fullest = std::move(mended);
+    }
+    return std::move(fullest.inner);
 }
 
 /// On coarser surfaces too, rounds around a crowd would take the square of it.
@@ -196,12 +224,8 @@ std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
             vertices = values_at(place, vertices);
     }
     const LevelJob coarsest = job_of(0, ends[levels.size() - 1]);
-    std::vector<Vec3d> inner =
-        grow_on_level(levels.back().mesh, values_at(s.cap, from.back()), StartedFrom::lines,
-                      coarsest, [&](GrowState& level, const Directions& own_lines, GrowReport&) {
-                          start_from_lines(level, own_lines, values_at(stepped, from.back()),
-                                           options, coarsest.progress);
-                      });
+    std::vector<Vec3d> inner = grow_coarsest(levels.back().mesh, values_at(s.cap, from.back()),
+                                             values_at(stepped, from.back()), coarsest);
     for (std::size_t i = levels.size() - 1; i-- > 0;) {
         const LevelJob job = job_of(ends[i + 1], ends[i]);
         inner =
@@ -209,7 +233,8 @@ std::vector<double> start_from_levels(GrowState& s, const TriangleMesh& mesh,
                           [&](GrowState& level, const Directions& own_lines, GrowReport& of_level) {
                               start_from_coarser(level, levels[i].mesh, own_lines,
                                                  levels[i + 1].mesh, inner, job, of_level);
-                          });
+                          })
+                .inner;
     }
     return start_from_coarser(s, mesh, lines, levels.front().mesh, inner, job_of(ends[0], 100),
                               report);

@@ -8,7 +8,6 @@
 #include "growth/relax_options.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace vdb_shell::growth
@@ -63,18 +62,12 @@ double active_gain(const GrowState& s, StartedFrom from, const GrowOptions& opti
     return asks_for_more(options) ? 0 : active.gain_of_all / s.mesh->vertices;
 }
 
-/// Vertices of cores have a cap of 0.
-bool bounds_thickness(double cap)
-{
-    return cap > 0 && std::isfinite(cap);
-}
-
 /// Rounds go on until the shell is as full as the schedule wants it.
 void want_more(const GrowState& s, RelaxOptions& relax)
 {
     // In an unbounded side there is no void to go by, and where the user bounds the thickness most
     // of it is meant to stay.
-    if (!s.bounded || std::any_of(s.cap.begin(), s.cap.end(), bounds_thickness))
+    if (!s.bounded || bounds_thickness(s.cap))
         return;
     relax.wanted_fill = s.schedule.multilevel.wanted_fill;
     relax.wanted_gain_of_void = s.schedule.multilevel.wanted_gain_of_void;

@@ -146,6 +146,37 @@ TriangleMesh torus(double major, double minor, int around, int across)
     return mesh;
 }
 
+TriangleMesh needled_plate(int points_per_corner)
+{
+    constexpr double kHalf = 50, kRadius = 3, kThickness = 3;
+    TriangleMesh mesh;
+    for (const double z : {0.0, kThickness})
+        for (int corner = 0; corner < 4; ++corner)
+            for (int i = 0; i < points_per_corner; ++i) {
+                const double angle = M_PI / 2 * (corner + double(i) / (points_per_corner - 1));
+                const double x = corner == 0 || corner == 3 ? 1 : -1, y = corner < 2 ? 1 : -1;
+                mesh.points.emplace_back(Vec3d(x * (kHalf - kRadius) + kRadius * std::cos(angle),
+                                               y * (kHalf - kRadius) + kRadius * std::sin(angle),
+                                               z));
+            }
+    const auto k = static_cast<std::uint32_t>(points_per_corner), n = 4 * k;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t j = (i + 1) % n;
+        mesh.triangles.emplace_back(i, j, j + n);
+        mesh.triangles.emplace_back(i, j + n, i + n);
+    }
+    const auto add_to_faces = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        mesh.triangles.emplace_back(a + n, b + n, c + n);
+        mesh.triangles.emplace_back(c, b, a);
+    };
+    for (std::uint32_t corner = 0; corner < 4; ++corner)
+        for (std::uint32_t i = corner * k; i + 1 < (corner + 1) * k; ++i)
+            add_to_faces(i, i + 1, (corner + 1) % 4 * k);
+    add_to_faces(0, k, 2 * k);
+    add_to_faces(0, 2 * k, 3 * k);
+    return mesh;
+}
+
 TriangleMesh extruded(const std::vector<openvdb::Vec2d>& polygon,
                       const std::vector<double>& heights)
 {

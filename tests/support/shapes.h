@@ -22,6 +22,9 @@ TriangleMesh gridded_box(const openvdb::Vec3d& low, const openvdb::Vec3d& high, 
 TriangleMesh extruded(const std::vector<openvdb::Vec2d>& polygon,
                       const std::vector<double>& heights);
 
+/// A plate of 100 x 100 x 3 with rounded corners of so many points each, whose flat faces are cut
+/// as modellers cut them: from each corner's points needles reach to the next corner.
+TriangleMesh needled_plate(int points_per_corner);
 TriangleMesh translated(TriangleMesh mesh, const openvdb::Vec3d& by);
 /// Turned about an axis through the origin.
 TriangleMesh turned(TriangleMesh mesh, const openvdb::Vec3d& axis, double angle_radians);

@@ -22,10 +22,7 @@ enum class Method {
     raw,       ///< the lengths of line stepping as they are (the paper): overlaps are reported, not
                ///< prevented
     certified, ///< grown from a valid start, which passes GrowOptions::prism_test throughout
-    thickest,  ///< thicker, for more time: grown on under the three-tet test until it is .998 full;
-               ///< a small surface (no coarser ones) that is not .99 full then, and whose thickness
-               ///< nothing bounds, is grown under that test from the beginning too, and the fuller
-               ///< of the two shells is taken
+    thickest,  ///< thicker, for more time: grown on under the three-tet test until it is .998 full
 };
 const NameTable<Method>& names(Method);
 
@@ -41,8 +38,7 @@ struct GrowOptions {
     bool mend_directions = true;   ///< a direction that sees a triangle from behind, or nearly so,
                                    ///< gives way to the one that sees its worst triangle best
     bool smooth_directions = true; ///< bilateral smoothing of the directions, visibility kept
-    bool top_down = true;          ///< start from long lines, shrunk until valid, instead of a thin
-                                   ///< shell
+    bool top_down = true;          ///< start from long lines, made valid, instead of a thin shell
     bool grow_lines = true;    ///< lengthen along the lines: outward, and inward where the start
                                ///< is nearly full already (round and convex solids) or thin
     bool free_moves = true;    ///< let inner vertices leave their lines
@@ -130,7 +126,10 @@ struct GrowResult {
 /// Grows the shell of an embedded surface to the thickest that the levers find, through valid
 /// states only: every accepted move is tested exactly on the float32 coordinates, so no tet inverts
 /// and no two surfaces touch, nor does one component end up inside another's shell (docs/theory.md,
-/// "Growth"). Begins on coarse_levels of the mesh.
+/// "Growth"). Begins on coarse_levels of the mesh. A surface of up to 12,000 triangles
+/// (MultilevelSchedule::most_coarsest_triangles) whose thickness nothing bounds, and that is less
+/// than .99 full then (after coarser ones .9; enough_fill where that is less), is grown from other
+/// starts too, and the fullest shell is taken that has no more pins.
 /// `stepped` gives the first lengths to try (line stepping) where they exceed half the ray to the
 /// other side; they bound nothing. `cap` bounds
 /// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).

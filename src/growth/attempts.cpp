@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Takes: what growth may set out from, and the user's options. Gives: what is tried, in turn. A
+// table of the ways on two halves of machined parts is in docs/measurements/tried.md.
+
+#include "growth/attempts.h"
+
+#include <algorithm>
+
+namespace vdb_shell::growth
+{
+
+bool too_large_for_attempts(std::size_t triangles, const GrowOptions& options)
+{
+    return double(triangles) > options.schedule.multilevel.most_coarsest_triangles;
+}
+
+std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
+                                 const GrowOptions& options)
+{
+    if (start.from == GrowFrom::shell)
+        return {{GrowFrom::shell, {}, options}};
+    const bool thickest = options.method == Method::thickest;
+    const bool on_levels = start.from == GrowFrom::levels && !start.levels.empty();
+    const LineStart first = options.top_down ? LineStart::shrunk : LineStart::thin;
+    std::vector<Attempt> attempts{{on_levels ? GrowFrom::levels : GrowFrom::lines, first, options}};
+    if (on_levels && too_large_for_attempts(triangles, options))
+        return attempts;
+    GrowOptions next = options;
+    if (thickest) {
+        // What has had twelve tets first is tried with three from the beginning.
+        next.method = Method::certified;
+        next.prism_test = PrismTest::chosen_tets;
+    }
+    // What is mended leaves its line.
+    if (options.top_down && options.free_moves)
+        attempts.push_back({GrowFrom::lines, LineStart::mended, next});
+    if (thickest && !on_levels)
+        attempts.push_back({GrowFrom::lines, first, next});
+    if (options.top_down && prism_test_of(options) == PrismTest::twelve_tets)
+        attempts.push_back({GrowFrom::lines, LineStart::thin, options});
+    return attempts;
+}
+
+double enough_for(const Attempt& attempt)
+{
+    // Far below what levels leave of a rounded surface, for there another way takes its time.
+    constexpr double kNearlyFull = 0.99;
+    const double full =
+        attempt.from == GrowFrom::levels ? attempt.options.schedule.lines.nearly_full : kNearlyFull;
+    return std::min(full, attempt.options.schedule.barrier.enough_fill);
+}
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "growth/initialise.h"
+#include "vdb_shell/growth/grow.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace vdb_shell::growth
+{
+
+/// A way to a shell.
+struct Attempt {
+    GrowFrom from;
+    LineStart start; ///< GrowFrom::lines
+    GrowOptions options;
+};
+
+/// Whether a surface of so many triangles is grown in one way alone, for each takes its time.
+bool too_large_for_attempts(std::size_t triangles, const GrowOptions& options);
+
+/// The ways that are tried until a shell is full enough, the one that is the best on most surfaces
+/// first; one alone for a large surface on levels, and for a start from a shell. Beside needles and
+/// between flat walls the first leads into a corner, and nothing tells beforehand which does not
+/// (docs/measurements/tried.md, "Machined parts").
+std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
+                                 const GrowOptions& options);
+
+/// Share of the solid from which no way after this one is tried.
+double enough_for(const Attempt& attempt);
+
+} // namespace vdb_shell::growth

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "growth/attempts.h"
+
+#include "support/shapes.h"
+#include "support/stacks.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace
+{
+
+using namespace vdb_shell;
+using namespace vdb_shell::growth;
+
+constexpr std::size_t kFew = 1000, kMany = 1000000;
+
+std::vector<LineStart> starts_of(const std::vector<Attempt>& attempts)
+{
+    std::vector<LineStart> starts;
+    for (const Attempt& attempt : attempts)
+        starts.push_back(attempt.start);
+    return starts;
+}
+
+GrowStart on_levels()
+{
+    return {GrowFrom::levels, {}, std::vector<Coarsened>(1)};
+}
+
+TEST(Attempts, BeginAsTheOptionsSay)
+{
+    for (const GrowOptions& options : test::ways_to_grow()) {
+        const Attempt first = attempts_of({}, kFew, options).front();
+        EXPECT_EQ(first.from, GrowFrom::lines);
+        EXPECT_EQ(first.start, LineStart::shrunk);
+        EXPECT_EQ(first.options.method, options.method);
+        EXPECT_EQ(first.options.prism_test, options.prism_test);
+        EXPECT_EQ(attempts_of(on_levels(), kMany, options).front().from, GrowFrom::levels);
+    }
+}
+
+// A lever that is off stays off.
+TEST(Attempts, AreThinAloneWithoutTopDown)
+{
+    for (GrowOptions options : test::ways_to_grow()) {
+        options.top_down = false;
+        for (const LineStart start : starts_of(attempts_of({}, kFew, options)))
+            EXPECT_EQ(start, LineStart::thin);
+    }
+}
+
+TEST(Attempts, KeepToTheLinesWithoutFreeMoves)
+{
+    for (GrowOptions options : test::ways_to_grow()) {
+        options.free_moves = false;
+        for (const LineStart start : starts_of(attempts_of({}, kFew, options)))
+            EXPECT_NE(start, LineStart::mended);
+    }
+}
+
+// Every other shell passes the test that the options ask for.
+TEST(Attempts, EndWithTheTestThatIsAskedFor)
+{
+    for (const GrowOptions& options : test::ways_to_grow())
+        for (const Attempt& attempt : attempts_of({}, kFew, options))
+            EXPECT_EQ(prism_test_of(attempt.options), prism_test_of(options));
+}
+
+TEST(Attempts, AreOneAloneWhereEachTakesItsTime)
+{
+    EXPECT_EQ(attempts_of(on_levels(), kMany, {}).size(), 1U);
+    EXPECT_EQ(attempts_of({GrowFrom::shell, {}, {}}, kFew, {}).size(), 1U);
+    EXPECT_GT(attempts_of(on_levels(), kFew, {}).size(), 1U);
+}
+
+TEST(Attempts, NoneFollowsWhereEnoughIsFull)
+{
+    GrowOptions half;
+    half.schedule.barrier.enough_fill = 0.5;
+    for (const Attempt& attempt : attempts_of({}, kFew, half))
+        EXPECT_EQ(enough_for(attempt), 0.5);
+}
+
+} // namespace
