@@ -174,7 +174,7 @@ TEST(Grow, ThickestIsAsThickAsThreeTetsFromTheBeginning)
 }
 
 /// Shortened until they are valid, pillars beside needles lose most of their length: without the
-/// other ways these shells are .81, .49 and .72 full.
+/// other ways these shells are .79, .51 and .75 full.
 TEST(Grow, FillsAPlateOfNeedles)
 {
     const Case plate = case_of(test::needled_plate(25));
@@ -185,6 +185,21 @@ TEST(Grow, FillsAPlateOfNeedles)
         EXPECT_GE(fill_of(full.shell), at_least[i]);
         expect_sound(full, ways[i]);
         expect_embedded(full.shell);
+    }
+}
+
+/// What comes over coarser surfaces loses most of what it has beside needles.
+TEST(Grow, BeginsALargePlateOfNeedlesFromMendedLines)
+{
+    const Case plate = case_of(test::needled_plate(25));
+    for (GrowOptions options : test::ways_to_grow()) {
+        options.coarse_from = 100;
+        options.schedule.multilevel.coarsest_triangles = 100;
+        options.schedule.multilevel.most_coarsest_triangles = 200; // so that this is a large one
+        ASSERT_FALSE(coarse_levels(plate.mesh, options).empty());
+        const GrowResult full = grown(plate, options);
+        EXPECT_GE(fill_of(full.shell), 0.7);
+        expect_sound(full, options);
     }
 }
 
