@@ -56,6 +56,10 @@ def mean_row(half, rows):
     return [*cells, "", ""]
 
 
+def count_poor(rows, when):
+    return sum(row["default", when]["fill"] < 0.9 for row in rows)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
@@ -78,7 +82,8 @@ def main():
         print(name, *(shown(row.get(column)) for column in COLUMNS), flush=True)
     now = [row[setting, "now"] for row in rows for setting in SETTINGS]
     summary = (f"{len(rows)} parts, {len(now)} shells: {sum(done['certified'] for done in now)} certified; pins beyond those "
-               f"demanded: {sum(done['pins'] - done['demanded'] for done in now)}.")
+               f"demanded: {sum(done['pins'] - done['demanded'] for done in now)}. Less than .9 full by default: "
+               f"{count_poor(rows, 'now')}" + (f", before {count_poor(rows, 'before')}." if a.before else "."))
     head = ["part", "half", "triangles", *(f"{setting}, {when}" for setting, when in COLUMNS), "pins", "demanded"]
     lines = [[row["name"], row["half"], f"{row['triangles']:,}", *(shown(row.get(column)) for column in COLUMNS),
               str(row["default", "now"]["pins"]), str(row["default", "now"]["demanded"])] for row in rows]

@@ -47,8 +47,7 @@ OptionList describe(GrowOptions& o)
                 "Smooth the directions across faces, not across creases"),
          option("top_down", o.top_down, "--top-down",
                 "Start from long lines, made valid, instead of a thin shell; a small surface that "
-                "is far from "
-                "full then is grown from other starts too"),
+                "is far from full then is grown from other starts too"),
          option("grow_lines", o.grow_lines, "--grow-lines",
                 "Lengthen along the lines where the start is nearly full"),
          option("free_moves", o.free_moves, "--free-moves", "Let inner vertices leave their lines"),

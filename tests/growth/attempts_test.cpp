@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/attempts.h"
 
-#include "support/shapes.h"
 #include "support/stacks.h"
 
 #include <gtest/gtest.h>

@@ -161,6 +161,29 @@ TEST(Report, SaysWhatGrowthScalingAndCuttingDid)
     EXPECT_EQ(figures.at("/cut/empty_layers"_json_pointer), 2);
 }
 
+TEST(Report, SaysWhereNeedlesHoldPillarsBack)
+{
+    ShellReport needled = good_report();
+    needled.grow = GrowReport();
+    needled.surface_bounds.edge_ratio.max = 300;
+    const auto said_of = [](const ShellReport& report) {
+        return report_text(report).find("needles hold pillars back") != std::string::npos;
+    };
+    EXPECT_TRUE(said_of(needled));
+    const auto unless = [&](const auto& change) {
+        ShellReport other = needled;
+        change(other);
+        EXPECT_FALSE(said_of(other));
+    };
+    unless([](ShellReport& r) { r.grow.reset(); });
+    unless([](ShellReport& r) { r.fill = 0.95; });
+    unless([](ShellReport& r) { r.side = Side::outward; });
+    unless([](ShellReport& r) { r.surface_bounds.edge_ratio.max = 3; });
+    unless([](ShellReport& r) { r.lines.stops[std::size_t(StopReason::thickness)] = 4; });
+    unless([](ShellReport& r) { r.scale.emplace(); });
+    unless([](ShellReport& r) { r.cores.emplace(); });
+}
+
 TEST(Report, NamesTheLayerThatFails)
 {
     ShellReport report = good_report();
