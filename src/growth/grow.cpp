@@ -209,10 +209,9 @@ std::ptrdiff_t pins_of(const PrismShell& shell)
     return std::count(shell.stop.begin(), shell.stop.end(), StopReason::pinned);
 }
 
-bool any_turned(const Connectivity& connectivity, const PrismShell& shell)
+bool any_of(const std::vector<std::uint8_t>& components)
 {
-    const std::vector<std::uint8_t> turned = turned_components(connectivity, shell);
-    return std::find(turned.begin(), turned.end(), 1) != turned.end();
+    return std::find(components.begin(), components.end(), 1) != components.end();
 }
 
 /// The shell of the first attempt, and where that is not full enough the fullest of all.
@@ -232,7 +231,7 @@ GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
         const double fill = fill_of(other.shell);
         // A pin costs more than the volume around it: prisms, and all that needs their pillars.
         if (fill <= most || pins_of(other.shell) > pins_of(fullest.shell) ||
-            any_turned(connectivity, other.shell))
+            any_of(turned_components(connectivity, other.shell)))
             continue;
         most = fill;
         fullest = std::move(other);
@@ -250,13 +249,13 @@ GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOpti
     while (true) {
         GrowResult result = grow_fullest(given, connectivity, cap, options, split, progress);
         const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
-        const bool any = std::find(turned.begin(), turned.end(), 1) != turned.end();
         // A component that crosses itself encloses as much of either sign as it likes.
         const auto crosses_itself = [&] {
             return prism_test_of(options) == PrismTest::twelve_tets &&
                    !find_self_intersections(mesh, {}, interrupter).empty();
         };
-        if (!any || crosses_itself() || !take_more_care(connectivity, turned, options, cap))
+        if (!any_of(turned) || crosses_itself() ||
+            !take_more_care(connectivity, turned, options, cap))
             return result;
     }
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace vdb_shell::test
 {
@@ -144,6 +146,40 @@ TriangleMesh torus(double major, double minor, int around, int across)
             mesh.triangles.emplace_back(index(i, j), index(i + 1, j + 1), index(i, j + 1));
         }
     return mesh;
+}
+
+TriangleMesh notched_cube()
+{
+    TriangleMesh cube;
+    const auto index_of = [&](const Vec3s& p) {
+        const auto at = std::find(cube.points.begin(), cube.points.end(), p);
+        if (at != cube.points.end())
+            return openvdb::Index32(at - cube.points.begin());
+        cube.points.push_back(p);
+        return openvdb::Index32(cube.points.size() - 1);
+    };
+    const float h = 1 + 0x1p-20f;
+    // Across z: the face with a notch, the whole one, the notch's own; the others by turning axes.
+    const std::vector<Vec3s> corners{{0, 0, 2}, {2, 0, 2}, {2, h, 2}, {h, h, 2}, {h, 2, 2},
+                                     {0, 2, 2}, {0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0},
+                                     {h, h, h}, {2, h, h}, {2, 2, h}, {h, 2, h}};
+    using Triangles = std::vector<std::array<std::size_t, 3>>;
+    const Triangles around_the_notch{{0, 1, 3}, {1, 2, 3}, {0, 3, 4}, {0, 4, 5}};
+    const Triangles across_the_middle{{5, 0, 1}, {5, 1, 3}, {1, 2, 3}, {3, 4, 5}};
+    for (int turn = 0; turn < 3; ++turn) {
+        Triangles triangles = turn == 0 ? around_the_notch : across_the_middle;
+        for (const auto& t : Triangles{{6, 8, 7}, {6, 9, 8}, {10, 11, 12}, {10, 12, 13}})
+            triangles.push_back(t);
+        for (const auto& t : triangles) {
+            Vec3I corner;
+            for (int k = 0; k < 3; ++k) {
+                const Vec3s& p = corners[t[std::size_t(k)]];
+                corner[k] = index_of({p[turn], p[(turn + 1) % 3], p[(turn + 2) % 3]});
+            }
+            cube.triangles.push_back(corner);
+        }
+    }
+    return cube;
 }
 
 TriangleMesh needled_plate(int points_per_corner)

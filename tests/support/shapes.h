@@ -22,6 +22,9 @@ TriangleMesh gridded_box(const openvdb::Vec3d& low, const openvdb::Vec3d& high, 
 TriangleMesh extruded(const std::vector<openvdb::Vec2d>& polygon,
                       const std::vector<double>& heights);
 
+/// A cube of edge 2 without the eighth farthest from the origin, with no more triangles than that
+/// needs. The notch begins next to the middle, so that two of them are nearly flat.
+TriangleMesh notched_cube();
 /// A plate of 100 x 100 x 3 with rounded corners of so many points each, whose flat faces are cut
 /// as modellers cut them: from each corner's points needles reach to the next corner.
 TriangleMesh needled_plate(int points_per_corner);
