@@ -33,7 +33,7 @@ public:
     void index_parents();
     /// Box i becomes as much larger as to hold `box` too, at a cost of the depth of the tree.
     /// Precondition: index_parents. For boxes that stay and are soon built anew; those that come
-    /// and go one by one lie in resample/loose_grid.h.
+    /// and go one by one lie in resample/moving_boxes.h.
     void widen(std::size_t i, const FloatBox& box);
     /// Box i becomes `box`, at the same cost. Precondition: index_parents.
     void replace(std::size_t i, const FloatBox& box);

@@ -114,20 +114,6 @@ bool slide_to_larger(RemeshSurface& surface, std::uint32_t v)
     return best > 0 && surface.slide(v, best, kLargerThanBefore) == Refusal::none;
 }
 
-/// The corners of a triangle so that its longest side comes first.
-std::array<std::uint32_t, 3> from_longest(const RemeshSurface& surface, std::uint32_t t)
-{
-    const Vec3I& c = surface.triangle(t);
-    int longest = 0;
-    double most = -1;
-    for (int k = 0; k < 3; ++k) {
-        const double length = surface.length(c[k], c[(k + 1) % 3]);
-        if (length > most)
-            most = length, longest = k;
-    }
-    return {c[longest], c[(longest + 1) % 3], c[(longest + 2) % 3]};
-}
-
 bool raise(RemeshSurface& surface, std::uint32_t t)
 {
     constexpr double kAnyLength = 2; // of the wanted one: as a last resort edges may be long

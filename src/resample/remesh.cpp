@@ -12,8 +12,11 @@
 #include "core/available_memory.h"
 #include "core/fail.h"
 #include "core/stage_progress.h"
+#include "mesh/nearest_on_triangle.h"
 #include "mesh/triangle_area.h"
+#include "mesh/triangle_corners.h"
 #include "resample/attempts.h"
+#include "resample/far_points.h"
 #include "resample/remesh_rounds.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
@@ -39,6 +42,9 @@ constexpr int kRounds = 10;
 constexpr int kLastRounds = 10;
 // Cosine of 35 degrees: angles under 30 are what is to be avoided, and some room is left.
 constexpr double kNarrow = 0.819;
+// Cosine of 20 degrees: what is narrower is mended before edges are split, for triangles that come
+// of needles are needles.
+constexpr double kNeedle = 0.94;
 // Of the wanted length: no tolerance or feature makes it smaller than that.
 constexpr double kLeastSize = 0.1;
 // By how much the wanted length may change over an edge, as a share of the edge's length. Over
@@ -50,6 +56,12 @@ constexpr double kRegrowth = 1.2;
 // Of the wanted length: curves of features that end in nothing count from there on.
 constexpr double kLeastCurve = 2.0;
 constexpr int kMostRemeshings = 5;
+// How often triangles that are too far from the input are cut and there are no fewer afterwards,
+// before all is done anew.
+constexpr int kMostCutsInVain = 2;
+// Where more than one in so many triangles, and some for small surfaces, are too far, the
+// operations cannot keep the tolerance anywhere, and cuts would have no end.
+constexpr std::size_t kShareOfFar = 50, kFewFar = 10;
 // Share of the tolerance that the operations are held to: they see less than is measured
 // afterwards.
 constexpr double kFirstShare = 0.9;
@@ -109,16 +121,18 @@ struct Job {
     const TriangleMesh& input;
     const RemeshOptions& options;
     FeatureCurves features;
+    double tolerance; ///< the one that is to hold
+    double spacing;   ///< of the points at which it is measured
     const StageProgress& progress;
 };
 
-/// One attempt; the edge length that it ended with is left in `length`.
-RemeshResult attempt(const Job& job, double tolerance, double& length)
+/// The rounds of Botsch and Kobbelt. The edge length that they end with is left in `length`.
+void make_even(RemeshSurface& surface, const Job& job, double& length)
 {
-    RemeshSurface surface(job.input, job.features, tolerance, kSpacing * length);
     const double wanted = job.options.triangles ? double(*job.options.triangles) : 0.0;
     for (std::uint32_t v = 0; v < surface.vertex_slots(); ++v)
         surface.size(v) = length;
+    flip_to_angle(surface);
     for (int round = 0; round < kRounds; ++round) {
         job.progress.stop_if_interrupted(90.0 * round / kRounds);
         if (round > 1 && wanted > 0) {
@@ -127,22 +141,90 @@ RemeshResult attempt(const Job& job, double tolerance, double& length)
             grade_sizes(surface, length, kSlope, std::max(1.0, length / before));
         }
         grade_sizes(surface, length, kSlope, round < kRounds / 2 ? kRegrowth : 1.0);
+        if (round < kRounds / 2)
+            raise_angles(surface, kNeedle);
         split_long_edges(surface);
         collapse_short_edges(surface, kLeastSize * length);
         flip_to_valence(surface);
         smooth(surface);
-        if (round + 1 == kRounds)
-            flip_to_angle(surface);
         surface.settle_samples();
     }
+    flip_to_angle(surface);
+    surface.settle_samples();
+}
+
+/// Mends single triangles until there is nothing left to mend.
+void mend_angles(RemeshSurface& surface, const Job& job, double cosine)
+{
     for (int round = 0; round < kLastRounds; ++round) {
         job.progress.stop_if_interrupted(90);
-        if (raise_angles(surface, kNarrow) == 0)
+        const std::uint64_t before = surface.now() + 1;
+        if (raise_angles(surface, cosine) == 0)
             break;
-        flip_to_angle(surface);
+        flip_to_angle(surface, before);
         surface.settle_samples();
     }
-    return surface.result();
+}
+
+/// Measures both ways, and lists where the surfaces are farther apart than they may be, with the
+/// triangle of the result there.
+std::vector<FarPoint> measure(const Job& job, RemeshResult& result, Interrupter* interrupter)
+{
+    RemeshReport& report = result.report;
+    std::vector<FarPoint> far, of_result;
+    report.input_to_result =
+        surface_distance(job.input, result.mesh, job.spacing, job.tolerance, far, interrupter);
+    report.result_to_input = surface_distance(result.mesh, job.input, job.spacing, job.tolerance,
+                                              of_result, interrupter);
+    std::vector<openvdb::Vec3d> points;
+    for (const FarPoint& f : of_result)
+        points.push_back(f.point);
+    const std::vector<std::uint32_t> triangles =
+        points.empty() ? std::vector<std::uint32_t>() : nearest_triangles(result.mesh, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        far.push_back({points[i], triangles[i]});
+    return far;
+}
+
+std::size_t count_triangles(const std::vector<FarPoint>& far)
+{
+    std::vector<std::uint32_t> triangles;
+    for (const FarPoint& f : far)
+        triangles.push_back(f.triangle);
+    std::sort(triangles.begin(), triangles.end());
+    return std::size_t(std::unique(triangles.begin(), triangles.end()) - triangles.begin());
+}
+
+/// One attempt; the edge length that it ended with is left in `length`. Whether the surfaces are
+/// near enough stands in the report.
+RemeshResult attempt(const Job& job, double tolerance, double& length, Interrupter* interrupter)
+{
+    RemeshSurface surface(job.input, job.features, tolerance, kSpacing * length);
+    make_even(surface, job, length);
+    mend_angles(surface, job, kNarrow);
+    RemeshResult out = surface.result();
+    std::vector<FarPoint> far = measure(job, out, interrupter);
+    // Between the points at which operations look the surfaces can be farther apart, at a few
+    // places, by some hundredths. Smaller triangles there cost less than all anew.
+    const std::size_t few = surface.live_triangles() / kShareOfFar + kFewFar;
+    std::size_t fewest = few + 1;
+    for (int in_vain = 0; in_vain < kMostCutsInVain && !far.empty();) {
+        const std::size_t triangles = count_triangles(far);
+        if (triangles > few)
+            break;
+        in_vain = triangles < fewest ? 0 : in_vain + 1;
+        fewest = std::min(fewest, triangles);
+        bring_nearer(surface, far);
+        mend_angles(surface, job, kNeedle);
+        out = surface.result();
+        far = measure(job, out, interrupter);
+    }
+    return out;
+}
+
+bool is_near(const RemeshReport& report, double tolerance)
+{
+    return std::max(report.input_to_result.max, report.result_to_input.max) <= tolerance;
 }
 
 RemeshResult unchanged(const TriangleMesh& mesh)
@@ -175,22 +257,21 @@ double share_in_range(const TriangleMesh& mesh, double length)
     return double(inside) / double(all);
 }
 
-void measure(RemeshReport& report, const Job& job, const TriangleMesh& result, double diagonal,
-             Interrupter* interrupter)
+void describe_result(const Job& job, RemeshResult& result, double length, int repeats)
 {
-    const double spacing =
-        std::max(diagonal / kSamplesAlongDiagonal, std::min(report.tolerance / 4, diagonal));
+    RemeshReport& report = result.report;
     report.before = job.input.triangles.size();
-    report.triangles = result.triangles.size();
+    report.triangles = result.mesh.triangles.size();
     report.wanted = job.options.triangles;
+    report.edge_length = length;
+    report.tolerance = job.tolerance;
+    report.repeats = repeats;
     report.feature_edges = job.features.edges;
     report.feature_curves = job.features.curves.size();
     report.corners = job.features.corners;
     report.shape_before = triangle_figures(job.input);
-    report.shape = triangle_figures(result);
-    report.edges_in_range = share_in_range(result, report.edge_length);
-    report.input_to_result = surface_distance(job.input, result, spacing, interrupter);
-    report.result_to_input = surface_distance(result, job.input, spacing, interrupter);
+    report.shape = triangle_figures(result.mesh);
+    report.edges_in_range = share_in_range(result.mesh, length);
 }
 
 } // namespace
@@ -274,26 +355,26 @@ RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
         options.edge_length.value_or(length_for(area, double(options.triangles.value_or(1))));
     const double tolerance =
         options.tolerance.value_or(default_tolerance(wanted, options.feature_angle_radians));
-    const Job job{mesh, options,
+    const double spacing =
+        std::max(diagonal / kSamplesAlongDiagonal, std::min(tolerance / 4, diagonal));
+    const Job job{mesh,
+                  options,
                   find_features(mesh, options.feature_angle_radians, kLeastCurve * wanted),
+                  tolerance,
+                  spacing,
                   progress};
-    RemeshResult out;
     double tried = kFirstShare * tolerance;
     for (int repeats = 0; repeats < kMostRemeshings; ++repeats, tried *= kStricter) {
         double length = wanted;
-        out = attempt(job, tried, length);
-        out.report.edge_length = length;
-        out.report.tolerance = tolerance;
-        out.report.repeats = repeats;
-        measure(out.report, job, out.mesh, diagonal, interrupter);
-        if (std::max(out.report.input_to_result.max, out.report.result_to_input.max) <= tolerance)
+        RemeshResult out = attempt(job, tried, length, interrupter);
+        if (is_near(out.report, tolerance)) {
+            describe_result(job, out, length, repeats);
             return out;
+        }
     }
-    out = unchanged(mesh);
-    out.report.edge_length = wanted;
-    out.report.tolerance = tolerance;
-    out.report.repeats = kMostRemeshings;
-    measure(out.report, job, out.mesh, diagonal, interrupter);
+    RemeshResult out = unchanged(mesh);
+    measure(job, out, interrupter);
+    describe_result(job, out, wanted, kMostRemeshings);
     return out;
 }
 

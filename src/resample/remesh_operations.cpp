@@ -103,16 +103,20 @@ std::uint32_t RemeshSurface::new_vertex(const Vec3d& p, double size)
     return v;
 }
 
-Refusal RemeshSurface::split(std::uint32_t a, std::uint32_t b)
+Refusal RemeshSurface::split(std::uint32_t a, std::uint32_t b, SplitTo place)
 {
     const FeatureEdge* edge = feature(a, b);
     const double s = edge ? 0.5 * (edge->s_from + edge->s_to) : 0.0;
-    const Vec3d p = edge ? features_.curves[edge->curve].point_at(s) : 0.5 * (point(a) + point(b));
+    const Vec3d middle = 0.5 * (point(a) + point(b));
+    const Vec3d p = edge                      ? features_.curves[edge->curve].point_at(s)
+                    : place == SplitTo::input ? foot_of(middle).point
+                                              : middle;
     const auto [left, right] = triangles_at(a, b);
     const auto [c, d] = opposite(a, b);
     const std::uint32_t m = new_vertex(p, size_of_edge(a, b));
     patch_.clear();
     patch_.hub = m;
+    patch_.same_surface = !edge && place == SplitTo::middle;
     patch_.removed = {left, right};
     patch_.added = {Vec3I(a, m, c), Vec3I(m, b, c), Vec3I(b, m, d), Vec3I(m, a, d)};
     if (edge) {
@@ -121,8 +125,8 @@ Refusal RemeshSurface::split(std::uint32_t a, std::uint32_t b)
         patch_.features = {{from, m, {edge->curve, from, edge->s_from, s}},
                            {m, to, {edge->curve, m, s, edge->s_to}}};
         kind_[m] = VertexKind::on_curve;
-        on_input_[m] = 1;
     }
+    on_input_[m] = edge || place == SplitTo::input;
     const Refusal refusal = replace(patch_, points_[m], kSplitsMayLeave);
     if (refusal != Refusal::none)
         free_vertices_.push_back(m);

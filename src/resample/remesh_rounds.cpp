@@ -40,6 +40,18 @@ struct LongEdge {
     std::uint32_t a, b;
 };
 
+double ratio_of(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
+{
+    return surface.length(a, b) / surface.size_of_edge(a, b);
+}
+
+void sort_by_ratio(std::vector<LongEdge>& edges)
+{
+    std::sort(edges.begin(), edges.end(), [](const LongEdge& x, const LongEdge& y) {
+        return std::tie(x.ratio, x.a, x.b) < std::tie(y.ratio, y.a, y.b);
+    });
+}
+
 /// The edges for which keep(ratio) holds, ratio being length over wanted length, ascending.
 template <typename Keep>
 std::vector<LongEdge> edges_by_ratio(const RemeshSurface& surface, const Keep& keep)
@@ -53,32 +65,46 @@ std::vector<LongEdge> edges_by_ratio(const RemeshSurface& surface, const Keep& k
             const std::uint32_t a = c[k], b = c[(k + 1) % 3];
             if (a > b)
                 continue; // seen from the other side
-            const double ratio = surface.length(a, b) / surface.size_of_edge(a, b);
+            const double ratio = ratio_of(surface, a, b);
             if (keep(ratio))
                 edges.push_back({ratio, a, b});
         }
     }
-    std::sort(edges.begin(), edges.end(), [](const LongEdge& x, const LongEdge& y) {
-        return std::tie(x.ratio, x.a, x.b) < std::tie(y.ratio, y.a, y.b);
-    });
+    sort_by_ratio(edges);
     return edges;
 }
 
-/// Flips the edges for which wanted(edge) holds; `cosine` as in RemeshSurface::flip.
-template <typename Wanted>
-void flip_edges(RemeshSurface& surface, double cosine, const Wanted& wanted)
+/// The edges of triangles that have become what they are at `since` or later, in the same order.
+std::vector<LongEdge> edges_since(const RemeshSurface& surface, std::uint64_t since)
 {
-    const std::vector<LongEdge> edges = edges_by_ratio(surface, [](double) { return true; });
+    std::vector<LongEdge> edges;
+    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t) {
+        if (!surface.alive(t) || surface.changed_at(t) < since)
+            continue;
+        const Vec3I& c = surface.triangle(t);
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t a = std::min(c[k], c[(k + 1) % 3]);
+            const std::uint32_t b = std::max(c[k], c[(k + 1) % 3]);
+            edges.push_back({ratio_of(surface, a, b), a, b});
+        }
+    }
+    sort_by_ratio(edges);
+    const auto same = [](const LongEdge& x, const LongEdge& y) { return x.a == y.a && x.b == y.b; };
+    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+    return edges;
+}
+
+/// Flips the edges for which wanted(edge) holds, of triangles that have changed since; `cosine` as
+/// in RemeshSurface::flip.
+template <typename Wanted>
+void flip_edges(RemeshSurface& surface, double cosine, std::uint64_t since, const Wanted& wanted)
+{
+    const std::vector<LongEdge> edges = edges_since(surface, since);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         stop_if_stage_wants(i);
         if (surface.has_edge(edges[i].a, edges[i].b) && wanted(edges[i]))
             surface.flip(edges[i].a, edges[i].b, cosine);
     }
-}
-
-double ratio_of(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
-{
-    return surface.length(a, b) / surface.size_of_edge(a, b);
 }
 
 /// Whether the edge is as long as it is for the sake of the input and not of its neighbours.
@@ -155,11 +181,25 @@ void smooth_on_curve(RemeshSurface& surface, std::uint32_t v)
 
 } // namespace
 
+std::array<std::uint32_t, 3> from_longest(const RemeshSurface& surface, std::uint32_t t)
+{
+    const Vec3I& c = surface.triangle(t);
+    int longest = 0;
+    double most = -1;
+    for (int k = 0; k < 3; ++k) {
+        const double length = surface.length(c[k], c[(k + 1) % 3]);
+        if (length > most)
+            most = length, longest = k;
+    }
+    return {c[longest], c[(longest + 1) % 3], c[(longest + 2) % 3]};
+}
+
 void split_long_edges(RemeshSurface& surface)
 {
     // Halves may be too long as well; each time round the longest are shorter, so this ends.
     for (bool any = true; any;) {
         any = false;
+        const std::uint64_t before = surface.now();
         const std::vector<LongEdge> edges =
             edges_by_ratio(surface, [](double ratio) { return ratio > kTooLong; });
         // Longest first, so that triangles are cut at their longest sides.
@@ -168,6 +208,10 @@ void split_long_edges(RemeshSurface& surface)
             any |= surface.has_edge(edge->a, edge->b) &&
                    surface.split(edge->a, edge->b) == Refusal::none;
         }
+        // Needles that are cut across again and again leave triangles by the hundred thousand,
+        // which are as narrow; between the cuts most can be flipped into good ones.
+        if (!edges.empty() && edges.back().ratio > 2 * kTooLong)
+            flip_to_angle(surface, before);
     }
 }
 
@@ -193,16 +237,19 @@ void collapse_short_edges(RemeshSurface& surface, double least_size)
 
 void flip_to_valence(RemeshSurface& surface)
 {
-    flip_edges(surface, kEdgesMayLeave,
+    flip_edges(surface, kEdgesMayLeave, 0,
                [&](const LongEdge& edge) { return gain_of_flip(surface, edge.a, edge.b) > 0; });
 }
 
-void flip_to_angle(RemeshSurface& surface)
+void flip_to_angle(RemeshSurface& surface, std::uint64_t since)
 {
     // Each flip makes an angle larger that was the smallest of its place, as in Lawson's algorithm;
     // a few times round are enough for what is left to pay.
-    for (int round = 0; round < 3; ++round)
-        flip_edges(surface, kLargerThanBefore, [](const LongEdge&) { return true; });
+    for (int round = 0; round < 3; ++round) {
+        const std::uint64_t before = surface.now() + 1;
+        flip_edges(surface, kLargerThanBefore, since, [](const LongEdge&) { return true; });
+        since = before;
+    }
 }
 
 void smooth(RemeshSurface& surface)
@@ -216,6 +263,41 @@ void smooth(RemeshSurface& surface)
         else if (surface.kind(v) == VertexKind::on_curve)
             smooth_on_curve(surface, v);
     }
+}
+
+void bring_nearer(RemeshSurface& surface, const std::vector<FarPoint>& far)
+{
+    std::vector<std::uint32_t> slot;
+    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t)
+        if (surface.alive(t))
+            slot.push_back(t);
+    std::vector<std::uint32_t> triangles;
+    for (const FarPoint& f : far) {
+        surface.look_at(f.point, slot[f.triangle]);
+        triangles.push_back(slot[f.triangle]);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    const std::uint64_t before = surface.now();
+    for (const std::uint32_t t : triangles) {
+        // Another cut may have changed it already.
+        if (!surface.alive(t) || surface.changed_at(t) > before)
+            continue;
+        const auto [a, b, c] = from_longest(surface, t);
+        // Cut where it is, it may still be moved afterwards.
+        if (surface.split(a, b, SplitTo::input) != Refusal::none)
+            surface.split(a, b);
+    }
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t)
+        if (surface.alive(t) && surface.changed_at(t) > before)
+            for (int k = 0; k < 3; ++k)
+                vertices.push_back(surface.triangle(t)[k]);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    for (const std::uint32_t v : vertices)
+        if (surface.kind(v) == VertexKind::free)
+            surface.move(v, surface.point(v), kMovesMayLeave);
 }
 
 void grade_sizes(RemeshSurface& surface, double largest, double slope, double growth)

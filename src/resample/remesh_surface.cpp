@@ -21,6 +21,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -56,31 +58,79 @@ double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& p)
     return (nearest_on_triangle(triangle, p).point - p).lengthSqr();
 }
 
-/// What no point in the box is nearer than.
-double squared_distance(const FloatBox& box, const Vec3d& p)
+constexpr std::uint32_t kNoTriangle = ~0U;
+
+/// Cells of points, apart for each plane that the points are said to lie in: needles of one plane
+/// would have samples by the hundred in the same place.
+class PlaneCells
 {
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-        const double beyond = std::max({double(box.lo[k]) - p[k], p[k] - double(box.hi[k]), 0.0});
-        sum += beyond * beyond;
+public:
+    /// Planes are told apart by normals, and by how far they are from the origin.
+    PlaneCells(double cell, double apart) : cell_(cell), apart_(apart) {}
+    void set_plane(const std::array<Vec3d, 3>& c)
+    {
+        Vec3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
+        const double length = normal.length();
+        normal = length > 0 ? normal / length : Vec3d(0.0);
+        plane_ = {std::round(normal[0] * kNormals), std::round(normal[1] * kNormals),
+                  std::round(normal[2] * kNormals), std::round(normal.dot(c[0]) / apart_)};
     }
-    return sum;
+    /// Whether the point is the first of its cell and its plane.
+    bool take(const Vec3d& p)
+    {
+        return taken_
+            .insert({plane_[0], plane_[1], plane_[2], plane_[3], std::floor(p[0] / cell_),
+                     std::floor(p[1] / cell_), std::floor(p[2] / cell_)})
+            .second;
+    }
+
+private:
+    // Normals are told apart by half a degree.
+    static constexpr double kNormals = 100;
+    using Key = std::array<double, 7>;
+    struct Hash {
+        std::size_t operator()(const Key& key) const
+        {
+            std::size_t hash = 0;
+            for (const double k : key)
+                hash = (hash ^ std::hash<double>()(k)) * 0x9E3779B97F4A7C15U;
+            return hash;
+        }
+    };
+    double cell_, apart_;
+    std::array<double, 4> plane_{};
+    std::unordered_set<Key, Hash> taken_; ///< asked, never walked through
+};
+
+/// The sign of the area of a triangle seen along an axis; 0 where doubles do not tell for certain.
+int sign_along(int axis, const Vec3s& a, const Vec3s& b, const Vec3s& c)
+{
+    const int x = (axis + 1) % 3, y = (axis + 2) % 3;
+    const Vec3d p(a), u = Vec3d(b) - p, v = Vec3d(c) - p;
+    const double first = u[x] * v[y], second = v[x] * u[y], area = first - second;
+    // Differences and products are each off by half a bit, 1.1e-16, at most.
+    const double off = 1e-15 * (std::abs(first) + std::abs(second));
+    return area > off ? 1 : area < -off ? -1 : 0;
 }
 
 } // namespace
 
 RemeshSurface::RemeshSurface(const TriangleMesh& input, const FeatureCurves& features,
                              double tolerance, double spacing)
-    : input_(input), features_(features), tolerance_(tolerance), tree_(input, spacing),
-      points_(input.points), kind_(points_.size(), VertexKind::free), on_input_(points_.size(), 1),
-      size_(points_.size(), 0.0), star_(points_.size())
+    : input_(input), features_(features), tolerance_(tolerance), scale_(1 / spacing),
+      tree_(input, spacing), points_(input.points), kind_(points_.size(), VertexKind::free),
+      on_input_(points_.size(), 1), size_(points_.size(), 0.0), star_(points_.size())
 {
+    std::vector<FloatBox> boxes;
+    boxes.reserve(input.triangles.size());
     for (std::uint32_t t = 0; t < input.triangles.size(); ++t) {
         triangles_.emplace_back(0U);
-        cosine_.push_back(0), facing_.push_back(0);
+        cosine_.push_back(0), facing_.push_back(0), changed_at_.push_back(0);
         const Vec3I& c = input.triangles[t];
-        put(t, c, {cosine_of(corners_of(c)), 1.0});
+        link(t, c, {cosine_of(corners_of(c)), 1.0});
+        boxes.push_back(box_around(points_[c[0]], points_[c[1]], points_[c[2]]));
     }
+    boxes_.build(std::move(boxes));
     for (std::uint32_t k = 0; k < features.curves.size(); ++k) {
         const FeatureCurve& curve = features.curves[k];
         for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
@@ -96,16 +146,24 @@ RemeshSurface::RemeshSurface(const TriangleMesh& input, const FeatureCurves& fea
 }
 
 /// The vertices, by their own numbers; then points inside of triangles and edges that are longer
-/// than the spacing.
+/// than the spacing, unless there is one nearer than that in the same plane.
 void RemeshSurface::place_samples(double spacing)
 {
     for (const Vec3s& p : input_.points)
         samples_.emplace_back(p);
     samples_of_.resize(triangles_.size());
     std::vector<char> seen(samples_.size());
+    PlaneCells cells(0.5 * spacing, 0.25 * tolerance_);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         const std::array<Vec3d, 3> c = corners_of(triangles_[t]);
+        const bool has_long_edges = (c[1] - c[0]).length() > spacing ||
+                                    (c[2] - c[1]).length() > spacing ||
+                                    (c[0] - c[2]).length() > spacing;
+        if (has_long_edges)
+            cells.set_plane(c);
         const auto add = [&](const Vec3d& p) {
+            if (!cells.take(p))
+                return;
             samples_of_[t].push_back(static_cast<std::uint32_t>(samples_.size()));
             samples_.push_back(p);
         };
@@ -113,13 +171,14 @@ void RemeshSurface::place_samples(double spacing)
             const std::uint32_t v = triangles_[t][k], w = triangles_[t][(k + 1) % 3];
             if (!seen[v])
                 samples_of_[t].push_back(v), seen[v] = 1;
+            if (has_long_edges)
+                cells.take(c[std::size_t(k)]);
             const Vec3d &p = c[std::size_t(k)], &q = c[std::size_t((k + 1) % 3)];
             const double pieces = v < w ? std::ceil((q - p).length() / spacing) : 1;
             for (double i = 1; i < pieces; ++i)
                 add(p + (q - p) * (i / pieces));
         }
-        if ((c[1] - c[0]).length() > spacing || (c[2] - c[1]).length() > spacing ||
-            (c[0] - c[2]).length() > spacing)
+        if (has_long_edges)
             for_each_piece(
                 c[0], c[1], c[2], spacing,
                 [&](const Vec3d& x, const Vec3d& y, const Vec3d& z) { add((x + y + z) / 3.0); });
@@ -152,13 +211,14 @@ RemeshSurface::Foot RemeshSurface::foot_of(const Vec3d& p) const
 
 Refusal RemeshSurface::replace(const Patch& patch, const Vec3s& p, double cosine)
 {
-    const Vec3s before = points_[patch.hub];
+    hub_before_ = points_[patch.hub];
+    farthest_before_ = -1;
     points_[patch.hub] = p;
     const Refusal refusal = refusal_of(patch, cosine);
     if (refusal == Refusal::none)
         commit(patch);
     else
-        points_[patch.hub] = before;
+        points_[patch.hub] = hub_before_;
     return refusal;
 }
 
@@ -191,6 +251,40 @@ bool RemeshSurface::keeps_shape(const Patch& patch, double cosine)
     return after <= cosine || after < before;
 }
 
+/// Whether a distance, squared, is within the tolerance, or no larger than the largest was before:
+/// so that places where the surfaces are too far apart can be mended step by step.
+bool RemeshSurface::is_near(const Patch& patch, double squared)
+{
+    if (squared <= tolerance_ * tolerance_ || patch.same_surface)
+        return true;
+    if (farthest_before_ < 0)
+        farthest_before_ = farthest_before(patch);
+    return squared <= farthest_before_;
+}
+
+double RemeshSurface::farthest_before(const Patch& patch) const
+{
+    const auto corners = [&](std::uint32_t t) {
+        std::array<Vec3d, 3> c = corners_of(triangles_[t]);
+        for (int k = 0; k < 3; ++k)
+            if (triangles_[t][k] == patch.hub)
+                c[std::size_t(k)] = Vec3d(hub_before_);
+        return c;
+    };
+    double farthest = 0;
+    for (const std::uint32_t t : patch.removed) {
+        const std::array<Vec3d, 3> c = corners(t);
+        farthest = std::max(farthest, foot_of((c[0] + c[1] + c[2]) / 3.0).squared);
+        for (const std::uint32_t s : samples_of_[t]) {
+            double nearest = std::numeric_limits<double>::infinity();
+            for (const std::uint32_t other : patch.removed)
+                nearest = std::min(nearest, squared_distance(corners(other), samples_[s]));
+            farthest = std::max(farthest, nearest);
+        }
+    }
+    return farthest;
+}
+
 /// Notes the distance of the middles on the way, which is nearly free.
 bool RemeshSurface::faces_as_before(const Patch& patch)
 {
@@ -201,22 +295,56 @@ bool RemeshSurface::faces_as_before(const Patch& patch)
         const std::array<Vec3d, 3> c = corners_of(patch.added[i]);
         const Vec3d cross = cross_of(patch.added[i]);
         const Foot foot = foot_of((c[0] + c[1] + c[2]) / 3.0);
-        if (foot.squared > tolerance_ * tolerance_)
+        if (!is_near(patch, foot.squared))
             return false;
         const double length = cross.length();
         shapes_[i].facing = length > 0 ? cross.dot(foot.normal) / length : 0.0;
-        if (shapes_[i].facing < before)
+        if (shapes_[i].facing < before && !patch.same_surface)
             return false;
     }
     return true;
 }
 
+/// Whether what goes and what comes covers the same part of one plane along two axes, once: both
+/// have the same border, and no triangle is turned over, so each point is covered as often as
+/// before. Flat walls of machined parts are such planes.
+bool RemeshSurface::stays_in_plane(const Patch& patch) const
+{
+    const Vec3s& any = points_[patch.added[0][0]];
+    const auto before = [&](std::uint32_t v) { return v == patch.hub ? hub_before_ : points_[v]; };
+    for (int axis = 0; axis < 3; ++axis) {
+        int sign = 0; // of what comes
+        const auto comes = [&](const Vec3I& c) {
+            const int its = sign_along(axis, points_[c[0]], points_[c[1]], points_[c[2]]);
+            const bool same = its != 0 && (sign == 0 || sign == its);
+            sign = its;
+            return same && points_[c[0]][axis] == any[axis] && points_[c[1]][axis] == any[axis] &&
+                   points_[c[2]][axis] == any[axis];
+        };
+        // What goes is embedded, so in one plane all of it is turned the same way: one sign will
+        // do, where doubles do not tell all of them.
+        bool seen = false;
+        const auto goes = [&](std::uint32_t t) {
+            const Vec3I& c = triangles_[t];
+            const Vec3s p = before(c[0]), q = before(c[1]), r = before(c[2]);
+            seen = seen || sign_along(axis, p, q, r) == sign;
+            return p[axis] == any[axis] && q[axis] == any[axis] && r[axis] == any[axis];
+        };
+        if (std::all_of(patch.added.begin(), patch.added.end(), comes) &&
+            std::all_of(patch.removed.begin(), patch.removed.end(), goes) && seen)
+            return true;
+    }
+    return false;
+}
+
 bool RemeshSurface::touches(const Patch& patch) const
 {
+    if (stays_in_plane(patch))
+        return false;
     FloatBox all = FloatBox::around(points_[patch.added[0][0]]);
     for (const Vec3I& c : patch.added)
         all.add(box_around(points_[c[0]], points_[c[1]], points_[c[2]]));
-    grid_.overlaps(all, near_);
+    boxes_.overlaps(all, near_);
     const auto stays = [&](std::uint32_t t) {
         return std::find(patch.removed.begin(), patch.removed.end(), t) == patch.removed.end();
     };
@@ -227,7 +355,7 @@ bool RemeshSurface::touches(const Patch& patch) const
         const Vec3I& c = patch.added[i];
         const FloatBox box = box_around(points_[c[0]], points_[c[1]], points_[c[2]]);
         for (const std::uint32_t t : near_)
-            if (grid_.box(t).overlaps(box) && exact::triangles_touch(points_, c, triangles_[t]))
+            if (boxes_.box(t).overlaps(box) && exact::triangles_touch(points_, c, triangles_[t]))
                 return true;
         for (std::size_t j = i + 1; j < patch.added.size(); ++j)
             if (exact::triangles_touch(points_, c, patch.added[j]))
@@ -237,14 +365,13 @@ bool RemeshSurface::touches(const Patch& patch) const
 }
 
 /// The middles of the new edges; those of the triangles have been looked at.
-bool RemeshSurface::keeps_near(const Patch& patch) const
+bool RemeshSurface::keeps_near(const Patch& patch)
 {
     for (const Vec3I& c : patch.added)
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t v = c[k], w = c[(k + 1) % 3];
             // Both triangles of an edge at the hub are new, and one of them is enough.
-            if (v == patch.hub &&
-                foot_of(0.5 * (point(v) + point(w))).squared > tolerance_ * tolerance_)
+            if (v == patch.hub && !is_near(patch, foot_of(0.5 * (point(v) + point(w))).squared))
                 return false;
         }
     return true;
@@ -259,30 +386,25 @@ bool RemeshSurface::features_near(const Patch& patch) const
     });
 }
 
-bool RemeshSurface::samples_near(const Patch& patch) const
+/// Notes the nearest of the new triangles for each sample on the way, where it is handed to.
+bool RemeshSurface::samples_near(const Patch& patch)
 {
-    std::vector<std::array<Vec3d, 3>> added;
-    added.reserve(patch.added.size());
-    for (const Vec3I& c : patch.added)
-        added.push_back(corners_of(c));
-    const double most = tolerance_ * tolerance_;
-    // The boxes save most of the distances, which are half of what remeshing costs.
-    const auto is_near = [&](std::size_t i, std::uint32_t s) {
-        const Vec3I& c = patch.added[i];
-        return squared_distance(box_around(points_[c[0]], points_[c[1]], points_[c[2]]),
-                                samples_[s]) <= most &&
-               squared_distance(added[i], samples_[s]) <= most;
-    };
-    for (std::size_t i = 0; i < patch.removed.size(); ++i)
-        for (const std::uint32_t s : samples_of_[patch.removed[i]]) {
-            // A moved triangle has its own place in both lists, and most likely its samples too.
-            const std::size_t first = std::min(i, added.size() - 1);
-            bool found = is_near(first, s);
-            for (std::size_t j = 0; !found && j < added.size(); ++j)
-                found = is_near(j, s);
-            if (!found)
+    handed_over_.clear();
+    for (const std::uint32_t t : patch.removed)
+        handed_over_.insert(handed_over_.end(), samples_of_[t].begin(), samples_of_[t].end());
+    around_.prepare(point(patch.hub), scale_, patch.added.size(),
+                    [&](std::size_t i) { return corners_of(patch.added[i]); });
+    nearest_added_.resize(handed_over_.size());
+    for (std::size_t i = 0; i < handed_over_.size(); i += kLanes) {
+        const std::size_t count = std::min(kLanes, handed_over_.size() - i);
+        const EightNearest& nearest =
+            around_.nearest(count, [&](std::size_t k) { return samples_[handed_over_[i + k]]; });
+        for (std::size_t k = 0; k < count; ++k) {
+            if (!is_near(patch, double(nearest.squared[k]) / (scale_ * scale_)))
                 return false;
+            nearest_added_[i + k] = static_cast<std::uint32_t>(nearest.triangle[k]);
         }
+    }
     return true;
 }
 
@@ -293,27 +415,32 @@ void RemeshSurface::unlink(std::uint32_t t)
         star.erase(std::find(star.begin(), star.end(), t));
     }
     triangles_[t] = Vec3I(0U);
-    grid_.remove(t);
+    boxes_.remove(t);
     --live_;
 }
 
-void RemeshSurface::put(std::uint32_t t, const Vec3I& corners, const Shape& shape)
+void RemeshSurface::link(std::uint32_t t, const Vec3I& corners, const Shape& shape)
 {
     triangles_[t] = corners;
     cosine_[t] = shape.cosine;
     facing_[t] = shape.facing;
     for (int k = 0; k < 3; ++k)
         star_[corners[k]].push_back(t);
-    grid_.insert(t, box_around(points_[corners[0]], points_[corners[1]], points_[corners[2]]));
     ++live_;
+}
+
+void RemeshSurface::put(std::uint32_t t, const Vec3I& corners, const Shape& shape)
+{
+    link(t, corners, shape);
+    changed_at_[t] = now_;
+    boxes_.insert(t, box_around(points_[corners[0]], points_[corners[1]], points_[corners[2]]));
 }
 
 /// New triangles take the numbers of those that go, as far as these reach.
 void RemeshSurface::commit(const Patch& patch)
 {
-    handed_over_.clear();
+    ++now_;
     for (const std::uint32_t t : patch.removed) {
-        handed_over_.insert(handed_over_.end(), samples_of_[t].begin(), samples_of_[t].end());
         samples_of_[t].clear();
         unlink(t);
     }
@@ -322,7 +449,7 @@ void RemeshSurface::commit(const Patch& patch)
         if (free_triangles_.empty()) {
             place.push_back(static_cast<std::uint32_t>(triangles_.size()));
             triangles_.emplace_back(0U);
-            cosine_.push_back(0), facing_.push_back(0);
+            cosine_.push_back(0), facing_.push_back(0), changed_at_.push_back(0);
             samples_of_.emplace_back();
         } else {
             place.push_back(free_triangles_.back());
@@ -337,53 +464,96 @@ void RemeshSurface::commit(const Patch& patch)
         feature_edges_.erase(edge);
     for (const NewFeature& f : patch.features)
         feature_edges_[key(f.a, f.b)] = f.edge;
-    place.resize(patch.added.size());
-    hand_over(place);
-}
-
-/// Each sample to the nearest of the triangles. The boxes save most of the distances.
-void RemeshSurface::hand_over(const std::vector<std::uint32_t>& triangles)
-{
-    for (const std::uint32_t s : handed_over_) {
-        std::uint32_t nearest = triangles.front();
-        double least = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t t : triangles) {
-            if (squared_distance(grid_.box(t), samples_[s]) >= least)
-                continue;
-            const double squared = squared_distance(corners_of(triangles_[t]), samples_[s]);
-            if (squared < least)
-                least = squared, nearest = t;
-        }
-        samples_of_[nearest].push_back(s);
-    }
+    for (std::size_t i = 0; i < handed_over_.size(); ++i)
+        samples_of_[place[nearest_added_[i]]].push_back(handed_over_[i]);
 }
 
 void RemeshSurface::settle_samples()
 {
-    std::vector<std::uint32_t> home(samples_.size());
+    // A sample can only have come nearer to another triangle where one at its own triangle's
+    // corners is new.
+    std::vector<std::uint8_t> at_new(points_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        for (const std::uint32_t s : samples_of_[t])
-            home[s] = t;
-    for_each_index(samples_.size(), [&](std::size_t s) {
-        double least = squared_distance(corners_of(triangles_[home[s]]), samples_[s]);
-        // Each step is strictly nearer, so this ends.
-        for (bool nearer = true; nearer;) {
-            nearer = false;
-            const Vec3I corners = triangles_[home[s]];
+        if (alive(t) && changed_at_[t] >= settled_at_)
             for (int k = 0; k < 3; ++k)
-                for (const std::uint32_t t : star_[corners[k]]) {
-                    if (squared_distance(grid_.box(t), samples_[s]) >= least)
-                        continue;
-                    const double squared = squared_distance(corners_of(triangles_[t]), samples_[s]);
-                    if (squared < least)
-                        least = squared, home[s] = t, nearer = true;
-                }
+                at_new[triangles_[t][k]] = 1;
+    settled_at_ = ++now_;
+    std::vector<std::uint32_t> wandering;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        const Vec3I& c = triangles_[t];
+        if (alive(t) && (at_new[c[0]] || at_new[c[1]] || at_new[c[2]]))
+            wandering.push_back(t);
+    }
+    // Their samples, and of each the triangle that it is to belong to.
+    std::vector<std::vector<std::uint32_t>> samples(wandering.size()), homes(wandering.size());
+    for_each_index(
+        wandering.size(),
+        [&](std::size_t i) {
+            samples[i] = std::move(samples_of_[wandering[i]]);
+            samples_of_[wandering[i]].clear();
+            find_homes(wandering[i], samples[i], homes[i]);
+        },
+        16);
+    for (std::size_t i = 0; i < wandering.size(); ++i)
+        for (std::size_t k = 0; k < samples[i].size(); ++k)
+            samples_of_[homes[i][k]].push_back(samples[i][k]);
+}
+
+/// For each sample the triangle that it comes to when it goes on to a nearer neighbour of its
+/// triangle as long as there is one.
+void RemeshSurface::find_homes(std::uint32_t from, const std::vector<std::uint32_t>& samples,
+                               std::vector<std::uint32_t>& homes) const
+{
+    std::vector<std::uint32_t> list;
+    neighbours_of(from, list);
+    TrianglesAround around;
+    around.prepare(point(triangles_[from][0]), scale_, list.size(),
+                   [&](std::size_t i) { return corners_of(triangles_[list[i]]); });
+    homes.resize(samples.size());
+    for (std::size_t i = 0; i < samples.size(); i += kLanes) {
+        const std::size_t count = std::min(kLanes, samples.size() - i);
+        const EightNearest& nearest =
+            around.nearest(count, [&](std::size_t k) { return samples_[samples[i + k]]; });
+        for (std::size_t k = 0; k < count; ++k) {
+            homes[i + k] = list[std::size_t(nearest.triangle[k])];
+            // Few go anywhere, and fewer go on from there.
+            if (homes[i + k] != from)
+                homes[i + k] = home_from(homes[i + k], samples_[samples[i + k]]);
         }
-    });
-    for (std::vector<std::uint32_t>& samples : samples_of_)
-        samples.clear();
-    for (std::uint32_t s = 0; s < home.size(); ++s)
-        samples_of_[home[s]].push_back(s);
+    }
+}
+
+std::uint32_t RemeshSurface::home_from(std::uint32_t t, const Vec3d& p) const
+{
+    std::vector<std::uint32_t> around;
+    double least = squared_distance(corners_of(triangles_[t]), p);
+    // Each step is strictly nearer, so this ends.
+    for (std::uint32_t from = kNoTriangle; from != t;) {
+        from = t;
+        neighbours_of(from, around);
+        for (const std::uint32_t other : around) {
+            const double squared = squared_distance(corners_of(triangles_[other]), p);
+            if (squared < least)
+                least = squared, t = other;
+        }
+    }
+    return t;
+}
+
+/// The triangle itself first, then those that share a corner with it.
+void RemeshSurface::neighbours_of(std::uint32_t t, std::vector<std::uint32_t>& around) const
+{
+    around.assign(1, t);
+    for (int k = 0; k < 3; ++k)
+        for (const std::uint32_t other : star_[triangles_[t][k]])
+            if (std::find(around.begin(), around.end(), other) == around.end())
+                around.push_back(other);
+}
+
+void RemeshSurface::look_at(const Vec3d& p, std::uint32_t t)
+{
+    samples_of_[home_from(t, p)].push_back(static_cast<std::uint32_t>(samples_.size()));
+    samples_.push_back(p);
 }
 
 } // namespace vdb_shell

@@ -3,7 +3,8 @@
 
 #include "mesh/triangle_tree.h"
 #include "resample/feature_curves.h"
-#include "resample/loose_grid.h"
+#include "resample/moving_boxes.h"
+#include "resample/triangles_around.h"
 #include "vdb_shell/resample/remesh.h"
 
 #include <array>
@@ -21,6 +22,9 @@ enum class Refusal : std::uint8_t { none, topology, feature, length, shape, turn
 /// What a vertex may do: move over the surface, slide along its curve, nothing.
 enum class VertexKind : std::uint8_t { free, on_curve, corner };
 
+/// Where a split puts the new vertex, unless the edge is on a curve of features.
+enum class SplitTo : std::uint8_t { middle, input };
+
 /// For the cosine of an operation: every angle has a smaller one.
 constexpr double kLargerThanBefore = -1;
 
@@ -35,6 +39,9 @@ public:
     /// points of the input may be from each other at which that is tested.
     RemeshSurface(const TriangleMesh& input, const FeatureCurves& features, double tolerance,
                   double spacing);
+
+    /// What operations are held to from now on.
+    void tolerance(double tolerance) { tolerance_ = tolerance; }
 
     // What there is. Triangles and vertices that have gone keep their numbers until new ones take
     // them.
@@ -52,6 +59,10 @@ public:
     bool has_edge(std::uint32_t a, std::uint32_t b) const;
     bool is_feature(std::uint32_t a, std::uint32_t b) const { return feature(a, b) != nullptr; }
     double length(std::uint32_t a, std::uint32_t b) const { return (point(a) - point(b)).length(); }
+    /// Counts what has been done; and what it was at when this triangle became what it is, 0 for
+    /// those of the input.
+    std::uint64_t now() const { return now_; }
+    std::uint64_t changed_at(std::uint32_t t) const { return changed_at_[t]; }
     /// The two triangles of an edge: the first runs from a to b. Precondition: it is one.
     std::array<std::uint32_t, 2> triangles_at(std::uint32_t a, std::uint32_t b) const;
     /// The wanted length of edges at a vertex, for callers to read and set.
@@ -65,7 +76,7 @@ public:
     // The operations. `cosine`: no triangle may get a smaller angle than that of this cosine, but
     // for one that is no smaller than the smallest before; kLargerThanBefore: the smallest has to
     // grow.
-    Refusal split(std::uint32_t a, std::uint32_t b);
+    Refusal split(std::uint32_t a, std::uint32_t b, SplitTo to = SplitTo::middle);
     /// `longest`: of the wanted lengths, which no new edge may be longer than.
     Refusal collapse(std::uint32_t a, std::uint32_t b, double longest, double cosine);
     Refusal flip(std::uint32_t a, std::uint32_t b, double cosine);
@@ -79,6 +90,8 @@ public:
     /// The point of its curve at this share of the way between these neighbours.
     openvdb::Vec3d point_between(std::uint32_t v, double share) const;
 
+    /// Looks at one more point of the input from now on, which is near that triangle.
+    void look_at(const openvdb::Vec3d& p, std::uint32_t t);
     /// Finds the nearest triangle for each sample anew, from neighbour to neighbour, so that none
     /// of them jumps to another sheet.
     void settle_samples();
@@ -103,7 +116,14 @@ private:
         std::vector<NewFeature> features;
         std::vector<std::uint64_t> forgotten; ///< keys of feature edges that go
         std::uint32_t hub = 0;
-        void clear() { removed.clear(), added.clear(), features.clear(), forgotten.clear(); }
+        /// What comes is where what goes was, but for rounding: nowhere nearer or farther than
+        /// that.
+        bool same_surface = false;
+        void clear()
+        {
+            removed.clear(), added.clear(), features.clear(), forgotten.clear();
+            same_surface = false;
+        }
     };
     struct Foot {
         openvdb::Vec3d point{0.0};
@@ -133,13 +153,20 @@ private:
     Refusal refusal_of(const Patch& patch, double cosine);
     bool keeps_shape(const Patch& patch, double cosine);
     bool faces_as_before(const Patch& patch);
+    bool stays_in_plane(const Patch& patch) const;
     bool touches(const Patch& patch) const;
-    bool keeps_near(const Patch& patch) const;
+    bool is_near(const Patch& patch, double squared);
+    double farthest_before(const Patch& patch) const;
+    bool keeps_near(const Patch& patch);
     bool features_near(const Patch& patch) const;
-    bool samples_near(const Patch& patch) const;
+    bool samples_near(const Patch& patch);
     void commit(const Patch& patch);
-    void hand_over(const std::vector<std::uint32_t>& triangles);
+    void find_homes(std::uint32_t from, const std::vector<std::uint32_t>& samples,
+                    std::vector<std::uint32_t>& homes) const;
+    std::uint32_t home_from(std::uint32_t t, const openvdb::Vec3d& p) const;
+    void neighbours_of(std::uint32_t t, std::vector<std::uint32_t>& around) const;
     void unlink(std::uint32_t t);
+    void link(std::uint32_t t, const openvdb::Vec3I& corners, const Shape& shape);
     void put(std::uint32_t t, const openvdb::Vec3I& corners, const Shape& shape);
 
     // Operations on feature edges, in remesh_operations.cpp.
@@ -155,6 +182,7 @@ private:
     const TriangleMesh& input_;
     const FeatureCurves& features_;
     double tolerance_;
+    double scale_; ///< makes of lengths numbers near 1, for floats
     TriangleTree tree_;
     mutable TriangleTree::Seed seed_ = TriangleTree::kNoSeed;
 
@@ -168,9 +196,11 @@ private:
     std::vector<openvdb::Vec3I> triangles_; ///< all corners equal: none there
     std::vector<double> cosine_;            ///< of the smallest angle
     std::vector<double> facing_;            ///< cosine to the input's normal next to the middle
+    std::vector<std::uint64_t> changed_at_;
+    std::uint64_t now_ = 1, settled_at_ = 1;
     std::vector<std::uint32_t> free_triangles_;
     std::size_t live_ = 0;
-    LooseGrid grid_;
+    MovingBoxes boxes_;
 
     /// Feature edges by their ends. Only looked up, never walked through: its order is not used.
     std::unordered_map<std::uint64_t, FeatureEdge> feature_edges_;
@@ -179,11 +209,18 @@ private:
     std::vector<openvdb::Vec3d> samples_;
     std::vector<std::vector<std::uint32_t>> samples_of_; ///< by triangle
 
+    // Of the patch that is looked at: where its hub was; the largest squared distance of what goes,
+    // less than 0 while it is not known.
+    openvdb::Vec3s hub_before_{0.0F};
+    double farthest_before_ = -1;
+
     // Kept between calls for their memory.
     Patch patch_;
     std::vector<Shape> shapes_; ///< of the triangles that the patch adds
+    TrianglesAround around_;    ///< the same
     mutable std::vector<std::uint32_t> near_;
-    std::vector<std::uint32_t> handed_over_;
+    /// The samples of the triangles that go, and of each the triangle to be that is nearest.
+    std::vector<std::uint32_t> handed_over_, nearest_added_;
 };
 
 } // namespace vdb_shell

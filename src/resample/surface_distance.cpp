@@ -18,6 +18,7 @@
 #include "mesh/triangle_area.h"
 #include "mesh/triangle_corners.h"
 #include "mesh/triangle_tree.h"
+#include "resample/far_points.h"
 #include "resample/triangle_pieces.h"
 #include "vdb_shell/core/error.h"
 
@@ -26,6 +27,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -146,10 +148,12 @@ Samples sample(const TriangleMesh& mesh, double spacing)
 /// The distance of each point to the surface: the tree says in floats which triangle is nearest,
 /// and doubles how far that is. So it is never too short, and too long by no more than the
 /// rounding of a float of the size of the surface.
-std::vector<double> distances_to(const TriangleMesh& surface, const std::vector<Vec3d>& points)
+std::vector<double> distances_to(const TriangleMesh& surface, const std::vector<Vec3d>& points,
+                                 std::vector<std::uint32_t>& nearest)
 {
     const TriangleTree tree(surface, std::max(diagonal_of(bounds_of(surface.points)), kLeastUnit));
     std::vector<double> distances(points.size());
+    nearest.resize(points.size());
     const std::size_t runs = (points.size() + kPointsInRun - 1) / kPointsInRun;
     for_each_index(
         runs,
@@ -160,6 +164,7 @@ std::vector<double> distances_to(const TriangleMesh& surface, const std::vector<
                 const std::uint32_t t = tree.nearest(points[i], 0.0F, seed).triangle;
                 const Vec3d on = nearest_on_triangle(triangle_corners(surface, t), points[i]).point;
                 distances[i] = (on - points[i]).length();
+                nearest[i] = t;
             }
         },
         1);
@@ -180,13 +185,22 @@ double finest_spacing(const TriangleMesh& from)
 DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& to, double spacing,
                                  Interrupter* interrupter)
 {
+    std::vector<FarPoint> none;
+    return surface_distance(from, to, spacing, std::numeric_limits<double>::infinity(), none,
+                            interrupter);
+}
+
+DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& to, double spacing,
+                                 double limit, std::vector<FarPoint>& far, Interrupter* interrupter)
+{
     const StageProgress progress(interrupter, "surface distance");
     if (from.triangles.empty() || to.triangles.empty())
         throw GeometryError("surface distance: the surfaces have " +
                             std::to_string(from.triangles.size()) + " and " +
                             std::to_string(to.triangles.size()) + " triangles");
     const Samples samples = sample(from, spacing);
-    const std::vector<double> distances = distances_to(to, samples.points);
+    std::vector<std::uint32_t> nearest;
+    const std::vector<double> distances = distances_to(to, samples.points, nearest);
     progress.stop_if_interrupted(100);
     DistanceFigures figures;
     figures.samples = distances.size();
@@ -196,9 +210,19 @@ DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& t
         figures.mean += samples.areas[i] * distances[i];
         area += samples.areas[i];
         figures.max = std::max(figures.max, distances[i]);
+        if (distances[i] > limit)
+            far.push_back({samples.points[i], nearest[i]});
     }
     figures.mean = area > 0 ? figures.mean / area : 0.0;
     return figures;
+}
+
+std::vector<std::uint32_t> nearest_triangles(const TriangleMesh& surface,
+                                             const std::vector<Vec3d>& points)
+{
+    std::vector<std::uint32_t> nearest;
+    distances_to(surface, points, nearest);
+    return nearest;
 }
 
 } // namespace vdb_shell

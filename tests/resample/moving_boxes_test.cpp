@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "resample/loose_grid.h"
+#include "resample/moving_boxes.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ FloatBox box_at(const openvdb::Vec3s& low, const openvdb::Vec3s& size)
     return box;
 }
 
-TEST(LooseGrid, FindsWhatComparingAllBoxesFindsWhileTheyComeAndGo)
+TEST(MovingBoxes, FindsWhatComparingAllBoxesFindsWhileTheyComeAndGo)
 {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> place(-1, 1), power(-12, 1);
@@ -29,7 +29,7 @@ TEST(LooseGrid, FindsWhatComparingAllBoxesFindsWhileTheyComeAndGo)
         return box_at({place(random), place(random), place(random)},
                       {size, size * std::abs(place(random)), power(random) < -10 ? 0 : size});
     };
-    LooseGrid grid;
+    MovingBoxes grid;
     std::vector<FloatBox> boxes;
     std::vector<char> there;
     for (std::uint32_t i = 0; i < 3000; ++i) {
