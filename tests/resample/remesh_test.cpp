@@ -238,6 +238,65 @@ TEST(Remesh, SameBytesForAnyNumberOfThreads)
     }
 }
 
+TEST(Remesh, KeepsADentThatAnotherBodyReachesInto)
+{
+    // The dent is shallower than the tolerance: but for the thorn in it, it would be filled.
+    TriangleMesh dented = gridded_box({0, 0, -1}, {1, 1, 0}, 8);
+    for (Vec3s& p : dented.points)
+        if (p[2] == 0 && (p - Vec3s(0.5F, 0.5F, 0)).length() < 0.01F)
+            p[2] = -0.1F;
+    TriangleMesh thorn = unit_tetrahedron(); // its corner at 0, turned over, is the point
+    for (Vec3s& p : thorn.points)
+        p = Vec3s(0.5F, 0.5F, -0.05F) + Vec3s(0.02F * p[0], 0.02F * p[1], 0) +
+            Vec3s(0, 0, p == Vec3s(0.0F) ? 0 : 1.0F);
+    const auto remeshed = [](const TriangleMesh& mesh) {
+        RemeshOptions options = to_length(0.5);
+        options.tolerance = 0.3;
+        return remesh(mesh, options).mesh;
+    };
+    const auto has_dent = [](const TriangleMesh& mesh) {
+        return std::any_of(mesh.points.begin(), mesh.points.end(), [](const Vec3s& p) {
+            return p[2] < -0.05F && p[2] > -0.5F && std::abs(p[0] - 0.5F) < 0.2F &&
+                   std::abs(p[1] - 0.5F) < 0.2F;
+        });
+    };
+    EXPECT_FALSE(has_dent(remeshed(dented)));
+    const TriangleMesh both = remeshed(joined(dented, thorn));
+    expect_sound(both);
+    EXPECT_TRUE(has_dent(both));
+}
+
+TEST(Remesh, MakesGoodTrianglesOfAPlateOfNeedles)
+{
+    const TriangleMesh plate = needled_plate(100);
+    ASSERT_GT(triangle_figures(plate).under_20_degrees, plate.triangles.size() / 2);
+    RemeshOptions options;
+    options.triangles = 2000;
+    const RemeshResult result = remesh(plate, options);
+    expect_sound(result.mesh);
+    expect_within_tolerance(result, plate);
+    EXPECT_NEAR(double(result.mesh.triangles.size()), 2000, 200);
+    EXPECT_LT(result.report.shape.under_20_degrees, 20);
+    EXPECT_GT(result.report.shape.mean_min_angle_radians, 45 * kDegree);
+}
+
+TEST(Remesh, CutsWhereTheSurfacesAreTooFarApartInsteadOfStartingAnew)
+{
+    // Narrow hills, so that between the points at which operations look a few places are too far
+    // from the other surface.
+    TriangleMesh hills = icosphere(1.0, 4);
+    for (Vec3s& p : hills.points) {
+        const Vec3d at = 9.0 * Vec3d(p);
+        p *= float(1 + 0.3 * std::sin(at[0]) * std::sin(at[1]) * std::sin(at[2] + 1));
+    }
+    RemeshOptions options;
+    options.triangles = 800;
+    const RemeshResult result = remesh(hills, options);
+    expect_sound(result.mesh);
+    expect_within_tolerance(result, hills);
+    EXPECT_EQ(result.report.repeats, 0);
+}
+
 TEST(Remesh, AToleranceThatNothingCanKeepGivesTheInput)
 {
     const TriangleMesh shape = icosphere(1.0, 1);
