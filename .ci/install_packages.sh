@@ -4,7 +4,7 @@
 #   install_packages.sh test    that, and what the tests need
 set -euo pipefail
 
-build=(g++ cmake ninja-build libtbb-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev libopenmesh-dev
+build=(g++ cmake ninja-build libtbb-dev libopenvdb-dev libblosc-dev libboost-dev libboost-iostreams-dev libopenmesh-dev
        libcgal-dev libhwy-dev libxxhash-dev libpng-dev zlib1g-dev nlohmann-json3-dev libcli11-dev libeigen3-dev)
 test=(git libgtest-dev libgmock-dev libbenchmark-dev clang libclang-rt-14-dev clang-format clang-tidy doxygen python3 python3-jsonschema python3-openvdb python3-numpy python3-vtk9 gmsh tetgen libopenvdb-tools blender chromium
       slurm-wlm munge)

@@ -13,9 +13,9 @@
 #include "core/bucket_sort.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
-#include "field/eight_distances.h"
 #include "field/level_set_checks.h"
 #include "field/signed_distance.h"
+#include "mesh/eight_distances.h"
 
 #include <openvdb/tools/SignedFloodFill.h>
 

@@ -8,6 +8,8 @@
 
 #include "resample/moving_boxes.h"
 
+// One of its headers is called deprecated by another of Boost's own.
+#define BOOST_ALLOW_DEPRECATED_HEADERS
 #include <boost/geometry/algorithms/covered_by.hpp>
 #include <boost/geometry/algorithms/equals.hpp>
 #include <boost/geometry/geometries/box.hpp>

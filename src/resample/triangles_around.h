@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "field/eight_distances.h"
+#include "mesh/eight_distances.h"
 
 #include <cstddef>
 #include <cstdint>

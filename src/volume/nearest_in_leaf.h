@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "field/eight_distances.h"
+#include "mesh/eight_distances.h"
 #include "mesh/triangle_tree.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 

@@ -8,12 +8,12 @@
 #include "core/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "field/eight_distances.cpp"
+#define HWY_TARGET_INCLUDE "mesh/eight_distances.cpp"
 #include <hwy/foreach_target.h>
 
 #include "core/dispatch.h"
 #include "core/simd-inl.h"
-#include "field/eight_distances.h"
+#include "mesh/eight_distances.h"
 
 #include <limits>
 
