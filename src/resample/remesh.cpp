@@ -166,8 +166,8 @@ void mend_angles(RemeshSurface& surface, const Job& job, double cosine)
     }
 }
 
-/// Measures both ways, and lists where the surfaces are farther apart than they may be, with the
-/// triangle of the result there.
+/// Measures both ways, and lists points of the input where the surfaces are farther apart than they
+/// may be, each with the triangle of the result there.
 std::vector<FarPoint> measure(const Job& job, RemeshResult& result, Interrupter* interrupter)
 {
     RemeshReport& report = result.report;
@@ -176,19 +176,25 @@ std::vector<FarPoint> measure(const Job& job, RemeshResult& result, Interrupter*
         surface_distance(job.input, result.mesh, job.spacing, job.tolerance, far, interrupter);
     report.result_to_input = surface_distance(result.mesh, job.input, job.spacing, job.tolerance,
                                               of_result, interrupter);
+    if (of_result.empty())
+        return far;
     std::vector<openvdb::Vec3d> points;
+    points.reserve(of_result.size());
     for (const FarPoint& f : of_result)
         points.push_back(f.point);
-    const std::vector<std::uint32_t> triangles =
-        points.empty() ? std::vector<std::uint32_t>() : nearest_triangles(result.mesh, points);
+    const std::vector<std::uint32_t> triangles = nearest_triangles(result.mesh, points);
     for (std::size_t i = 0; i < points.size(); ++i)
-        far.push_back({points[i], triangles[i]});
+        far.push_back(
+            {nearest_on_triangle(triangle_corners(job.input, of_result[i].triangle), points[i])
+                 .point,
+             triangles[i]});
     return far;
 }
 
 std::size_t count_triangles(const std::vector<FarPoint>& far)
 {
     std::vector<std::uint32_t> triangles;
+    triangles.reserve(far.size());
     for (const FarPoint& f : far)
         triangles.push_back(f.triangle);
     std::sort(triangles.begin(), triangles.end());

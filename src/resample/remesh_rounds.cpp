@@ -32,6 +32,9 @@ using openvdb::Vec3I;
 constexpr double kEdgesMayLeave = 0.966, kMovesMayLeave = 0.866;
 // A refused collapse leaves an edge of this share of the wanted length that it sets: in range.
 constexpr double kLengthOverRefused = 1.1;
+// How often all edges are gone through that are too long, for each time that the longest has to be
+// halved: once is enough where no flip makes one longer.
+constexpr int kRoundsForHalf = 3;
 // Moves under that share of the wanted length are not worth their tests.
 constexpr double kLeastMove = 0.01;
 
@@ -196,12 +199,18 @@ std::array<std::uint32_t, 3> from_longest(const RemeshSurface& surface, std::uin
 
 void split_long_edges(RemeshSurface& surface)
 {
-    // Halves may be too long as well; each time round the longest are shorter, so this ends.
-    for (bool any = true; any;) {
+    // Halves may be too long as well; each time round the longest are shorter, but for flips, which
+    // may make one longer.
+    int rounds_left = 1;
+    for (bool any = true, first = true; any && rounds_left > 0; --rounds_left) {
         any = false;
         const std::uint64_t before = surface.now();
         const std::vector<LongEdge> edges =
             edges_by_ratio(surface, [](double ratio) { return ratio > kTooLong; });
+        if (edges.empty())
+            break;
+        if (std::exchange(first, false))
+            rounds_left = kRoundsForHalf * (2 + std::ilogb(edges.back().ratio));
         // Longest first, so that triangles are cut at their longest sides.
         for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge) {
             stop_if_stage_wants(std::size_t(edge - edges.rbegin()));
@@ -210,7 +219,7 @@ void split_long_edges(RemeshSurface& surface)
         }
         // Needles that are cut across again and again leave triangles by the hundred thousand,
         // which are as narrow; between the cuts most can be flipped into good ones.
-        if (!edges.empty() && edges.back().ratio > 2 * kTooLong)
+        if (edges.back().ratio > 2 * kTooLong)
             flip_to_angle(surface, before);
     }
 }

@@ -306,8 +306,8 @@ bool RemeshSurface::faces_as_before(const Patch& patch)
 }
 
 /// Whether what goes and what comes covers the same part of one plane along two axes, once: both
-/// have the same border, and no triangle is turned over, so each point is covered as often as
-/// before. Flat walls of machined parts are such planes.
+/// are discs with the same border, and no triangle is turned over, so each point is covered as
+/// often as before. Flat walls of machined parts are such planes.
 bool RemeshSurface::stays_in_plane(const Patch& patch) const
 {
     const Vec3s& any = points_[patch.added[0][0]];

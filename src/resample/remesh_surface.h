@@ -40,9 +40,6 @@ public:
     RemeshSurface(const TriangleMesh& input, const FeatureCurves& features, double tolerance,
                   double spacing);
 
-    /// What operations are held to from now on.
-    void tolerance(double tolerance) { tolerance_ = tolerance; }
-
     // What there is. Triangles and vertices that have gone keep their numbers until new ones take
     // them.
     std::size_t triangle_slots() const { return triangles_.size(); }
