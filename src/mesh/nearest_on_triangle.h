@@ -20,6 +20,12 @@ struct NearestOnTriangle {
 NearestOnTriangle nearest_on_triangle(const std::array<openvdb::Vec3d, 3>& corner,
                                       const openvdb::Vec3d& point);
 
+inline double squared_distance(const std::array<openvdb::Vec3d, 3>& corner,
+                               const openvdb::Vec3d& point)
+{
+    return (nearest_on_triangle(corner, point).point - point).lengthSqr();
+}
+
 /// The weights of its corners, none negative; of a triangle without area that doubles see, those of
 /// the nearest corner.
 std::array<double, 3> nearest_weights(const std::array<openvdb::Vec3d, 3>& corner,

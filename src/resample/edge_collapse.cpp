@@ -230,11 +230,6 @@ private:
     }
 
     using Fan = std::vector<std::array<Vec3d, 3>>;
-    static double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& p)
-    {
-        return (nearest_on_triangle(triangle, p).point - p).lengthSqr();
-    }
-
     /// What a thread needs to look at one vertex after another.
     struct Scratch {
         std::vector<std::uint32_t> ring;

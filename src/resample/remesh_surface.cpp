@@ -11,17 +11,14 @@
 #include "resample/remesh_surface.h"
 
 #include "core/exact.h"
-#include "core/parallel.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/triangle_corners.h"
 #include "resample/triangle_angle.h"
-#include "resample/triangle_pieces.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <unordered_set>
 #include <utility>
 
 namespace vdb_shell
@@ -52,55 +49,6 @@ FloatBox box_around(const Vec3s& a, const Vec3s& b, const Vec3s& c)
     box.add(c);
     return box;
 }
-
-double squared_distance(const std::array<Vec3d, 3>& triangle, const Vec3d& p)
-{
-    return (nearest_on_triangle(triangle, p).point - p).lengthSqr();
-}
-
-constexpr std::uint32_t kNoTriangle = ~0U;
-
-/// Cells of points, apart for each plane that the points are said to lie in: needles of one plane
-/// would have samples by the hundred in the same place.
-class PlaneCells
-{
-public:
-    /// Planes are told apart by normals, and by how far they are from the origin.
-    PlaneCells(double cell, double apart) : cell_(cell), apart_(apart) {}
-    void set_plane(const std::array<Vec3d, 3>& c)
-    {
-        Vec3d normal = (c[1] - c[0]).cross(c[2] - c[0]);
-        const double length = normal.length();
-        normal = length > 0 ? normal / length : Vec3d(0.0);
-        plane_ = {std::round(normal[0] * kNormals), std::round(normal[1] * kNormals),
-                  std::round(normal[2] * kNormals), std::round(normal.dot(c[0]) / apart_)};
-    }
-    /// Whether the point is the first of its cell and its plane.
-    bool take(const Vec3d& p)
-    {
-        return taken_
-            .insert({plane_[0], plane_[1], plane_[2], plane_[3], std::floor(p[0] / cell_),
-                     std::floor(p[1] / cell_), std::floor(p[2] / cell_)})
-            .second;
-    }
-
-private:
-    // Normals are told apart by half a degree.
-    static constexpr double kNormals = 100;
-    using Key = std::array<double, 7>;
-    struct Hash {
-        std::size_t operator()(const Key& key) const
-        {
-            std::size_t hash = 0;
-            for (const double k : key)
-                hash = (hash ^ std::hash<double>()(k)) * 0x9E3779B97F4A7C15U;
-            return hash;
-        }
-    };
-    double cell_, apart_;
-    std::array<double, 4> plane_{};
-    std::unordered_set<Key, Hash> taken_; ///< asked, never walked through
-};
 
 /// The sign of the area of a triangle seen along an axis; 0 where doubles do not tell for certain.
 int sign_along(int axis, const Vec3s& a, const Vec3s& b, const Vec3s& c)
@@ -143,46 +91,6 @@ RemeshSurface::RemeshSurface(const TriangleMesh& input, const FeatureCurves& fea
         if (features.corner[v])
             kind_[v] = VertexKind::corner;
     place_samples(spacing);
-}
-
-/// The vertices, by their own numbers; then points inside of triangles and edges that are longer
-/// than the spacing, unless there is one nearer than that in the same plane.
-void RemeshSurface::place_samples(double spacing)
-{
-    for (const Vec3s& p : input_.points)
-        samples_.emplace_back(p);
-    samples_of_.resize(triangles_.size());
-    std::vector<char> seen(samples_.size());
-    PlaneCells cells(0.5 * spacing, 0.25 * tolerance_);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-        const std::array<Vec3d, 3> c = corners_of(triangles_[t]);
-        const bool has_long_edges = (c[1] - c[0]).length() > spacing ||
-                                    (c[2] - c[1]).length() > spacing ||
-                                    (c[0] - c[2]).length() > spacing;
-        if (has_long_edges)
-            cells.set_plane(c);
-        const auto add = [&](const Vec3d& p) {
-            if (!cells.take(p))
-                return;
-            samples_of_[t].push_back(static_cast<std::uint32_t>(samples_.size()));
-            samples_.push_back(p);
-        };
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t v = triangles_[t][k], w = triangles_[t][(k + 1) % 3];
-            if (!seen[v])
-                samples_of_[t].push_back(v), seen[v] = 1;
-            if (has_long_edges)
-                cells.take(c[std::size_t(k)]);
-            const Vec3d &p = c[std::size_t(k)], &q = c[std::size_t((k + 1) % 3)];
-            const double pieces = v < w ? std::ceil((q - p).length() / spacing) : 1;
-            for (double i = 1; i < pieces; ++i)
-                add(p + (q - p) * (i / pieces));
-        }
-        if (has_long_edges)
-            for_each_piece(
-                c[0], c[1], c[2], spacing,
-                [&](const Vec3d& x, const Vec3d& y, const Vec3d& z) { add((x + y + z) / 3.0); });
-    }
 }
 
 std::array<Vec3d, 3> RemeshSurface::corners_of(const Vec3I& c) const
@@ -386,28 +294,6 @@ bool RemeshSurface::features_near(const Patch& patch) const
     });
 }
 
-/// Notes the nearest of the new triangles for each sample on the way, where it is handed to.
-bool RemeshSurface::samples_near(const Patch& patch)
-{
-    handed_over_.clear();
-    for (const std::uint32_t t : patch.removed)
-        handed_over_.insert(handed_over_.end(), samples_of_[t].begin(), samples_of_[t].end());
-    around_.prepare(point(patch.hub), scale_, patch.added.size(),
-                    [&](std::size_t i) { return corners_of(patch.added[i]); });
-    nearest_added_.resize(handed_over_.size());
-    for (std::size_t i = 0; i < handed_over_.size(); i += kLanes) {
-        const std::size_t count = std::min(kLanes, handed_over_.size() - i);
-        const EightNearest& nearest =
-            around_.nearest(count, [&](std::size_t k) { return samples_[handed_over_[i + k]]; });
-        for (std::size_t k = 0; k < count; ++k) {
-            if (!is_near(patch, double(nearest.squared[k]) / (scale_ * scale_)))
-                return false;
-            nearest_added_[i + k] = static_cast<std::uint32_t>(nearest.triangle[k]);
-        }
-    }
-    return true;
-}
-
 void RemeshSurface::unlink(std::uint32_t t)
 {
     for (int k = 0; k < 3; ++k) {
@@ -466,94 +352,6 @@ void RemeshSurface::commit(const Patch& patch)
         feature_edges_[key(f.a, f.b)] = f.edge;
     for (std::size_t i = 0; i < handed_over_.size(); ++i)
         samples_of_[place[nearest_added_[i]]].push_back(handed_over_[i]);
-}
-
-void RemeshSurface::settle_samples()
-{
-    // A sample can only have come nearer to another triangle where one at its own triangle's
-    // corners is new.
-    std::vector<std::uint8_t> at_new(points_.size());
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-        if (alive(t) && changed_at_[t] >= settled_at_)
-            for (int k = 0; k < 3; ++k)
-                at_new[triangles_[t][k]] = 1;
-    settled_at_ = ++now_;
-    std::vector<std::uint32_t> wandering;
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-        const Vec3I& c = triangles_[t];
-        if (alive(t) && (at_new[c[0]] || at_new[c[1]] || at_new[c[2]]))
-            wandering.push_back(t);
-    }
-    // Their samples, and of each the triangle that it is to belong to.
-    std::vector<std::vector<std::uint32_t>> samples(wandering.size()), homes(wandering.size());
-    for_each_index(
-        wandering.size(),
-        [&](std::size_t i) {
-            samples[i] = std::move(samples_of_[wandering[i]]);
-            samples_of_[wandering[i]].clear();
-            find_homes(wandering[i], samples[i], homes[i]);
-        },
-        16);
-    for (std::size_t i = 0; i < wandering.size(); ++i)
-        for (std::size_t k = 0; k < samples[i].size(); ++k)
-            samples_of_[homes[i][k]].push_back(samples[i][k]);
-}
-
-/// For each sample the triangle that it comes to when it goes on to a nearer neighbour of its
-/// triangle as long as there is one.
-void RemeshSurface::find_homes(std::uint32_t from, const std::vector<std::uint32_t>& samples,
-                               std::vector<std::uint32_t>& homes) const
-{
-    std::vector<std::uint32_t> list;
-    neighbours_of(from, list);
-    TrianglesAround around;
-    around.prepare(point(triangles_[from][0]), scale_, list.size(),
-                   [&](std::size_t i) { return corners_of(triangles_[list[i]]); });
-    homes.resize(samples.size());
-    for (std::size_t i = 0; i < samples.size(); i += kLanes) {
-        const std::size_t count = std::min(kLanes, samples.size() - i);
-        const EightNearest& nearest =
-            around.nearest(count, [&](std::size_t k) { return samples_[samples[i + k]]; });
-        for (std::size_t k = 0; k < count; ++k) {
-            homes[i + k] = list[std::size_t(nearest.triangle[k])];
-            // Few go anywhere, and fewer go on from there.
-            if (homes[i + k] != from)
-                homes[i + k] = home_from(homes[i + k], samples_[samples[i + k]]);
-        }
-    }
-}
-
-std::uint32_t RemeshSurface::home_from(std::uint32_t t, const Vec3d& p) const
-{
-    std::vector<std::uint32_t> around;
-    double least = squared_distance(corners_of(triangles_[t]), p);
-    // Each step is strictly nearer, so this ends.
-    for (std::uint32_t from = kNoTriangle; from != t;) {
-        from = t;
-        neighbours_of(from, around);
-        for (const std::uint32_t other : around) {
-            const double squared = squared_distance(corners_of(triangles_[other]), p);
-            if (squared < least)
-                least = squared, t = other;
-        }
-    }
-    return t;
-}
-
-/// The triangle itself first, then those that share a corner with it.
-void RemeshSurface::neighbours_of(std::uint32_t t, std::vector<std::uint32_t>& around) const
-{
-    around.assign(1, t);
-    for (int k = 0; k < 3; ++k)
-        for (const std::uint32_t other : star_[triangles_[t][k]])
-            if (std::find(around.begin(), around.end(), other) == around.end())
-                around.push_back(other);
-}
-
-void RemeshSurface::look_at(const Vec3d& p, std::uint32_t t)
-{
-    samples_of_[home_from(t, p)].push_back(static_cast<std::uint32_t>(samples_.size()));
-    samples_.push_back(p);
 }
 
 } // namespace vdb_shell
