@@ -137,10 +137,13 @@ bool raise(RemeshSurface& surface, std::uint32_t t)
 
 std::size_t raise_angles(RemeshSurface& surface, double cosine)
 {
-    std::size_t done = 0;
-    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t)
-        if (surface.alive(t) && surface.cosine(t) > cosine)
-            done += raise(surface, t);
+    std::size_t looked_at = 0, done = 0;
+    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t) {
+        if (!surface.alive(t) || surface.cosine(t) <= cosine)
+            continue;
+        stop_if_stage_wants(looked_at++);
+        done += raise(surface, t);
+    }
     return done;
 }
 
