@@ -143,7 +143,7 @@ void make_even(RemeshSurface& surface, const Job& job, double& length)
         grade_sizes(surface, length, kSlope, round < kRounds / 2 ? kRegrowth : 1.0);
         if (round < kRounds / 2)
             raise_angles(surface, kNeedle);
-        split_long_edges(surface);
+        split_long_edges(surface, round == 0);
         collapse_short_edges(surface, kLeastSize * length);
         flip_to_valence(surface);
         smooth(surface);

@@ -28,9 +28,6 @@ using openvdb::Vec3s;
 // another sheet. The cosine of 80 degrees.
 constexpr double kSameSheet = 0.17;
 
-// The cosine of one degree: what comes after a split mends angles, but needs some to begin with.
-constexpr double kSplitsMayLeave = 0.99985;
-
 Vec3I with(Vec3I c, std::uint32_t from, std::uint32_t to)
 {
     for (int k = 0; k < 3; ++k)
@@ -103,7 +100,7 @@ std::uint32_t RemeshSurface::new_vertex(const Vec3d& p, double size)
     return v;
 }
 
-Refusal RemeshSurface::split(std::uint32_t a, std::uint32_t b, SplitTo place)
+Refusal RemeshSurface::split(std::uint32_t a, std::uint32_t b, SplitTo place, double cosine)
 {
     const FeatureEdge* edge = feature(a, b);
     const double s = edge ? 0.5 * (edge->s_from + edge->s_to) : 0.0;
@@ -127,7 +124,7 @@ Refusal RemeshSurface::split(std::uint32_t a, std::uint32_t b, SplitTo place)
         kind_[m] = VertexKind::on_curve;
     }
     on_input_[m] = edge || place == SplitTo::input;
-    const Refusal refusal = replace(patch_, points_[m], kSplitsMayLeave);
+    const Refusal refusal = replace(patch_, points_[m], cosine);
     if (refusal != Refusal::none)
         free_vertices_.push_back(m);
     return refusal;

@@ -30,6 +30,13 @@ using openvdb::Vec3I;
 // Cosines of the angles that operations may not go below, unless they were smaller before: 15
 // degrees for collapses and flips, after which smoothing follows, 30 for moves.
 constexpr double kEdgesMayLeave = 0.966, kMovesMayLeave = 0.866;
+// The cosine of one degree for splits: what comes after them mends angles, but needs some to begin
+// with.
+constexpr double kSplitsMayLeave = 0.99985;
+// Of the smallest angle of a needle of the input that share may be left, for a split divides the
+// angle at its far end. Later rounds make no needles, but where the surface is folded so tightly
+// that nothing mends them, and there they would become narrower without end.
+constexpr double kSplitNeedles = 0.3;
 // A refused collapse leaves an edge of this share of the wanted length that it sets: in range.
 constexpr double kLengthOverRefused = 1.1;
 // How often all edges are gone through that are too long, for each time that the longest has to be
@@ -108,6 +115,14 @@ void flip_edges(RemeshSurface& surface, double cosine, std::uint64_t since, cons
         if (surface.has_edge(edges[i].a, edges[i].b) && wanted(edges[i]))
             surface.flip(edges[i].a, edges[i].b, cosine);
     }
+}
+
+/// Of the angle that a split of the edge may leave, where needles are split too.
+double cosine_for_split(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
+{
+    const auto [left, right] = surface.triangles_at(a, b);
+    const double narrowest = std::max(surface.cosine(left), surface.cosine(right));
+    return std::max(kSplitsMayLeave, std::cos(kSplitNeedles * std::acos(std::min(1.0, narrowest))));
 }
 
 /// Whether the edge is as long as it is for the sake of the input and not of its neighbours.
@@ -197,7 +212,7 @@ std::array<std::uint32_t, 3> from_longest(const RemeshSurface& surface, std::uin
     return {c[longest], c[(longest + 1) % 3], c[(longest + 2) % 3]};
 }
 
-void split_long_edges(RemeshSurface& surface)
+void split_long_edges(RemeshSurface& surface, bool needles)
 {
     // Halves may be too long as well; each time round the longest are shorter, but for flips, which
     // may make one longer.
@@ -215,7 +230,9 @@ void split_long_edges(RemeshSurface& surface)
         for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge) {
             stop_if_stage_wants(std::size_t(edge - edges.rbegin()));
             any |= surface.has_edge(edge->a, edge->b) &&
-                   surface.split(edge->a, edge->b) == Refusal::none;
+                   surface.split(edge->a, edge->b, SplitTo::middle,
+                                 needles ? cosine_for_split(surface, edge->a, edge->b)
+                                         : kSplitsMayLeave) == Refusal::none;
         }
         // Needles that are cut across again and again leave triangles by the hundred thousand,
         // which are as narrow; between the cuts most can be flipped into good ones.
@@ -294,8 +311,8 @@ void bring_nearer(RemeshSurface& surface, const std::vector<FarPoint>& far)
             continue;
         const auto [a, b, c] = from_longest(surface, t);
         // Cut where it is, it may still be moved afterwards.
-        if (surface.split(a, b, SplitTo::input) != Refusal::none)
-            surface.split(a, b);
+        if (surface.split(a, b, SplitTo::input, kSplitsMayLeave) != Refusal::none)
+            surface.split(a, b, SplitTo::middle, kSplitsMayLeave);
     }
     std::vector<std::uint32_t> vertices;
     for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t)

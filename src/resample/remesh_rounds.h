@@ -22,8 +22,9 @@ std::array<std::uint32_t, 3> from_longest(const RemeshSurface& surface, std::uin
 // What each round of remeshing does. All of it is in the order of the edges' lengths or of the
 // vertices, one after another, so the result is determined.
 
-/// Splits edges that are too long for their wanted length, longest first.
-void split_long_edges(RemeshSurface& surface);
+/// Splits edges that are too long for their wanted length, longest first. `needles`: those of
+/// triangles with an angle under a degree too, as the input may have.
+void split_long_edges(RemeshSurface& surface, bool needles);
 /// Collapses edges that are too short for it, shortest first. Where the tolerance or a feature does
 /// not allow that, the wanted length becomes that of the edge, but no less than `least_size`.
 void collapse_short_edges(RemeshSurface& surface, double least_size);

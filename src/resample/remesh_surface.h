@@ -73,7 +73,7 @@ public:
     // The operations. `cosine`: no triangle may get a smaller angle than that of this cosine, but
     // for one that is no smaller than the smallest before; kLargerThanBefore: the smallest has to
     // grow.
-    Refusal split(std::uint32_t a, std::uint32_t b, SplitTo to = SplitTo::middle);
+    Refusal split(std::uint32_t a, std::uint32_t b, SplitTo to, double cosine);
     /// `longest`: of the wanted lengths, which no new edge may be longer than.
     Refusal collapse(std::uint32_t a, std::uint32_t b, double longest, double cosine);
     Refusal flip(std::uint32_t a, std::uint32_t b, double cosine);
