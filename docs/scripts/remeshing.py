@@ -8,8 +8,8 @@ Each mesh is remeshed to half of its triangles. NAME: as the lists of halves hav
 --before: with an earlier build too. One thread.
 """
 import argparse
-import math
 import pathlib
+import statistics
 
 from halves import HALVES, half_of
 from runs import build, replace_tables, table
@@ -37,10 +37,6 @@ def cells(done):
              str(done["repeats"]), f"{done['fill']:.4f}"] if done else [""] * 6)
 
 
-def mean(values):
-    return math.exp(sum(map(math.log, values)) / len(values))
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command")
@@ -61,7 +57,7 @@ def main():
         of_half = [row for row in rows if row["half"] == half and row["before"]]
         if of_half:
             ratios = [row["now"]["seconds"] / row["before"]["seconds"] for row in of_half]
-            summary.append(f"{half}, {len(of_half)} meshes: {mean(ratios):.2f} of the time before in the geometric mean, "
+            summary.append(f"{half}, {len(of_half)} meshes: {statistics.geometric_mean(ratios):.2f} of the time before in the geometric mean, "
                            f"{max(ratios):.2f} at most.")
     head = ["mesh", "half", "triangles", "wanted",
             *(f"{what}, {when}" for when in ("before", "now")

@@ -230,6 +230,7 @@ private:
     }
 
     using Fan = std::vector<std::array<Vec3d, 3>>;
+
     /// What a thread needs to look at one vertex after another.
     struct Scratch {
         std::vector<std::uint32_t> ring;

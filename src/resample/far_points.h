@@ -17,6 +17,9 @@ struct FarPoint {
     std::uint32_t triangle = 0; ///< of the other surface, the nearest
 };
 
+/// The triangles of all of them, each once, ascending.
+std::vector<std::uint32_t> triangles_of(const std::vector<FarPoint>& far);
+
 /// As surface_distance of three arguments; adds to `far` the points farther than the limit.
 DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& to, double spacing,
                                  double limit, std::vector<FarPoint>& far,

@@ -3,9 +3,9 @@
 // Takes a closed, embedded surface and an edge length or a number of triangles, and leaves a
 // surface of nearly equilateral triangles within a tolerance of it. This file has the schedule: the
 // rounds (remesh_rounds.h), how the wanted length follows the number of triangles, and what happens
-// when the measured distance is too large, which is as in decimation: all is done anew with a
-// smaller tolerance. Validity is looked after by each operation (remesh_surface.h). Lengths are in
-// world units.
+// when the measured distance is too large: triangles are cut there, and where that does not do all
+// is done anew with a smaller tolerance, as in decimation. Validity is looked after by each
+// operation (remesh_surface.h). Lengths are in world units.
 
 #include "vdb_shell/resample/remesh.h"
 
@@ -191,16 +191,6 @@ std::vector<FarPoint> measure(const Job& job, RemeshResult& result, Interrupter*
     return far;
 }
 
-std::size_t count_triangles(const std::vector<FarPoint>& far)
-{
-    std::vector<std::uint32_t> triangles;
-    triangles.reserve(far.size());
-    for (const FarPoint& f : far)
-        triangles.push_back(f.triangle);
-    std::sort(triangles.begin(), triangles.end());
-    return std::size_t(std::unique(triangles.begin(), triangles.end()) - triangles.begin());
-}
-
 /// One attempt; the edge length that it ended with is left in `length`. Whether the surfaces are
 /// near enough stands in the report.
 RemeshResult attempt(const Job& job, double tolerance, double& length, Interrupter* interrupter)
@@ -215,7 +205,7 @@ RemeshResult attempt(const Job& job, double tolerance, double& length, Interrupt
     const std::size_t few = surface.live_triangles() / kShareOfFar + kFewFar;
     std::size_t fewest = few + 1;
     for (int in_vain = 0; in_vain < kMostCutsInVain && !far.empty();) {
-        const std::size_t triangles = count_triangles(far);
+        const std::size_t triangles = triangles_of(far).size();
         if (triangles > few)
             break;
         in_vain = triangles < fewest ? 0 : in_vain + 1;

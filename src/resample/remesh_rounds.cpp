@@ -8,6 +8,7 @@
 // so the surface is fine where it has to be and nowhere else.
 
 #include "resample/remesh_rounds.h"
+#include "core/sort_unique.h"
 #include "core/stage_stop.h"
 
 #include <algorithm>
@@ -48,6 +49,10 @@ constexpr double kLeastMove = 0.01;
 struct LongEdge {
     double ratio;
     std::uint32_t a, b;
+
+    auto order() const { return std::tie(ratio, a, b); }
+    bool operator<(const LongEdge& other) const { return order() < other.order(); }
+    bool operator==(const LongEdge& other) const { return order() == other.order(); }
 };
 
 double ratio_of(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
@@ -55,37 +60,11 @@ double ratio_of(const RemeshSurface& surface, std::uint32_t a, std::uint32_t b)
     return surface.length(a, b) / surface.size_of_edge(a, b);
 }
 
-void sort_by_ratio(std::vector<LongEdge>& edges)
-{
-    std::sort(edges.begin(), edges.end(), [](const LongEdge& x, const LongEdge& y) {
-        return std::tie(x.ratio, x.a, x.b) < std::tie(y.ratio, y.a, y.b);
-    });
-}
-
-/// The edges for which keep(ratio) holds, ratio being length over wanted length, ascending.
+/// The edges for which keep(ratio) holds, ratio being length over wanted length, ascending; of
+/// triangles that have become what they are at `since` or later.
 template <typename Keep>
-std::vector<LongEdge> edges_by_ratio(const RemeshSurface& surface, const Keep& keep)
-{
-    std::vector<LongEdge> edges;
-    for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t) {
-        if (!surface.alive(t))
-            continue;
-        const Vec3I& c = surface.triangle(t);
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t a = c[k], b = c[(k + 1) % 3];
-            if (a > b)
-                continue; // seen from the other side
-            const double ratio = ratio_of(surface, a, b);
-            if (keep(ratio))
-                edges.push_back({ratio, a, b});
-        }
-    }
-    sort_by_ratio(edges);
-    return edges;
-}
-
-/// The edges of triangles that have become what they are at `since` or later, in the same order.
-std::vector<LongEdge> edges_since(const RemeshSurface& surface, std::uint64_t since)
+std::vector<LongEdge> edges_by_ratio(const RemeshSurface& surface, std::uint64_t since,
+                                     const Keep& keep)
 {
     std::vector<LongEdge> edges;
     for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t) {
@@ -95,13 +74,18 @@ std::vector<LongEdge> edges_since(const RemeshSurface& surface, std::uint64_t si
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t a = std::min(c[k], c[(k + 1) % 3]);
             const std::uint32_t b = std::max(c[k], c[(k + 1) % 3]);
-            edges.push_back({ratio_of(surface, a, b), a, b});
+            const double ratio = ratio_of(surface, a, b);
+            if (keep(ratio))
+                edges.push_back({ratio, a, b});
         }
     }
-    sort_by_ratio(edges);
-    const auto same = [](const LongEdge& x, const LongEdge& y) { return x.a == y.a && x.b == y.b; };
-    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+    sort_unique(edges); // most are seen from both sides
     return edges;
+}
+
+std::vector<LongEdge> edges_too_long(const RemeshSurface& surface)
+{
+    return edges_by_ratio(surface, 0, [](double ratio) { return ratio > kTooLong; });
 }
 
 /// Flips the edges for which wanted(edge) holds, of triangles that have changed since; `cosine` as
@@ -109,7 +93,7 @@ std::vector<LongEdge> edges_since(const RemeshSurface& surface, std::uint64_t si
 template <typename Wanted>
 void flip_edges(RemeshSurface& surface, double cosine, std::uint64_t since, const Wanted& wanted)
 {
-    const std::vector<LongEdge> edges = edges_since(surface, since);
+    const std::vector<LongEdge> edges = edges_by_ratio(surface, since, [](double) { return true; });
     for (std::size_t i = 0; i < edges.size(); ++i) {
         stop_if_stage_wants(i);
         if (surface.has_edge(edges[i].a, edges[i].b) && wanted(edges[i]))
@@ -214,18 +198,14 @@ std::array<std::uint32_t, 3> from_longest(const RemeshSurface& surface, std::uin
 
 void split_long_edges(RemeshSurface& surface, bool needles)
 {
+    std::vector<LongEdge> edges = edges_too_long(surface);
     // Halves may be too long as well; each time round the longest are shorter, but for flips, which
     // may make one longer.
-    int rounds_left = 1;
-    for (bool any = true, first = true; any && rounds_left > 0; --rounds_left) {
+    const int rounds = edges.empty() ? 0 : kRoundsForHalf * (2 + std::ilogb(edges.back().ratio));
+    bool any = true;
+    for (int round = 0; round < rounds && any && !edges.empty(); ++round) {
         any = false;
         const std::uint64_t before = surface.now();
-        const std::vector<LongEdge> edges =
-            edges_by_ratio(surface, [](double ratio) { return ratio > kTooLong; });
-        if (edges.empty())
-            break;
-        if (std::exchange(first, false))
-            rounds_left = kRoundsForHalf * (2 + std::ilogb(edges.back().ratio));
         // Longest first, so that triangles are cut at their longest sides.
         for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge) {
             stop_if_stage_wants(std::size_t(edge - edges.rbegin()));
@@ -238,13 +218,14 @@ void split_long_edges(RemeshSurface& surface, bool needles)
         // which are as narrow; between the cuts most can be flipped into good ones.
         if (edges.back().ratio > 2 * kTooLong)
             flip_to_angle(surface, before);
+        edges = edges_too_long(surface);
     }
 }
 
 void collapse_short_edges(RemeshSurface& surface, double least_size)
 {
     const std::vector<LongEdge> edges =
-        edges_by_ratio(surface, [](double ratio) { return ratio < kTooShort; });
+        edges_by_ratio(surface, 0, [](double ratio) { return ratio < kTooShort; });
     for (std::size_t i = 0; i < edges.size(); ++i) {
         stop_if_stage_wants(i);
         const LongEdge& edge = edges[i];
@@ -297,15 +278,11 @@ void bring_nearer(RemeshSurface& surface, const std::vector<FarPoint>& far)
     for (std::uint32_t t = 0; t < surface.triangle_slots(); ++t)
         if (surface.alive(t))
             slot.push_back(t);
-    std::vector<std::uint32_t> triangles;
-    for (const FarPoint& f : far) {
+    for (const FarPoint& f : far)
         surface.look_at(f.point, slot[f.triangle]);
-        triangles.push_back(slot[f.triangle]);
-    }
-    std::sort(triangles.begin(), triangles.end());
-    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
     const std::uint64_t before = surface.now();
-    for (const std::uint32_t t : triangles) {
+    for (const std::uint32_t place : triangles_of(far)) {
+        const std::uint32_t t = slot[place];
         // Another cut may have changed it already.
         if (!surface.alive(t) || surface.changed_at(t) > before)
             continue;
@@ -319,8 +296,7 @@ void bring_nearer(RemeshSurface& surface, const std::vector<FarPoint>& far)
         if (surface.alive(t) && surface.changed_at(t) > before)
             for (int k = 0; k < 3; ++k)
                 vertices.push_back(surface.triangle(t)[k]);
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    sort_unique(vertices);
     for (const std::uint32_t v : vertices)
         if (surface.kind(v) == VertexKind::free)
             surface.move(v, surface.point(v), kMovesMayLeave);

@@ -43,32 +43,31 @@ void RemeshSurface::place_samples(double spacing)
     PlaneCells cells(0.5 * spacing, 0.25 * tolerance_);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         const std::array<Vec3d, 3> c = corners_of(triangles_[t]);
-        const bool has_long_edges = (c[1] - c[0]).length() > spacing ||
-                                    (c[2] - c[1]).length() > spacing ||
-                                    (c[0] - c[2]).length() > spacing;
-        if (has_long_edges)
-            cells.set_plane(c);
+        for (int k = 0; k < 3; ++k)
+            if (!std::exchange(seen[triangles_[t][k]], 1))
+                samples_of_[t].push_back(triangles_[t][k]);
+        const auto length = [&](std::size_t k) { return (c[(k + 1) % 3] - c[k]).length(); };
+        if (std::max({length(0), length(1), length(2)}) <= spacing)
+            continue;
+        cells.set_plane(c);
         const auto add = [&](const Vec3d& p) {
             if (!cells.take(p))
                 return;
             samples_of_[t].push_back(static_cast<std::uint32_t>(samples_.size()));
             samples_.push_back(p);
         };
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t v = triangles_[t][k], w = triangles_[t][(k + 1) % 3];
-            if (!seen[v])
-                samples_of_[t].push_back(v), seen[v] = 1;
-            if (has_long_edges)
-                cells.take(c[std::size_t(k)]);
-            const Vec3d &p = c[std::size_t(k)], &q = c[std::size_t((k + 1) % 3)];
-            const double pieces = v < w ? std::ceil((q - p).length() / spacing) : 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            cells.take(c[k]);
+            const std::size_t next = (k + 1) % 3;
+            // The other side of the edge leaves it to this one.
+            const bool own = triangles_[t][int(k)] < triangles_[t][int(next)];
+            const double pieces = own ? std::ceil(length(k) / spacing) : 1;
             for (double i = 1; i < pieces; ++i)
-                add(p + (q - p) * (i / pieces));
+                add(c[k] + (c[next] - c[k]) * (i / pieces));
         }
-        if (has_long_edges)
-            for_each_piece(
-                c[0], c[1], c[2], spacing,
-                [&](const Vec3d& x, const Vec3d& y, const Vec3d& z) { add((x + y + z) / 3.0); });
+        for_each_piece(
+            c[0], c[1], c[2], spacing,
+            [&](const Vec3d& x, const Vec3d& y, const Vec3d& z) { add((x + y + z) / 3.0); });
     }
 }
 

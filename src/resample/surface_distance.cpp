@@ -12,6 +12,7 @@
 
 #include "core/fail.h"
 #include "core/parallel.h"
+#include "core/sort_unique.h"
 #include "core/stage_progress.h"
 #include "core/stage_stop.h"
 #include "mesh/nearest_on_triangle.h"
@@ -38,8 +39,8 @@ namespace
 
 using openvdb::Vec3d;
 
-// A bound on the memory: a point, its area and its distance take 40 bytes, so 2^27 of them take 5
-// GiB.
+// A bound on the memory: a point, its area, its distance and the triangle there take 44 bytes, so
+// 2^27 of them take 5.5 GiB.
 constexpr double kMostSamples = 134217728.0;
 // Pieces for each square of the spacing: halving at the longest edge leaves pieces smaller than it
 // allows.
@@ -215,6 +216,16 @@ DistanceFigures surface_distance(const TriangleMesh& from, const TriangleMesh& t
     }
     figures.mean = area > 0 ? figures.mean / area : 0.0;
     return figures;
+}
+
+std::vector<std::uint32_t> triangles_of(const std::vector<FarPoint>& far)
+{
+    std::vector<std::uint32_t> triangles;
+    triangles.reserve(far.size());
+    for (const FarPoint& f : far)
+        triangles.push_back(f.triangle);
+    sort_unique(triangles);
+    return triangles;
 }
 
 std::vector<std::uint32_t> nearest_triangles(const TriangleMesh& surface,

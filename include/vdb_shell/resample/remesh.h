@@ -91,10 +91,10 @@ void require_sensible(const RemeshOptions& options);
 /// shorter edges, these are shorter, and their size changes gradually from there. The result is
 /// closed, manifold, consistently oriented, embedded and of the same topology as the input, by
 /// exact tests of each operation. The distance is measured afterwards, both ways
-/// (surface_distance); where it exceeds the tolerance all is done anew with a smaller one; the last
-/// resort is the input itself. Same result for any number of threads. Throws what
-/// require_sensible throws, and InvalidOption where neither length nor number is given, and for
-/// 2^30 triangles or more than free memory has room for, before any work;
+/// (surface_distance); where it exceeds the tolerance triangles are cut; where that does not do all
+/// is done anew with a smaller one; the last resort is the input itself. Same result for any number
+/// of threads. Throws what require_sensible throws, and InvalidOption where neither length nor
+/// number is given, and for 2^30 triangles or more than free memory has room for, before any work;
 /// GeometryError for a surface that is not closed, manifold, oriented and embedded; Cancelled.
 RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options,
                     Interrupter* interrupter = nullptr);
