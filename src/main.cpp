@@ -15,6 +15,7 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <iostream>
@@ -64,7 +65,9 @@ int run(const std::vector<std::string>& words, Context& context)
     if (!global.dry_run)
         return run_steps(steps, global, context);
     print_steps(steps, context.out);
-    return success;
+    const auto misses = [](const Step& step) { return !step.missing.empty(); };
+    return !global.keep_going && std::any_of(steps.begin(), steps.end(), misses) ? read_error
+                                                                                 : success;
 }
 
 /// What was printed has to have arrived: a full disk or a closed stream shows here at the latest. A

@@ -170,14 +170,15 @@ PosedShell finish_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>
                         PoseResult pose, const std::string& name = "pose",
                         Interrupter* interrupter = nullptr);
 
-/// Of the points of one shell in two poses, `seconds` apart: world units a second. Precondition:
-/// poses of the same shell.
+/// Of the points of one shell in two poses, `seconds` apart: world units a second. Throws
+/// InvalidOption for a number of seconds that is not positive and finite. Precondition: poses of
+/// the same shell.
 PointVectors point_velocities(const PoseResult& before, const PoseResult& after, double seconds);
 
 /// All that the .vdb of a posed shell holds; `rest` is that of the shell at rest. Without
-/// `with_volumes` the grids are null; else they have rest.surface's voxel size, which it must have
-/// then. Throws what level sets throw; ReadError where the report in `rest` is no JSON object;
-/// Cancelled.
+/// `with_volumes` the grids are null; else they have rest.surface's voxel size. Throws
+/// InvalidOption where volumes are wanted and rest.surface is null; what level sets throw;
+/// ReadError where the report in `rest` is no JSON object; Cancelled.
 ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
                      Interrupter* interrupter = nullptr);
 

@@ -208,10 +208,14 @@ int status_of_build(const ShellReport& report, const Context& context)
 {
     const std::string faults = faults_of(report);
     if (!faults.empty()) {
-        context.say(LogLevel::error, report.source + ": the shell is NOT VALID: " + faults);
+        context.say_failed(check_failed, report.source, "the shell is NOT VALID: " + faults);
         return check_failed;
     }
-    return report.wanted && !report.wanted->met() ? bound_not_met : success;
+    const std::string unmet = unmet_of(report);
+    if (unmet.empty())
+        return success;
+    context.say_failed(bound_not_met, report.source, unmet);
+    return bound_not_met;
 }
 
 /// A file without a tet would look like a success to whoever only asks whether it is there.

@@ -311,6 +311,10 @@ Call::Call(const std::string& only) : parts_(std::make_unique<Parts>())
     // Global options may stand behind the command as well, where people tend to add them.
     p.app.fallthrough();
     begin_help_with_examples(p.app);
+    p.app.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return std::string("vdb_shell: ") + error.what() +
+               "\nRun with --help for more information.\n";
+    });
     p.global = bind(p.app, describe(p.a.global));
     p.add_commands();
 }
@@ -322,6 +326,16 @@ void Call::parse(const std::vector<std::string>& words)
     // The parser takes them from the back.
     try {
         parts_->app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ArgumentMismatch& error) {
+        // "--thickness: At Most 1 required but received 2", "--thickness: 1 required  missing".
+        const std::string what = error.what(), flag = what.substr(0, what.find(": "));
+        if (what.find("At Most 1") != std::string::npos)
+            throw CLI::ArgumentMismatch(flag + " is given more than once",
+                                        CLI::ExitCodes::ArgumentMismatch);
+        if (what.find(" missing") != std::string::npos)
+            throw CLI::ArgumentMismatch(flag + " has no value behind it",
+                                        CLI::ExitCodes::ArgumentMismatch);
+        throw;
     } catch (const CLI::RequiredError&) {
         const std::vector<std::string> unknown = parts_->app.remaining();
         // The parser asks for a command before it asks what the words are.

@@ -82,4 +82,18 @@ void Context::say(const std::exception& error) const
     err << one_line(json);
 }
 
+void Context::say_failed(ExitCode status, const std::string& file, const std::string& what) const
+{
+    if (format == MessageFormat::text)
+        return say(LogLevel::error, file + ": " + what);
+    if (progress)
+        progress->clear_line();
+    ordered_json json{{"event", "error"}, {"code", code_of(status)}, {"status", int(status)}};
+    if (frame)
+        json["frame"] = *frame;
+    json["file"] = file;
+    json["message"] = file + ": " + what;
+    err << one_line(json);
+}
+
 } // namespace vdb_shell::command

@@ -3,6 +3,8 @@
 
 #include "vdb_shell/options/name_table.h"
 
+#include "command/exit_code.h"
+
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -53,6 +55,8 @@ struct Context {
     void say(LogLevel of, const std::string& text) const;
     /// The same for what was thrown; as JSON with all that is known of it.
     void say(const std::exception& error) const;
+    /// The same for a result that is not as it has to be: its file, and what is wrong with it.
+    void say_failed(ExitCode status, const std::string& file, const std::string& what) const;
 };
 
 } // namespace vdb_shell::command

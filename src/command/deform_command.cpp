@@ -121,6 +121,15 @@ FilePlan plan_deform(const DeformArguments& arguments)
     return plan_volume_call(arguments.call, {arguments.posed, arguments.rest});
 }
 
+/// Before the first volume, whose work would be lost.
+void require_no_velocity(const std::filesystem::path& file, const std::vector<GridBasePtr>& grids)
+{
+    for (const GridBasePtr& grid : grids)
+        if (grid->getName() == kVelocityName)
+            throw InvalidOption(file.string() + ": has a grid \"" + kVelocityName +
+                                "\", which --velocity makes; name the others with --grid");
+}
+
 int run_deform(const DeformArguments& arguments, Context& context)
 {
     // Made anew: where a shell keeps its points is known only when it is opened.
@@ -146,8 +155,11 @@ int run_deform(const DeformArguments& arguments, Context& context)
                                    : deform_volume(grid, *from, *posed.map, shift, arguments.deform,
                                                    figures, &interrupter);
     };
-    for (const GridBasePtr& grid :
-         read_volumes(arguments.call.volume, arguments.call.grids, GridKinds::volumes_and_points)) {
+    const std::vector<GridBasePtr> grids =
+        read_volumes(arguments.call.volume, arguments.call.grids, GridKinds::volumes_and_points);
+    if (velocity)
+        require_no_velocity(arguments.call.volume, grids);
+    for (const GridBasePtr& grid : grids) {
         DeformFigures figures;
         made.push_back(
             with_file_of_grids(arguments.call.volume, [&] { return deform(*grid, figures); }));

@@ -9,6 +9,7 @@
 #include "vdb_shell/core/words.h"
 #include "vdb_shell/houdini/geometry_file.h"
 #include "vdb_shell/io/vdb_header.h"
+#include "vdb_shell/io/volume_file.h"
 
 #include "command/exit_code.h"
 #include "command/help.h"
@@ -95,7 +96,7 @@ void print_vdb(std::ostream& out, const fs::path& path)
     openvdb::initialize();
     openvdb::io::File file(path.string());
     file.open(false);
-    bool level_set = false;
+    bool level_set = false, floats = false, volumes = false;
     // Names and types only: that the rest is whole, the walk has shown.
     const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
     for (const openvdb::GridBase::Ptr& grid : *grids) {
@@ -103,16 +104,25 @@ void print_vdb(std::ostream& out, const fs::path& path)
         print_row(out, "grid",
                   '"' + shown(grid->getName()) + "\", " + shown(grid->type()) +
                       (is_level_set ? ", level set" : ""));
+        floats = floats || grid->isType<openvdb::FloatGrid>();
         level_set = level_set || (is_level_set && grid->isType<openvdb::FloatGrid>());
+        volumes = volumes || is_volume(*grid, GridKinds::volumes_and_points);
     }
     const openvdb::MetaMap::Ptr metadata = file.getMetadata();
     // The key that only files of ours have; whether the shell in it is whole is for check.
     const bool shell = (*metadata)["vdb_shell_schema"] != nullptr;
-    print_row(out, "use",
-              shell       ? "info, convert and check read it as a shell"
-              : level_set ? "build reads it as a level set"
-                          : "no command reads it: it has neither a shell nor a level "
-                            "set of floats");
+    if (shell)
+        print_row(out, "use", "info, convert and check read it as a shell");
+    if (level_set)
+        print_row(out, "use", "build reads it as a level set");
+    if (floats && !shell)
+        print_row(out, "use", "build reads it as a --thickness-grid");
+    if (volumes)
+        print_row(out, "use", "deform and map read it as volumes");
+    if (!volumes && !shell)
+        print_row(
+            out, "use",
+            "no command reads it: it has no grids of floats, vectors, whole numbers or points");
 }
 
 int print_file(std::ostream& out, const fs::path& path)

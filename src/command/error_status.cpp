@@ -21,28 +21,6 @@ namespace vdb_shell::command
 namespace
 {
 
-/// Words that programs compare with, so they do not change. Several statuses of a signal are one
-/// word.
-const char* code_of(int status)
-{
-    switch (status) {
-    case usage_error:
-        return "usage";
-    case read_error:
-        return "read";
-    case geometry_error:
-        return "geometry";
-    case write_error:
-        return "write";
-    case program_failed:
-        return "program";
-    case out_of_memory:
-        return "memory";
-    default:
-        return status > signal_base ? "stopped" : "internal";
-    }
-}
-
 /// Takes what stands before `end` off the front; nothing where `end` is not there.
 std::string take_before(std::string& text, const std::string& end)
 {
@@ -74,6 +52,30 @@ std::string element_at(const std::string& text)
 }
 
 } // namespace
+
+const char* code_of(int status)
+{
+    switch (status) {
+    case usage_error:
+        return "usage";
+    case read_error:
+        return "read";
+    case geometry_error:
+        return "geometry";
+    case write_error:
+        return "write";
+    case bound_not_met:
+        return "bound";
+    case check_failed:
+        return "check";
+    case program_failed:
+        return "program";
+    case out_of_memory:
+        return "memory";
+    default:
+        return status > signal_base ? "stopped" : "internal";
+    }
+}
 
 /// The kinds do not derive from one another, so the order of the tests does not matter.
 int status_of(const std::exception& error)

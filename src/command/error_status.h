@@ -11,6 +11,10 @@ namespace vdb_shell::command
 /// option from a surface that has no shell.
 int status_of(const std::exception& error);
 
+/// A word for a status, that programs compare with: it does not change. Several statuses of a
+/// signal are one word.
+const char* code_of(int status);
+
 /// What a person is told.
 std::string message_of(const std::exception& error);
 

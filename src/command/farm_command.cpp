@@ -50,7 +50,7 @@ OptionList job_options(FarmArguments& a)
             no_clobber_option(a.no_clobber),
             option("", a.calls, "--calls",
                    "File with one call a line, in place of the one behind --: words as for a "
-                   "shell, or a JSON array of them; # begins a comment"),
+                   "shell, or a JSON array of them; a line that begins with # is a comment"),
             option("", a.name, "--name",
                    "Of the job: letters, digits, . _ -; without it that of the file"),
             option("", a.folder, "--directory",
@@ -79,7 +79,7 @@ OptionList task_options(FarmArguments& a)
                 .in(Unit::count)
                 .within(at_least(1)),
             option("", limits.memory_gib, "--memory",
-                   "Largest memory of a task; without it what `estimate` says, and a margin")
+                   "Largest memory of a task, GiB; without it what `estimate` says, and a margin")
                 .in(Unit::gibibytes)
                 .within(above(0).at_most(FarmLimits::kMostMemoryGib)),
             option("", limits.minutes, "--minutes",

@@ -128,8 +128,15 @@ PosedShell posed_shell(const PoseArguments& arguments, const PreparedShell& prep
     const std::vector<Vec3s> skin = skin_of(arguments.mesh);
     const std::string name = arguments.mesh.filename().string();
     // Without neighbours no pose is wanted twice, and the cache would only hold memory.
-    if (!is_there(arguments.before) && !is_there(arguments.after))
+    if (!is_there(arguments.before) && !is_there(arguments.after)) {
+        // Also at an end of a shot one neighbour is there, so the names may be misspelt.
+        if (!arguments.before.empty() || !arguments.after.empty())
+            context.say(
+                LogLevel::warning,
+                name + ": no velocities, for there is no " +
+                    (arguments.before.empty() ? arguments.after : arguments.before).string());
         return build_posed(prepared.rest, skin, arguments.pose, name, interrupter);
+    }
     const std::shared_ptr<PoseCache> cache = cache_of(context);
     const auto pose_of = [&](const std::filesystem::path& mesh) {
         // Neighbours are posed with the same options as their own frames are, so a frame finds its
@@ -174,7 +181,7 @@ int status_of_pose(const ShellReport& report, const Context& context)
                     report.source + ": the skin crosses itself; " + report.overlaps->summary());
         return success;
     }
-    context.say(LogLevel::error, report.source + ": the shell is NOT VALID: " + faults);
+    context.say_failed(check_failed, report.source, "the shell is NOT VALID: " + faults);
     return check_failed;
 }
 

@@ -26,7 +26,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <iostream>
 #include <mutex>
 #include <sstream>
 #include <system_error>
@@ -104,7 +103,7 @@ public:
         if (!global.manifest.empty())
             manifest_.emplace(global.manifest, steps.front().command);
         if (global.progress != ProgressStyle::none)
-            progress_.emplace(global.progress, std::cerr, steps.size());
+            progress_.emplace(global.progress, context.err, steps.size());
     }
 
     int run()

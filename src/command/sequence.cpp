@@ -138,6 +138,8 @@ template <typename Body> void with_name(const Step& step, const Body& body)
         throw InvalidOption(name_of(step) + error.what());
     } catch (const ReadError& error) {
         throw ReadError(name_of(step) + error.what());
+    } catch (const GeometryError& error) {
+        throw GeometryError(name_of(step) + error.what());
     } catch (const WriteError& error) {
         throw WriteError(name_of(step) + error.what());
     }

@@ -30,9 +30,10 @@ namespace vdb_shell::command
 namespace
 {
 
-/// The type that the C++ standard lets a handler write; the number stays 0 until a signal comes.
-volatile std::sig_atomic_t signal_number = 0;
+/// 0 until a signal comes. Handlers may write atomics without locks, and other threads read them.
+std::atomic<int> signal_number{0};
 std::atomic<int> polite_stops{0};
+static_assert(std::atomic<int>::is_always_lock_free);
 
 const char* stopped_by(int number)
 {
@@ -60,8 +61,7 @@ void on_signal(int number)
 {
     // The second signal of a person who waits ends the process, whatever an outside program leaves
     // behind.
-    const bool first = signal_number == 0;
-    signal_number = number;
+    const bool first = signal_number.exchange(number) == 0;
     // From here on no other thread begins to put files in their places: its temporaries would be
     // removed in the middle of that.
     if ((first && polite_stops > 0) || !hold_commits())

@@ -59,6 +59,10 @@ FilePlan plan_volumes(const VolumesArguments& arguments)
         throw InvalidOption(uvw ? "--volumes uvw: there are no texture coordinates; --texture-from "
                                   "names the surface that has them"
                                 : "--texture-from is of use with --volumes uvw only");
+    const bool density =
+        std::find(wanted.begin(), wanted.end(), Coordinate::density) != wanted.end();
+    if (!density && arguments.coordinates.density_ramp != CoordinateOptions().density_ramp)
+        throw InvalidOption("--density-ramp is of use with --volumes density only");
     FilePlan plan(existing_files(arguments.no_clobber));
     plan.add_input(arguments.shell);
     plan.add_input(arguments.texture);

@@ -10,14 +10,13 @@
 
 #include "field/field_sampler.h"
 #include "field/value_range.h"
+#include "io/vdb_grids.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/io/vdb_header.h"
 
 #include <openvdb/io/File.h>
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 #include <sstream>
 #include <vector>
 
@@ -45,15 +44,6 @@ template <typename... Parts> std::string text(const Parts&... parts)
     std::ostringstream out;
     (out << ... << parts);
     return out.str();
-}
-
-std::string list_of(const openvdb::GridPtrVec& grids)
-{
-    std::string list;
-    for (const GridBase::Ptr& grid : grids)
-        list += text(list.empty() ? "\"" : ", \"", grid->getName(), "\" (", grid->valueType(), ", ",
-                     GridBase::gridClassToString(grid->getGridClass()), ")");
-    return list.empty() ? "no grids" : list;
 }
 
 bool is_level_set(const GridBase& grid)
@@ -88,10 +78,8 @@ FloatGrid::Ptr read_named(const std::string& file, const std::string& name)
     in.open(/*delayLoad=*/false);
     const openvdb::GridPtrVecPtr grids = in.readAllGridMetadata();
     const std::string chosen = name.empty() ? only_level_set(*grids, file) : name;
-    if (!in.hasGrid(chosen))
-        throw ReadError(text(file, ": has no grid \"", chosen, "\"; it has ", list_of(*grids)));
     // The type is looked at before the voxels are read: a wrong grid may be a large one.
-    const GridBase::Ptr metadata = in.readGridMetadata(chosen);
+    const GridBase::Ptr metadata = grid_of_name(*grids, chosen, file);
     if (!metadata->isType<FloatGrid>())
         throw ReadError(text(file, ": grid \"", chosen, "\" holds ", metadata->valueType(),
                              " values, a level set of floats is wanted; it has ", list_of(*grids)));
@@ -142,18 +130,7 @@ double median_slope(const FloatGrid& grid, const TriangleMesh& surface)
 
 openvdb::FloatGrid::Ptr read_level_set(const std::filesystem::path& path, const std::string& name)
 {
-    openvdb::initialize();
-    FloatGrid::Ptr grid;
-    try {
-        require_whole_vdb(path);
-        grid = read_named(path.string(), name);
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw; // no fault of the file
-    } catch (const std::exception& error) {
-        throw ReadError(path.string() + ": cannot be read: " + error.what());
-    }
+    const FloatGrid::Ptr grid = reading_vdb(path, [&] { return read_named(path.string(), name); });
     require_level_set(*grid, text(path.string(), ": grid \"", grid->getName(), "\""));
     return grid;
 }

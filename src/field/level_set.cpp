@@ -146,17 +146,6 @@ openvdb::FloatGrid::Ptr convert_nested(const TriangleMesh& mesh,
     return grid;
 }
 
-/// Leaves are enough to look at: wherever there is an inside, there are active voxels on both sides
-/// of the surface, and those stand in leaves.
-bool has_inside(const openvdb::FloatGrid& grid)
-{
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
-        for (auto value = leaf->cbeginValueOn(); value; ++value)
-            if (*value < 0)
-                return true;
-    return false;
-}
-
 } // namespace
 
 OptionList describe(LevelSetOptions& o)
@@ -250,12 +239,8 @@ double checked_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& optio
     return voxel;
 }
 
-void finish_level_set(openvdb::FloatGrid& grid, const TriangleMesh& mesh)
+void finish_level_set(openvdb::FloatGrid& grid)
 {
-    if (!has_inside(grid))
-        fail<GeometryError>(
-            "voxel larger than the object: no voxel centre lies inside, voxel size ",
-            grid.voxelSize()[0], ", longest side ", longest_side(bounds_of(mesh.points)));
     grid.setName("surface");
     grid.setGridClass(openvdb::GRID_LEVEL_SET);
     grid.setIsInWorldSpace(true);
@@ -272,8 +257,19 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
     // different objects of a scene then fit voxel on voxel.
     const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
     auto grid = convert_nested(mesh, *transform, band, interrupter);
-    finish_level_set(*grid, mesh);
+    finish_level_set(*grid);
     return grid;
+}
+
+bool has_inside(const openvdb::FloatGrid& grid)
+{
+    // Leaves are enough to look at: wherever there is an inside, there are active voxels on both
+    // sides of the surface, and those stand in leaves.
+    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+        for (auto value = leaf->cbeginValueOn(); value; ++value)
+            if (*value < 0)
+                return true;
+    return false;
 }
 
 void negate_level_set(openvdb::FloatGrid& level_set)

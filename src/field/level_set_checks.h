@@ -10,7 +10,7 @@ namespace vdb_shell
 /// mesh_to_level_set throws.
 double checked_voxel_size(const TriangleMesh& mesh, const LevelSetOptions& options);
 
-/// Name, class and creator; throws GeometryError when no voxel centre lies inside.
-void finish_level_set(openvdb::FloatGrid& grid, const TriangleMesh& mesh);
+/// Name, class and creator.
+void finish_level_set(openvdb::FloatGrid& grid);
 
 } // namespace vdb_shell

@@ -256,11 +256,6 @@ private:
                 of_point[std::size_t(__builtin_ctz(bits))].push_back(list[n]);
     }
 
-    static Coord corner_of_block(const Coord& corner, int side, std::size_t i)
-    {
-        return corner.offsetBy(i & 4 ? side : 0, i & 2 ? side : 0, i & 1 ? side : 0);
-    }
-
     void store(const Coord& corner, const EightNearest& nearest)
     {
         for (std::size_t i = 0; i < kLanes; ++i) {
@@ -355,7 +350,7 @@ openvdb::FloatGrid::Ptr mesh_to_narrow_band(const TriangleMesh& mesh,
     fill_leaves(grid->tree(), surface, voxel, pairs, reach);
     progress.stop_if_interrupted(100);
     grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel));
-    finish_level_set(*grid, mesh);
+    finish_level_set(*grid);
     return grid;
 }
 

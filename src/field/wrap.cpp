@@ -15,6 +15,7 @@
 #include "field/value_range.h"
 #include "field/wrap_field.h"
 #include "mesh/equal_points.h"
+#include "mesh/surface_defects.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 #include "vdb_shell/resample/remesh.h"
@@ -183,6 +184,7 @@ WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options, Inter
 {
     const StageProgress progress(interrupter, "wrap");
     require_in_range(options, "wrap");
+    require_well_formed(mesh, "wrap_mesh");
     if (mesh.points.empty() || mesh.triangles.empty())
         fail<GeometryError>("wrap: the mesh has ", mesh.points.size(), " points and ",
                             mesh.triangles.size(), " triangles");

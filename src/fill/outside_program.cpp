@@ -11,6 +11,7 @@
 #include "core/temporary_file.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/fill/fill_core.h"
+#include "vdb_shell/options/option_value.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -215,7 +216,7 @@ std::string run_program(const fs::path& program, const std::vector<std::string>&
             throw Cancelled();
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
         if (taken.count() > seconds)
-            fail(program, "was ended after " + std::to_string(int(seconds)) + " s, its time limit",
+            fail(program, "was ended after " + vdb_shell::text_of(seconds) + " s, its time limit",
                  text_of(output));
         // Short beside any meshing, and long enough to cost nothing.
         std::this_thread::sleep_for(std::chrono::milliseconds(5));

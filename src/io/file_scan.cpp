@@ -14,6 +14,13 @@
 namespace vdb_shell
 {
 
+void require_numbered(const std::string& name, std::size_t count, const char* what)
+{
+    if (count > INT32_MAX)
+        refuse(name, "it has " + std::to_string(count) + " " + what + ", over the limit of " +
+                         std::to_string(INT32_MAX));
+}
+
 std::size_t first_unique_corner(const Polygon& polygon)
 {
     // Sorted, because comparing all pairs takes seconds for a polygon of 50,000 corners.

@@ -74,6 +74,9 @@ bool tidy_polygon(Polygon& polygon);
 /// The position of the first corner that comes only once; polygon.size() when there is none.
 std::size_t first_unique_corner(const Polygon& polygon);
 
+/// Throws ReadError for more than indices of 32 bits number: OpenVDB's and Houdini's have a sign.
+void require_numbered(const std::string& name, std::size_t count, const char* what);
+
 /// Counts one more face of the file and keeps it, tidied; a face that is no polygon is recorded as
 /// skipped.
 void add_face(FileScan& scan, Polygon& polygon);

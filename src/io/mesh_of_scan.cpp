@@ -102,6 +102,7 @@ ReadResult mesh_of_scan(const std::string& name, FileScan scan, const Coordinate
 {
     if (scan.file_faces == 0)
         refuse(name, "it has no faces (and " + std::to_string(scan.file_vertices) + " vertices)");
+    require_numbered(name, scan.points.size(), "points");
     ReadResult result;
     result.report.format = std::move(scan.format);
     result.report.file_vertices = scan.file_vertices;
@@ -111,6 +112,7 @@ ReadResult mesh_of_scan(const std::string& name, FileScan scan, const Coordinate
     const std::size_t vertices = options.weld ? weld(scan) : scan.points.size();
     result.report.welded_vertices = scan.file_vertices - vertices;
     append_faces(scan, result);
+    require_numbered(name, result.mesh.triangles.size(), "triangles");
     const std::size_t used = keep_used_points(scan, result);
     result.report.unused_vertices = vertices - used;
     // In float32 a small object far from the origin falls together into a few points.

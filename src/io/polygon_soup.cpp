@@ -66,6 +66,9 @@ FileScan scan_of_polygons(const PolygonSoup& soup, const std::string& name,
     if (corners != soup.corners.size())
         throw InvalidOption(name + ": the polygons' sizes add up to " + std::to_string(corners) +
                             ", but there are " + std::to_string(soup.corners.size()) + " corners");
+    if (!soup.ids.empty() && soup.ids.size() != soup.points.size())
+        throw InvalidOption(name + ": there are " + std::to_string(soup.ids.size()) + " ids of " +
+                            std::to_string(soup.points.size()) + " points");
     FileScan scan;
     scan.format = soup.format;
     scan.file_vertices = soup.points.size();

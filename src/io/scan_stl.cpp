@@ -30,9 +30,10 @@ std::uint32_t little_endian_32(const char* bytes)
 }
 
 /// Makes vertices of the corners that the facets repeat, and faces of the facets.
-void merge_corners(FileScan& scan)
+void merge_corners(FileScan& scan, const std::string& name)
 {
     scan.file_vertices = scan.points.size();
+    require_numbered(name, scan.file_vertices, "corners");
     std::vector<std::uint32_t> vertex = first_equal_point(scan.points);
     std::uint32_t kept = 0;
     for (std::size_t i = 0; i < vertex.size(); ++i) {
@@ -80,7 +81,7 @@ FileScan scan_binary(const std::string& name, std::string_view bytes, Coordinate
             scan.points.push_back(point);
         }
     }
-    merge_corners(scan);
+    merge_corners(scan, name);
     return scan;
 }
 
@@ -168,7 +169,7 @@ FileScan scan_text(const std::string& name, std::string_view bytes, Coordinates&
     if (open)
         refuse(name, "the file ends after " + std::to_string(scan.points.size() / 3) +
                          " facets, without endsolid");
-    merge_corners(scan);
+    merge_corners(scan, name);
     return scan;
 }
 

@@ -70,7 +70,8 @@ void walk_value(VdbCursor& walk, const std::string& type)
     walk.require(any_size || size == Metadata::createMetadata(type)->size(),
                  "a metadata value of another size than its type");
     const std::string_view value = walk.take(size, "a metadata value");
-    walk.require(type != "bool" || value[0] == 0 || value[0] == 1, "a bool that is neither 0 or 1");
+    walk.require(type != "bool" || value[0] == 0 || value[0] == 1,
+                 "a bool that is neither 0 nor 1");
 }
 
 template <std::size_t N> std::array<double, N> doubles(VdbCursor& walk)

@@ -6,6 +6,7 @@
 // std::to_chars and std::to_string, since streams may put separators into large integers, and bits
 // are written byte by byte. The file appears whole or not at all (core/atomic_file.cpp).
 
+#include "core/unit_vector.h"
 #include "io/mesh_formats.h"
 #include "vdb_shell/core/atomic_file.h"
 #include "vdb_shell/core/error.h"
@@ -122,10 +123,8 @@ void write_stl(std::ostream& out, const TriangleMesh& mesh, const Placement&)
     put_bits(out, static_cast<std::uint32_t>(mesh.triangles.size()));
     for (const openvdb::Vec3I& t : mesh.triangles) {
         const openvdb::Vec3d a(mesh.points[t[0]]), b(mesh.points[t[1]]), c(mesh.points[t[2]]);
-        openvdb::Vec3d normal = (b - a).cross(c - a);
-        normal.normalize(); // leaves zero as it is
         // A facet has the same order of corners as the mesh, so its normal points outward too.
-        put_bits(out, openvdb::Vec3s(normal));
+        put_bits(out, openvdb::Vec3s(unit_vector((b - a).cross(c - a))));
         for (int corner = 0; corner < 3; ++corner)
             put_bits(out, mesh.points[t[corner]]);
         // The attribute bytes, which have no meaning that programs agree on.

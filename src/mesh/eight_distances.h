@@ -17,6 +17,13 @@ struct alignas(kLanesAlignment) EightPoints {
     std::array<float, kLanes> x, y, z;
 };
 
+/// The first voxel of one of eight blocks, each so many voxels wide, the first at `corner`. A point
+/// of each makes eight.
+inline openvdb::Coord corner_of_block(const openvdb::Coord& corner, int side, std::size_t i)
+{
+    return corner.offsetBy(i & 4 ? side : 0, i & 2 ? side : 0, i & 1 ? side : 0);
+}
+
 /// A triangle made ready: corners, edges, the edges' normals in its plane (outward) and its own.
 struct PreparedTriangle {
     struct Side {

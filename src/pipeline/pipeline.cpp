@@ -10,6 +10,7 @@
 #include "vdb_shell/pipeline.h"
 
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option_value.h"
 
 #include "core/grid_instances.h"
 #include "pipeline/core_stages.h"
@@ -120,6 +121,16 @@ void make_field(ShellResult& r, const ShellOptions& options, const GrowStart& st
                                     : mesh_to_level_set(r.surface, band, interrupter);
 }
 
+/// Growth sets out from the surface where lines have no length, the paper's method has only these.
+void require_inside(const ShellResult& r)
+{
+    if (!has_inside(*r.level_set))
+        throw GeometryError(r.report.source + ": no voxel centre lies inside, voxel size " +
+                            text_of(r.level_set->voxelSize()[0]) +
+                            ", so that --method raw has nothing to step through; a smaller "
+                            "--voxel-size or a larger --resolution");
+}
+
 /// All stages from the check on. `given` may be null.
 void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOptions& options,
                         const openvdb::FloatGrid* given, const openvdb::FloatGrid* thickness_grid,
@@ -134,6 +145,8 @@ void build_from_surface(ShellResult& r, const TriangleMesh& mesh, const ShellOpt
     clock.run("coarsen", [&] { start = start_of_growth(options, r.surface, interrupter); });
     clock.run("level set",
               [&] { make_field(r, options, start, given, thickness_grid, interrupter); });
+    if (options.grow.method == Method::raw)
+        require_inside(r);
     clock.run("smooth", [&] {
         r.report.field.smooth =
             smooth_level_set(*r.level_set, r.surface, options.smooth, interrupter);

@@ -8,10 +8,14 @@
 
 #include "core/grid_instances.h"
 #include "report/stage_clock.h"
+#include "vdb_shell/core/error.h"
 #include "vdb_shell/field/level_set.h"
 #include "vdb_shell/field/narrow_band.h"
+#include "vdb_shell/options/option_value.h"
 #include "vdb_shell/volume/rest_volume.h"
 
+#include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace vdb_shell
@@ -93,6 +97,12 @@ PosedShell finish_posed(const RestShell& rest, const std::vector<openvdb::Vec3s>
 
 PointVectors point_velocities(const PoseResult& before, const PoseResult& after, double seconds)
 {
+    assert(before.stack.surfaces() == after.stack.surfaces());
+    assert(before.stack.surface(0).size() == after.stack.surface(0).size());
+    assert(before.core.points.size() == after.core.points.size());
+    if (!(seconds > 0 && std::isfinite(seconds)))
+        throw InvalidOption("velocities of points: the poses are " + text_of(seconds) +
+                            " s apart, must be positive and finite");
     const auto difference = [&](const std::vector<openvdb::Vec3s>& from,
                                 const std::vector<openvdb::Vec3s>& to) {
         std::vector<openvdb::Vec3s> made;
@@ -112,6 +122,9 @@ ShellFile posed_file(const ShellFile& rest, PosedShell posed, bool with_volumes,
                      Interrupter* interrupter)
 {
     ShellFile file;
+    if (with_volumes && !rest.surface)
+        throw InvalidOption("volumes of a pose: the shell at rest has no level set, whose voxel "
+                            "size they take");
     if (with_volumes) {
         const double voxel_size = rest.surface->voxelSize()[0];
         file.surface = level_set_of(posed, voxel_size, interrupter);

@@ -108,7 +108,8 @@ void add_checks(ordered_json& json, const ShellReport& report)
                       {"shell", report.shell_volume},
                       {"outside", report.outside_volume},
                       {"fill", report.fill}};
-    json["coverage"] = coverage_json(report.coverage);
+    json["coverage"] =
+        report.coverage.samples > 0 ? coverage_json(report.coverage) : ordered_json();
     json["certificate"] =
         report.certificate ? certificate_json(*report.certificate) : ordered_json();
     json["overlaps"] = report.overlaps ? overlaps_json(*report.overlaps) : ordered_json();

@@ -298,7 +298,8 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
             "needles hold pillars back; --thickest fills more, --remesh-to N cuts the surface into "
             "nearly equilateral triangles first");
     if (report.wanted)
-        wanted_lines(out, *report.wanted);
+        for (const WantedBound& bound : report.wanted->bounds)
+            line(out, "wanted", wanted_text(bound));
 }
 
 void core_line(std::ostringstream& out, const ShellReport& report)
@@ -343,6 +344,16 @@ std::string faults_of(const ShellReport& report)
     add(report.coverage.in_several, "sample points covered more than once");
     add(report.coverage.outside_covered, "sample points covered outside the solid");
     return wrong;
+}
+
+std::string unmet_of(const ShellReport& report)
+{
+    std::string unmet;
+    if (report.wanted)
+        for (const WantedBound& bound : report.wanted->bounds)
+            if (!bound.met)
+                unmet += (unmet.empty() ? "wanted " : "; wanted ") + wanted_text(bound);
+    return unmet;
 }
 
 /// What a pose cannot change is left out, as it stands in the report of the shell at rest.

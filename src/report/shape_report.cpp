@@ -102,24 +102,20 @@ ordered_json wanted_json(const BoundsReport& report)
     return {{"met", report.met()}, {"bounds", bounds}};
 }
 
-void wanted_lines(std::ostringstream& out, const BoundsReport& report)
+std::string wanted_text(const WantedBound& bound)
 {
-    for (const WantedBound& bound : report.bounds) {
-        std::string text =
-            std::string(name_in_table(bound.kind)) + " " + number(shown(bound, bound.asked), 12) +
-            ": " + (bound.met ? "met, " : "NOT MET, ") + number(shown(bound, bound.reached), 8);
-        if (bound.short_tets > 0) {
-            text += "; " + number(bound.short_tets, 12) + " tets short";
-            for (std::size_t i = 0; i < kShortCauses; ++i)
-                if (bound.causes[i] > 0)
-                    text +=
-                        ", " + number(bound.causes[i], 12) + " by " + name_in_table(ShortCause(i));
-            // One is enough to go and look at; the JSON has more.
-            text += "; the first is tet " + number(bound.first[0].tet, 12) + " of prism " +
-                    number(bound.first[0].prism, 12);
-        }
-        line(out, "wanted", text);
-    }
+    std::string text = std::string(name_in_table(bound.kind)) + " " +
+                       number(shown(bound, bound.asked), 12) + ": " +
+                       (bound.met ? "met, " : "NOT MET, ") + number(shown(bound, bound.reached), 8);
+    if (bound.short_tets == 0)
+        return text;
+    text += "; " + number(bound.short_tets, 12) + " tets short";
+    for (std::size_t i = 0; i < kShortCauses; ++i)
+        if (bound.causes[i] > 0)
+            text += ", " + number(bound.causes[i], 12) + " by " + name_in_table(ShortCause(i));
+    // One is enough to go and look at; the JSON has more.
+    return text + "; the first is tet " + number(bound.first[0].tet, 12) + " of prism " +
+           number(bound.first[0].prism, 12);
 }
 
 } // namespace vdb_shell

@@ -23,6 +23,7 @@ nlohmann::ordered_json wanted_json(const BoundsReport& report);
 /// The shapes that solvers ask about, and below them how good the surface lets them be.
 void shape_lines(std::ostringstream& out, const ShellReport& report);
 /// A line for each bound that was wanted.
-void wanted_lines(std::ostringstream& out, const BoundsReport& report);
+/// One wish and what became of it.
+std::string wanted_text(const WantedBound& bound);
 
 } // namespace vdb_shell

@@ -21,6 +21,13 @@ namespace vdb_shell
 namespace
 {
 
+/// Farther out there are none, and no whole numbers for them.
+bool has_voxels(const openvdb::Vec3d& index)
+{
+    constexpr double kMost = 1 << 30;
+    return std::abs(index[0]) < kMost && std::abs(index[1]) < kMost && std::abs(index[2]) < kMost;
+}
+
 std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::FloatGrid& grid)
 {
     std::vector<double> sampled(mesh.points.size());
@@ -28,7 +35,9 @@ std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::Fl
         const auto accessor = grid.getConstAccessor();
         for (std::size_t v = begin; v < end; ++v) {
             const auto index = grid.transform().worldToIndex(openvdb::Vec3d(mesh.points[v]));
-            sampled[v] = static_cast<double>(openvdb::tools::BoxSampler::sample(accessor, index));
+            sampled[v] = has_voxels(index)
+                             ? double(openvdb::tools::BoxSampler::sample(accessor, index))
+                             : double(grid.background());
         }
     });
     // This is a loop of its own after the parallel one, so that the vertex in the message is always

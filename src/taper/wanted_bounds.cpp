@@ -185,13 +185,15 @@ const NameTable<ShortCause>& names(ShortCause)
 
 OptionList describe(WantedBounds& o)
 {
-    constexpr double kRegularDihedral = 1.2309594173407747; // arccos(1/3)
+    // That of a regular tet, arccos(1/3), rounded up to the digits that messages show, so that the
+    // bound itself can be typed.
+    constexpr double kMostDihedral = 1.23096;
     return in_group(
         "Bounds",
         {option("min_dihedral_radians", o.min_dihedral_radians, "--want-dihedral",
                 "Want no dihedral angle smaller than this, radians")
              .in(Unit::radians)
-             .within(above(0).at_most(kRegularDihedral)),
+             .within(above(0).at_most(kMostDihedral)),
          option("amips", o.amips, "--want-amips",
                 "Want no tet of a larger AMIPS, 3 for a regular tet")
              .within(at_least(3)),

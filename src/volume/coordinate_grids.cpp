@@ -17,6 +17,7 @@
 #include "volume/voxel_leaves.h"
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <optional>
 
@@ -229,12 +230,13 @@ OptionList describe(CoordinateOptions& o)
         {option("volumes", o.volumes, "--volumes",
                 "What voxels are told, with commas: rest (where they are in the shell at rest), "
                 "depth, thickness, uvw (texture coordinates and depth), prism (triangle and "
-                "weights), nearest (the same of the nearest triangle), layer, density"),
+                "weights), nearest (the same of the nearest triangle), layer, density "
+                "[rest,depth,thickness,prism,layer]"),
          option("voxel_size", o.voxel_size, "--voxel-size", "0: as in the shell's level set")
              .in(Unit::world_length)
              .within(at_least(0)),
          option("density_ramp", o.density_ramp, "--density-ramp",
-                "density by depth, as depth:density with commas; linear between")});
+                "density by depth, as depth:density with commas; linear between [0:1,1:0]")});
 }
 
 std::vector<Coordinate> coordinates_of(const CoordinateOptions& options)
@@ -258,9 +260,15 @@ std::vector<GridBasePtr> coordinate_grids(const CoordinateInputs& inputs,
                                           const CoordinateOptions& options,
                                           Interrupter* interrupter)
 {
+    assert(inputs.map && inputs.stack);
+    require_in_range(options, "volumes");
     const std::vector<Coordinate> wanted = coordinates_of(options);
     if (has(wanted, Coordinate::uvw) && !inputs.texture)
         throw InvalidOption("--volumes uvw: there are no texture coordinates");
+    if (inputs.texture && inputs.texture->size() != inputs.stack->triangles().size())
+        throw InvalidOption("--volumes uvw: there are texture coordinates of " +
+                            std::to_string(inputs.texture->size()) + " triangles for a shell of " +
+                            std::to_string(inputs.stack->triangles().size()));
     require_voxels_fit(inputs.map->tets(), options.voxel_size,
                        voxel_bytes(wanted, inputs.map->layers()), "volumes");
     const StageProgress progress(interrupter, "shell coordinates");

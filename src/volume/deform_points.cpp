@@ -10,6 +10,8 @@
 #include "core/point_grid_instances.h"
 #include "core/stage_progress.h"
 #include "vdb_shell/core/error.h"
+#include "vdb_shell/options/option.h"
+#include "vdb_shell/volume/motion_volume.h"
 #include "vdb_shell/volume/shell_sampler.h"
 #include "volume/pull_back.h"
 
@@ -37,7 +39,6 @@ using openvdb::points::PointDataGrid;
 using openvdb::points::PointDataTree;
 using Leaf = PointDataTree::LeafNodeType;
 
-constexpr const char* kVelocity = "v";
 constexpr const char* kNormal = "N";
 
 /// Where the points of a leaf go.
@@ -164,7 +165,8 @@ public:
         const openvdb::points::AttributeHandle<Vec3f> position(positions);
         moved.to.assign(positions.size(), Vec3d(0.0));
         moved.found.assign(positions.size(), 0);
-        const Vectors velocities(vectors_of(leaf, kVelocity)), normals(vectors_of(leaf, kNormal));
+        const Vectors velocities(vectors_of(leaf, kVelocityName)),
+            normals(vectors_of(leaf, kNormal));
         for (auto point = leaf.beginIndexOn(); point; ++point) {
             // OpenVDB stores a position in voxels from the centre of the point's own voxel.
             const Vec3d at = Vec3d(position.get(*point)) + point.getCoord().asVec3d();
@@ -255,6 +257,7 @@ GridBasePtr deform_points(const openvdb::GridBase& source, const ShellMap& rest,
                           DeformFigures& figures, const ShellMap* velocity,
                           Interrupter* interrupter)
 {
+    require_in_range(options, "deform");
     const StageProgress progress(interrupter, "deform points");
     figures = {};
     figures.grid = source.getName();
@@ -271,8 +274,8 @@ GridBasePtr deform_points(const openvdb::GridBase& source, const ShellMap& rest,
         throw InvalidOption("grid \"" + source.getName() + "\" has no points");
     // One leaf stands for all: require_alike has compared them.
     const AttributeSet& attributes = points->tree().cbeginLeaf()->attributeSet();
-    if (velocity && attributes.find(kVelocity) == AttributeSet::INVALID_POS)
-        openvdb::points::appendAttribute<Vec3f>(points->tree(), kVelocity);
+    if (velocity && attributes.find(kVelocityName) == AttributeSet::INVALID_POS)
+        openvdb::points::appendAttribute<Vec3f>(points->tree(), kVelocityName);
 
     const Carrier carrier(rest, posed, velocity, shift, options.vectors);
     const MovedLeaves moved = carry_all(*points, carrier, progress);

@@ -204,7 +204,7 @@ OptionList describe(DeformOptions& o)
          option("most_samples", o.most_samples, "--most-samples",
                 "Samples along each axis of a voxel, at most, where the map shrinks")
              .in(Unit::count)
-             .within(at_least(1)),
+             .within(at_least(1).at_most(kMostSamples)),
          option("most_outside", o.most_outside, "--most-outside",
                 "Share of a volume that may lie outside the shell, and is left out")
              .in(Unit::share)
@@ -215,6 +215,7 @@ GridBasePtr deform_volume(const GridBase& source, const ShellMap& rest, const Sh
                           const Vec3d& shift, const DeformOptions& options, DeformFigures& figures,
                           Interrupter* interrupter)
 {
+    require_in_range(options, "deform");
     const StageProgress progress(interrupter, "deform volume");
     figures = {};
     figures.grid = source.getName();

@@ -153,6 +153,8 @@ public:
         return true;
     }
 
+    /// Of the axis that depths go along.
+    double farthest_voxel() const { return std::abs(low_[2]) + tiles_[2] * size_[2]; }
     /// Of the two axes that texture coordinates go along.
     double farthest_voxel(const Vec2d& uv) const
     {
@@ -312,6 +314,9 @@ void require_voxels(const ToTexture& to_texture, const std::string& grid,
                     const std::vector<std::array<Vec2d, 3>>& corner)
 {
     constexpr double kMost = 1 << 30;
+    if (const double voxel = to_texture.farthest_voxel(); !(voxel < kMost))
+        fail<InvalidOption>("grid \"", grid, "\": the tiles of --repeat-depth end at voxel ", voxel,
+                            ", over the limit of 2^30");
     for (std::size_t t = 0; t < corner.size(); ++t)
         for (const Vec2d& uv : corner[t])
             if (const double voxel = to_texture.farthest_voxel(uv); !(voxel < kMost))
@@ -363,15 +368,10 @@ GridBasePtr map_grid(const Grid& texture, const ShellMap& map,
 
 void require_sensible(const MapOptions& o)
 {
-    for (const double number : {o.repeat_u, o.repeat_v, o.repeat_depth, o.voxel_size})
-        if (!(number > 0) || !std::isfinite(number))
-            throw InvalidOption("map: " + text_of(number) +
-                                " is not positive and finite (tiles, voxel size)");
-    if (!(o.from_depth < o.to_depth) || !(o.from_depth >= 0) || !(o.to_depth <= 1))
+    require_in_range(o, "map");
+    if (!(o.from_depth < o.to_depth))
         throw InvalidOption("map: depths from " + text_of(o.from_depth) + " to " +
-                            text_of(o.to_depth) + " are no range within 0 and 1");
-    if (o.most_samples == 0)
-        throw InvalidOption("map: the most samples are 0, must be 1 or more");
+                            text_of(o.to_depth) + " are no range");
 }
 
 } // namespace
@@ -396,7 +396,7 @@ OptionList describe(MapOptions& o)
          option("most_samples", o.most_samples, "--most-samples",
                 "Samples along each axis of a voxel, at most, where the map shrinks")
              .in(Unit::count)
-             .within(at_least(1)),
+             .within(at_least(1).at_most(kMostSamples)),
          option("voxel_size", o.voxel_size, "--voxel-size",
                 "Edge length of a voxel; 0: that of the shell's level set")
              .in(Unit::world_length)

@@ -41,7 +41,7 @@ GridBasePtr motion_volume(const openvdb::GridBase& volume, const ShellMap& posed
     const StageProgress progress(interrupter, "motion of a volume");
     const VoxelLattice lattice = plain_lattice(volume, shift);
     const openvdb::Int32Grid::Ptr tets = tet_index_grid(posed.tets(), lattice, "motion", progress);
-    VoxelLeaves<openvdb::Vec3SGrid> leaves("v", Vec3s(0.0f), tets->tree().leafCount());
+    VoxelLeaves<openvdb::Vec3SGrid> leaves(kVelocityName, Vec3s(0.0f), tets->tree().leafCount());
     with_volume(volume, "deformed", [&](const auto& grid) {
         for_each_leaf(*tets, progress, [&](std::size_t i, const TetIndexLeaf& leaf) {
             const auto values = grid.getConstAccessor();

@@ -33,11 +33,6 @@ namespace
 constexpr double kDistanceSlack = 4e-6;
 constexpr double kHalfLeaf = 3.5; // from a leaf's first voxel to its middle
 
-Coord corner_of_block(const Coord& corner, int side, std::size_t i)
-{
-    return corner.offsetBy(i & 4 ? side : 0, i & 2 ? side : 0, i & 1 ? side : 0);
-}
-
 /// From the middle of a block to its farthest voxel centre.
 double radius_of(int side)
 {

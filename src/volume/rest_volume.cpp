@@ -7,6 +7,7 @@
 
 #include "core/grid_instances.h"
 #include "core/parallel.h"
+#include "vdb_shell/volume/motion_volume.h"
 #include "volume/tet_values_grid.h"
 
 #include <array>
@@ -68,7 +69,7 @@ GridBasePtr velocity_volume(const TetMesh& posed, const std::vector<openvdb::Vec
 {
     const StageProgress progress(interrupter, "shell velocity");
     const auto grid = vector_volume(posed, velocity, voxel_size, "velocity volume", progress);
-    grid->setName("v");
+    grid->setName(kVelocityName);
     grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
     return grid;
 }

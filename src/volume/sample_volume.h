@@ -28,8 +28,12 @@ inline openvdb::Vec3d on_lattice(openvdb::Vec3d place)
     return place;
 }
 
+/// Along each axis: that many along all three are counted in an int.
+constexpr double kMostSamples = 1024;
+
 /// Samples of what a voxel covers: of `place` + `across` * x, x in the cube of side 1 about 0, so
-/// many along each column of `across` that they are no farther apart than 1, or `most`.
+/// many along each column of `across` that they are no farther apart than 1, or `most`, which is no
+/// more than kMostSamples.
 class Samples
 {
 public:

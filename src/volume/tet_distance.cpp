@@ -126,9 +126,10 @@ private:
             const Vec3d place = carried(corners_of(tets_, tet), corners_of(previous_->tets, tet),
                                         surface_.voxel_size() * voxel.asVec3d());
             const Vec3d before = previous_->nearest.worldToIndex(place);
-            const std::int32_t triangle = accessor_->getValue(Coord::round(before));
-            // Next to a face the nearest voxel centre may lie in no tet.
-            if (triangle >= 0)
+            std::int32_t triangle = 0;
+            // Next to a face the nearest voxel centre may lie in no tet. Only the numbers of active
+            // voxels have been looked at (next_tet_distances).
+            if (accessor_->probeValue(Coord::round(before), triangle))
                 return std::uint32_t(triangle);
         }
         return tets_.prism[tet] == kCorePrism ? kNone : tets_.prism[tet];
@@ -230,6 +231,10 @@ TetDistances next_tet_distances(const ShellStack& stack, const TetMesh& tets,
                                 const TetDistanceOptions& options, Interrupter* interrupter)
 {
     // A place is carried by the number of its tet, which has to mean the same tet in both poses.
+    if (previous_tets.points.size() != tets.points.size())
+        throw InvalidOption("distance by tets: the last pose has " +
+                            std::to_string(previous_tets.points.size()) +
+                            " points of tets, this one " + std::to_string(tets.points.size()));
     if (previous_tets.tets != tets.tets)
         throw InvalidOption("distance by tets: the last pose has " +
                             std::to_string(previous_tets.tets.size()) + " tets that are not the " +

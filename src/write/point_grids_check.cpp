@@ -231,7 +231,9 @@ void require_consistent_core(const ShellStack& stack, const TetMesh& tets, const
     require(core.tets.empty() || stack.skin == 0, "a core within a shell outside the surface", 0);
     const std::size_t points = tets.points.size() + core.points.size();
     const auto most = std::size_t(std::numeric_limits<std::int32_t>::max());
-    require(points <= most && core.tets.size() <= most, "more of the core than 32 bits number", 0);
+    // Ids of the core's points go on behind those of all surfaces' points.
+    const std::size_t ids = stack.surfaces() * stack.surface(0).size() + core.points.size();
+    require(ids <= most && core.tets.size() <= most, "more of the core than 32 bits number", 0);
     for (std::size_t t = 0; t < core.tets.size(); ++t)
         for (int corner = 0; corner < 4; ++corner)
             require(core.tets[t][corner] < points, "a point of the core's tet is out of range", t);

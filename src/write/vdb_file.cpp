@@ -16,9 +16,10 @@
 #include "core/parallel.h"
 #include "core/point_grid_instances.h"
 #include "io/vdb_archive.h"
+#include "io/vdb_grids.h"
 #include "io/vdb_seal.h"
 #include "vdb_shell/core/output_set.h"
-#include "vdb_shell/io/vdb_header.h"
+#include "vdb_shell/io/read_file.h"
 #include "write/core_feet_grid.h"
 #include "write/core_grids.h"
 #include "write/file_digests.h"
@@ -31,7 +32,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <new>
 #include <utility>
 
 namespace vdb_shell
@@ -98,18 +98,8 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, boo
 void open_file(openvdb::io::File& file)
 {
     // Delayed loading would keep the file mapped, so that damage is found late, and in the wrong
-    // place: at the first access to a voxel, outside of guarded().
+    // place: at the first access to a voxel, outside of reading_vdb().
     file.open(/*delayLoad=*/false);
-}
-
-std::string list_of_grids(openvdb::io::File& file)
-{
-    std::string list;
-    const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
-    for (const GridBase::Ptr& grid : *grids)
-        list += (list.empty() ? "\"" : ", \"") + grid->getName() + "\" (" + grid->valueType() +
-                (grid->saveFloatAsHalf() ? " as half" : "") + ")";
-    return list.empty() ? "no grids" : list;
 }
 
 /// A file of which all is known before a grid is decoded.
@@ -190,30 +180,12 @@ void write_sealed(const fs::path& path, openvdb::GridPtrVec grids, openvdb::Meta
     seal_vdb(path, write_vdb_archive(path, std::move(grids), metadata));
 }
 
-/// Runs `read`, turning what OpenVDB throws at damaged data into ReadError. Errors of our own pass
-/// as they are, since they already name the place; so does std::bad_alloc, which says nothing
-/// against the file.
-template <typename Read> auto guarded(const fs::path& path, const Read& read)
-{
-    openvdb::initialize();
-    try {
-        require_whole_vdb(path);
-        return read();
-    } catch (const Error&) {
-        throw;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        throw ReadError(path.string() + ": cannot be read: " + error.what());
-    }
-}
-
 /// Adds the digests of another file to those of the first.
 AllPoints find_points(OpenFile& main, const ShellInfo& info, std::size_t& digests)
 {
     if (info.points_at == main.path)
         return read_points_of(main, info);
-    return guarded(info.points_at, [&] {
+    return reading_vdb(info.points_at, [&] {
         OpenFile beside(info.points_at);
         // Names prove nothing: a file of the same name may be left from an earlier run.
         const std::string found = beside.info().checksum;
@@ -313,7 +285,7 @@ void write_shell_vdb(const fs::path& path, const ShellFile& file, const VdbWrite
 
 ShellInfo read_shell_info(const fs::path& path)
 {
-    return guarded(path, [&] {
+    return reading_vdb(path, [&] {
         openvdb::io::File file(path.string());
         open_file(file);
         return info_from_metadata(*file.getMetadata(), path);
@@ -322,7 +294,7 @@ ShellInfo read_shell_info(const fs::path& path)
 
 ShellFile read_shell_vdb(const fs::path& path)
 {
-    return guarded(path, [&] {
+    return reading_vdb(path, [&] {
         OpenFile file(path);
         const ShellInfo info = file.info();
         ShellFile result;
@@ -366,14 +338,14 @@ ShellFile read_shell_vdb(const fs::path& path)
 
 FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
 {
-    return guarded(path, [&] {
+    return reading_vdb(path, [&] {
         openvdb::io::File file(path.string());
         open_file(file);
+        const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
         std::string chosen = name;
         // A file of one float grid needs no name; of several none is taken for the right one.
         if (name.empty()) {
             int found = 0;
-            const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
             for (const GridBase::Ptr& grid : *grids)
                 if (grid->isType<FloatGrid>()) {
                     chosen = grid->getName();
@@ -381,16 +353,12 @@ FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
                 }
             if (found != 1)
                 throw ReadError(path.string() + ": has " + std::to_string(found) +
-                                " float grids, expected one or a name; it has " +
-                                list_of_grids(file));
-        } else if (!file.hasGrid(name)) {
-            throw ReadError(path.string() + ": has no grid \"" + name + "\"; it has " +
-                            list_of_grids(file));
+                                " float grids, expected one or a name; it has " + list_of(*grids));
         }
         // As in read_grid, only what the walk has covered may be decoded.
-        if (!file.readGridMetadata(chosen)->isType<FloatGrid>())
-            throw ReadError(path.string() + ": grid \"" + chosen +
-                            "\" is not a float grid; the file has " + list_of_grids(file));
+        if (!grid_of_name(*grids, chosen, path.string())->isType<FloatGrid>())
+            throw ReadError(path.string() + ": grid " + vdb_shell::quoted(chosen) +
+                            " is not a float grid; the file has " + list_of(*grids));
         return openvdb::gridPtrCast<FloatGrid>(file.readGrid(chosen));
     });
 }

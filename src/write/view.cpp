@@ -8,8 +8,8 @@
 
 #include <openvdb/math/Math.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace vdb_shell
 {
@@ -26,9 +26,11 @@ const NameTable<UpAxis>& names(UpAxis)
     return table;
 }
 
+/// Rounded up to the digits that messages show, so that the bound itself can be typed.
+constexpr double kQuarterTurn = 1.5708;
+
 OptionList describe(ViewOptions& o)
 {
-    constexpr int kMost = std::numeric_limits<int>::max();
     return in_group(
         "Output", {option("view_up", o.up, "--view-up", "Axis that points up in a picture in space")
                        .needing("--picture surface cut-away"),
@@ -40,12 +42,12 @@ OptionList describe(ViewOptions& o)
                           "Height of the view above the horizon")
                        .needing("--picture surface cut-away")
                        .in(Unit::radians)
-                       .within(at_least(-kPi / 2).at_most(kPi / 2)),
+                       .within(at_least(-kQuarterTurn).at_most(kQuarterTurn)),
                    option("turntable", o.turntable, "--turntable",
                           "Frames of one revolution about the up axis; 0 for none")
                        .needing("--picture surface cut-away")
                        .in(Unit::count)
-                       .within(at_least(0).at_most(kMost)),
+                       .within(at_least(0)),
                    option("turntable_frame", o.turntable_frame, "--turntable-frame",
                           "The frame of the revolution; '%d' in a call with --frames")
                        .needing("--turntable")});
@@ -55,7 +57,8 @@ ViewAxes view_axes(const ViewOptions& options)
 {
     const double turn =
         options.turntable > 0 ? 2 * kPi * options.turntable_frame / options.turntable : 0.0;
-    const double azimuth = options.azimuth_radians + turn, elevation = options.elevation_radians;
+    const double azimuth = options.azimuth_radians + turn,
+                 elevation = std::clamp(options.elevation_radians, -kPi / 2, kPi / 2);
     const double sine = std::sin(azimuth), cosine = std::cos(azimuth);
     const double level = std::cos(elevation), height = std::sin(elevation);
     ViewAxes axes;

@@ -76,20 +76,31 @@ void write_cells(TextOut& text, const TetMesh& tets)
     text << "</Cells>\n";
 }
 
-void write_points(TextOut& text, const TetMesh& tets, const Placement& placement)
+/// Places in the file's coordinates.
+void write_places(TextOut& text, const char* name, const std::vector<openvdb::Vec3s>& places,
+                  const Placement& placement)
 {
     // Vectors are written as one run of numbers, which holds only if they have no padding.
     static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
     static_assert(sizeof(openvdb::Vec3d) == 3 * sizeof(double));
     if (!placement.moves())
-        return write_array(text, "Float32", "Points", 3, tets.points);
+        return write_array(text, "Float32", name, 3, places);
     std::vector<openvdb::Vec3d> placed;
-    for (const openvdb::Vec3s& point : tets.points)
-        placed.push_back(placement.in_file(point));
-    write_array(text, "Float64", "Points", 3, placed);
+    for (const openvdb::Vec3s& place : places)
+        placed.push_back(placement.in_file(place));
+    write_array(text, "Float64", name, 3, placed);
 }
 
-void write_feet(TextOut& text, const std::vector<CoreFoot>& feet)
+/// Differences of places, lengths. The unit is a power of two, so nothing is rounded.
+std::vector<openvdb::Vec3s> in_unit_of_file(std::vector<openvdb::Vec3s> vectors,
+                                            const Placement& placement)
+{
+    for (openvdb::Vec3s& vector : vectors)
+        vector *= float(placement.unit);
+    return vectors;
+}
+
+void write_feet(TextOut& text, const std::vector<CoreFoot>& feet, const Placement& placement)
 {
     if (feet.empty())
         return;
@@ -101,7 +112,7 @@ void write_feet(TextOut& text, const std::vector<CoreFoot>& feet)
         core.push_back(foot.core);
         triangle.push_back(foot.triangle);
         uvw.push_back(foot.uvw);
-        distance.push_back(foot.distance);
+        distance.push_back(foot.distance * float(placement.unit));
     }
     write_array(text, "Int32", "core", 1, core);
     write_array(text, "Int32", "core_triangle", 1, triangle);
@@ -144,11 +155,11 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
          << tets.tets.size() << "\">\n<PointData>\n";
     write_numbers(text, tets, "UInt32", "source_vertex", tets.source_vertex);
     write_numbers(text, tets, "UInt8", "layer", tets.layer);
-    write_feet(text, extras.feet);
+    write_feet(text, extras.feet, placement);
     if (!extras.rest.empty())
-        write_array(text, "Float32", "rest", 3, extras.rest);
+        write_places(text, "rest", extras.rest, placement);
     if (!extras.velocity.empty())
-        write_array(text, "Float32", "v", 3, extras.velocity);
+        write_array(text, "Float32", "v", 3, in_unit_of_file(extras.velocity, placement));
     text << "</PointData>\n<CellData>\n";
     write_numbers(text, tets, "UInt32", "prism", tets.prism);
     if (has_layers(tets))
@@ -156,7 +167,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
     if (!certified.empty())
         write_array(text, "UInt8", "certified", 1, certified);
     text << "</CellData>\n<Points>\n";
-    write_points(text, tets, placement);
+    write_places(text, "Points", tets.points, placement);
     text << "</Points>\n";
     write_cells(text, tets);
     text << "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";

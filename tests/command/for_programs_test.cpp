@@ -18,6 +18,7 @@ namespace
 
 using command::ExitCode;
 using nlohmann::json;
+using openvdb::Vec3d;
 namespace fs = std::filesystem;
 
 class ForPrograms : public Command
@@ -120,6 +121,21 @@ TEST_F(ForPrograms, ErrorsForProgramsHaveTheirParts)
     EXPECT_EQ(error("build --errors json --no-such-flag").at("code"), "usage");
 }
 
+TEST_F(ForPrograms, WishesThatAreNotMetAndInvalidShellsAreErrorsToo)
+{
+    // No tet in the corner of a box is so regular.
+    const std::string build = "build " + mesh_file("b.obj", box(Vec3d(0.0), Vec3d(1.0))) + kCoarse +
+                              "--want-amips 3.0001 -q -o " + file("b.vtu");
+    const Outcome unmet = run("--errors json " + build);
+    EXPECT_EQ(unmet.status, ExitCode::bound_not_met);
+    const std::vector<json> found = events(unmet.err, "error");
+    ASSERT_EQ(found.size(), 1u) << unmet.err;
+    EXPECT_EQ(found[0].at("status"), unmet.status);
+    EXPECT_EQ(found[0].at("code"), "bound");
+    EXPECT_EQ(found[0].at("file"), "b.obj");
+    EXPECT_EQ(run(build).err.rfind("vdb_shell: b.obj: wanted amips", 0), 0u) << run(build).err;
+}
+
 TEST_F(ForPrograms, ASurfaceComesFromStandardInput)
 {
     const std::string sphere = mesh_file("s.obj", icosphere(1.0, 2));
@@ -171,6 +187,13 @@ TEST_F(ForPrograms, TheDoctorSaysWhatAFileNeeds)
     const Outcome shell = run("doctor " + file("s.vdb"));
     EXPECT_NE(shell.out.find("read it as a shell"), std::string::npos) << shell.out;
     EXPECT_NE(shell.out.find("\"surface\", Tree_float_5_4_3, level set"), std::string::npos);
+    ASSERT_EQ(
+        run("volumes " + file("s.vdb") + " --volumes density,prism -o " + file("v.vdb")).status,
+        ExitCode::success);
+    const Outcome volumes = run("doctor " + file("v.vdb"));
+    EXPECT_NE(volumes.out.find("deform and map read it"), std::string::npos) << volumes.out;
+    EXPECT_NE(volumes.out.find("--thickness-grid"), std::string::npos) << volumes.out;
+    EXPECT_EQ(volumes.out.find("no command"), std::string::npos) << volumes.out;
     write_bytes(folder / "s.xyz", "0 0 0\n");
     EXPECT_EQ(run("doctor " + file("s.xyz")).status, ExitCode::read_error);
     expect_refusal("doctor " + file("none.obj"), ExitCode::read_error, {"none.obj"});

@@ -261,7 +261,7 @@ TEST_F(Options, UnknownWordsAreNamed)
     for (const char* words : {"bogus", "--threads 1 bogus"}) {
         const Outcome result = run(words);
         EXPECT_EQ(result.status, ExitCode::usage_error);
-        EXPECT_EQ(result.err.rfind("bogus is no command\n", 0), 0u) << result.err;
+        EXPECT_EQ(result.err.rfind("vdb_shell: bogus is no command\n", 0), 0u) << result.err;
     }
     expect_no_call("bild cube.obj", {"bild is no command; near it: build\n"});
     // The option before what may be its value, with those that may be meant; and nothing is read.

@@ -291,6 +291,12 @@ TEST_F(Pose, VelocitiesAreThoseOfTheFramesBesides)
         for (auto voxel = volume->cbeginValueOn(); voxel; ++voxel)
             EXPECT_NEAR(voxel->x(), expected[std::size_t(k)], 1e-5);
     }
+    // No frame has a neighbour of a name that is misspelt.
+    const Outcome misspelt = run("pose " + file("rest.vdb") + " " + file("w.2.obj") +
+                                 " --mesh-before " + file("v.1.obj") + " -q -o " + file("m.bgeo"));
+    EXPECT_EQ(misspelt.status, ExitCode::success);
+    EXPECT_NE(misspelt.err.find("w.2.obj: no velocities, for there is no"), std::string::npos)
+        << misspelt.err;
     // A piece of the sequence has the same bytes as the whole one, so that a farm can share it out.
     const std::string whole = read_bytes(folder / "v.2.bgeo");
     ASSERT_EQ(run("pose " + file("rest.vdb") + " " + file("w.#.obj") + neighbours +

@@ -61,6 +61,10 @@ TEST_F(Sequence, ADryRunTellsFramesAndFilesAndTouchesNone)
     EXPECT_EQ(single.status, ExitCode::success) << single.err;
     EXPECT_NE(single.out.find(file("t.node")), std::string::npos) << single.out;
     expect_refusal(build("1-3", "--dry-run"), ExitCode::read_error, {"no input for frames 2: "});
+    const Outcome missing =
+        run("build " + file("none.obj") + " -o " + file("t.ele") + " --dry-run");
+    EXPECT_EQ(missing.status, ExitCode::read_error) << missing.err;
+    EXPECT_NE(missing.out.find("MISSING " + file("none.obj")), std::string::npos) << missing.out;
 }
 
 TEST_F(Sequence, EveryTokenAndEveryFrameIsACallOfItsOwn)

@@ -108,6 +108,15 @@ TEST_F(Volumes, PointsAndVelocitiesGoWithThem)
     EXPECT_LT(across, 0.5 * fastest);
     file.close();
 
+    // What has its velocities already is refused before it is carried.
+    const std::string twice = this->file("twice.vdb");
+    expect_refusal("deform " + out + " --velocity --posed " + posed + " -o " + twice,
+                   ExitCode::usage_error, {"out.vdb", "\"v\"", "--grid"});
+    EXPECT_EQ(run("deform " + out + " --grid density --most-outside 1 --velocity --posed " + posed +
+                  " -q -o " + twice)
+                  .status,
+              ExitCode::success);
+
     // Any grid of points in the shell will do, such as that of its tets' centres.
     const Outcome points =
         run("deform " + rest + " --grid shell_tets --posed " + posed + " --report - -o " + out);
@@ -191,6 +200,8 @@ TEST_F(Volumes, RefuseBadInput)
                    {"colour", "density"});
     expect_refusal("volumes " + rest + " --density-ramp 1:0,0:1 --volumes density -o " + fog,
                    ExitCode::usage_error, {"--density-ramp"});
+    expect_refusal("volumes " + rest + " --density-ramp 0:5 --volumes depth -o " + fog,
+                   ExitCode::usage_error, {"--density-ramp", "--volumes density"});
     expect_refusal("volumes " + rest + " -o " + file("a.vtu"), ExitCode::usage_error, {".vdb"});
     expect_refusal("volumes " + rest + " -o " + rest, ExitCode::usage_error, {"rest.vdb"});
     EXPECT_EQ(read_bytes(fog), kept);

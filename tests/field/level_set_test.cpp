@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 
 namespace vdb_shell
@@ -120,9 +121,14 @@ TEST(LevelSet, SameBitsForAnyNumberOfThreads)
     const auto one = made_by(1);
     for (const std::size_t threads : {2, 7}) {
         const auto other = made_by(threads);
-        ASSERT_EQ(one->activeVoxelCount(), other->activeVoxelCount());
-        for (auto value = one->cbeginValueOn(); value; ++value)
-            ASSERT_EQ(*value, other->tree().getValue(value.getCoord()));
+        ASSERT_TRUE(one->tree().hasSameTopology(other->tree()));
+        // Inactive voxels and tiles too.
+        auto theirs = other->cbeginValueAll();
+        for (auto value = one->cbeginValueAll(); value; ++value, ++theirs) {
+            ASSERT_TRUE(theirs);
+            const float ours = *value, other_one = *theirs;
+            ASSERT_EQ(std::memcmp(&ours, &other_one, sizeof(float)), 0);
+        }
     }
 }
 
@@ -180,16 +186,23 @@ TEST(LevelSet, RefusesVoxelsThatDoNotFitTheObject)
     options.voxel_size = 1e-6;
     EXPECT_THAT(message_of<GeometryError>(make), HasSubstr("voxel size 1e-06 is below"));
 
-    // A plate between two layers of voxel centres.
-    options.voxel_size = 0.1;
-    const TriangleMesh plate = test::box(Vec3d(0, 0, 0.01), Vec3d(1, 1, 0.09));
-    EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(plate, options); }),
-                HasSubstr("no voxel centre lies inside"));
-
     options.voxel_size = 0.01;
     const TriangleMesh far = test::translated(mesh, Vec3d(1e6, 0, 0));
     EXPECT_THAT(message_of<GeometryError>([&] { mesh_to_level_set(far, options); }),
                 HasSubstr("too small for coordinates up to"));
+}
+
+TEST(LevelSet, OfAPlateBetweenVoxelCentresHasDistancesAndNoInside)
+{
+    LevelSetOptions options;
+    options.voxel_size = 0.1;
+    const auto thin = mesh_to_level_set(test::box(Vec3d(0, 0, 0.01), Vec3d(1, 1, 0.09)), options);
+    EXPECT_FALSE(has_inside(*thin));
+    // The centre below the plate's middle, and the one above.
+    EXPECT_NEAR(thin->tree().getValue({5, 5, 0}), 0.01, 1e-6);
+    EXPECT_NEAR(thin->tree().getValue({5, 5, 1}), 0.01, 1e-6);
+    const auto thick = mesh_to_level_set(test::box(Vec3d(0, 0, -0.01), Vec3d(1, 1, 0.09)), options);
+    EXPECT_TRUE(has_inside(*thick));
 }
 
 TEST(LevelSet, RefusesOptionsOutOfRange)

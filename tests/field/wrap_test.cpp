@@ -377,6 +377,11 @@ TEST(Wrap, BadOptionsAndEmptyMeshesAreRefused)
     options.adaptivity = -0.1;
     EXPECT_THROW(wrap_mesh(mesh, options), InvalidOption);
     EXPECT_THROW(wrap_mesh({}, {}), GeometryError);
+    TriangleMesh beyond = mesh, nowhere = mesh;
+    beyond.triangles[0][1] = 4;
+    nowhere.points[2][0] = std::nanf("");
+    EXPECT_THROW(wrap_mesh(beyond, {}), InvalidOption);
+    EXPECT_THROW(wrap_mesh(nowhere, {}), InvalidOption);
     EXPECT_THROW(wrap_mesh({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}}, {}), GeometryError);
 }
 

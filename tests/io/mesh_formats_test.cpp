@@ -362,6 +362,19 @@ TEST_F(MeshFormats, loses_no_statement_of_obj_that_makes_a_surface)
                 "face 1 (line 2): the vertex index 5 is out of range, the file has 3 vertices");
 }
 
+TEST_F(MeshFormats, normals_of_tiny_facets_of_binary_stl_have_length_1)
+{
+    // Products of edges so short are below what OpenVDB's normalize() takes for nothing.
+    write_mesh(folder_ / "b.stl", test::icosphere(1e-5, 1));
+    const std::string bytes = test::read_bytes(folder_ / "b.stl");
+    ASSERT_GT(bytes.size(), 84u);
+    for (std::size_t at = 84; at < bytes.size(); at += 50) {
+        openvdb::Vec3s normal;
+        std::memcpy(normal.asPointer(), bytes.data() + at, sizeof(normal));
+        EXPECT_NEAR(normal.length(), 1, 1e-6);
+    }
+}
+
 TEST_F(MeshFormats, refuses_bytes_behind_the_facets_of_binary_stl)
 {
     write_mesh(folder_ / "b.stl", test::unit_tetrahedron());

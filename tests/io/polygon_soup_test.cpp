@@ -66,6 +66,9 @@ TEST(PolygonSoup, that_is_no_surface_is_refused)
     soup = cube_soup({0, 0, 0}, 1);
     soup.corners.pop_back();
     EXPECT_THROW(mesh_of_polygons(soup, "cube"), InvalidOption);
+    soup = cube_soup({0, 0, 0}, 1);
+    soup.ids.assign(7, 1);
+    EXPECT_THROW(mesh_of_polygons(soup, "cube"), InvalidOption);
 }
 
 } // namespace

@@ -48,6 +48,26 @@ TEST(Pipeline, FillsRealMeshes)
     }
 }
 
+TEST(Pipeline, APlateBetweenVoxelCentresIsFilledAllTheSame)
+{
+    const TriangleMesh plate = test::box(Vec3d(0, 0, 0.05), Vec3d(100, 50, 0.2));
+    ShellOptions options;
+    options.level_set.resolution = 64; // a voxel is 1.6 long
+    const ShellResult result = build_shell(plate, options, "plate");
+    EXPECT_FALSE(has_inside(*result.level_set));
+    EXPECT_TRUE(result.report.certificate->certified());
+    EXPECT_GT(result.report.fill, 0.99);
+    // Lines have nothing to step through, and say what helps.
+    options.grow.method = Method::raw;
+    try {
+        build_shell(plate, options, "plate");
+        FAIL() << "nothing was thrown";
+    } catch (const GeometryError& error) {
+        EXPECT_THAT(error.what(),
+                    HasSubstr("plate: no voxel centre lies inside, voxel size 1.5625"));
+    }
+}
+
 TEST(Pipeline, TheReportSaysWhichField)
 {
     const TriangleMesh mesh = test::icosphere(0.4, 2);

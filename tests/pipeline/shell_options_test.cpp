@@ -2,6 +2,7 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/section.h"
 #include "vdb_shell/pipeline.h"
+#include "vdb_shell/write/view.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -152,6 +154,31 @@ TEST(ShellOptions, EveryValueOutOfRangeIsRefusedByFlagByKeyAndByField)
         if (option.kind == OptionKind::count)
             expect_refused(path, option, -1);
     });
+    EXPECT_GT(bounds, 40u);
+}
+
+/// Bounds are shown with six digits, and who types one of these is within.
+TEST(ShellOptions, EveryBoundIsTakenAsItIsShown)
+{
+    std::size_t bounds = 0;
+    const auto expect_taken = [&](Option& option, double bound) {
+        std::ostringstream shown;
+        shown << bound;
+        EXPECT_NE(option.range.text().find(shown.str()), std::string::npos) << option.range.text();
+        EXPECT_NO_THROW(assign_text(option, shown.str(), option.flag));
+        ++bounds;
+    };
+    const auto expect_bounds_taken = [&](Option& option) {
+        if (option.range.low && !option.range.low_excluded)
+            expect_taken(option, *option.range.low);
+        if (option.range.high && !option.range.high_excluded)
+            expect_taken(option, *option.range.high);
+    };
+    Described all;
+    all.for_each([&](const std::string&, Option& option) { expect_bounds_taken(option); });
+    ViewOptions view;
+    for (Option& option : describe(view))
+        expect_bounds_taken(option);
     EXPECT_GT(bounds, 40u);
 }
 

@@ -142,6 +142,8 @@ TEST(CoordinateGrids, TextureCoordinatesAreInterpolatedInTheirTriangle)
     }
     EXPECT_GT(looked_at, kFewestVoxels);
     EXPECT_THROW(grids_of(ball, "uvw"), InvalidOption);
+    texture.pop_back();
+    EXPECT_THROW(grids_of(ball, "uvw", &texture), InvalidOption);
 }
 
 TEST(CoordinateGrids, RefusesListsAndRampsThatAreNone)

@@ -89,6 +89,10 @@ TEST(DeformVolume, MovesWithTheShellByWholeVoxels)
     const auto moved = deformed(*source, rest, posed, figures);
     for (auto voxel = source->cbeginValueOn(); voxel; ++voxel)
         EXPECT_NEAR(moved->tree().getValue(voxel.getCoord().offsetBy(8, 0, 0)), *voxel, 1e-5);
+    // Places of posed float32 points are off by a hundred-thousandth of a voxel, so voxels beside
+    // the volume may be active; nothing is in them.
+    for (auto voxel = moved->cbeginValueOn(); voxel; ++voxel)
+        EXPECT_NEAR(*voxel, source->tree().getValue(voxel.getCoord().offsetBy(-8, 0, 0)), 1e-5);
 }
 
 TEST(DeformVolume, KeepsTheMassOfFog)
@@ -211,6 +215,23 @@ TEST(DeformVolume, WholeNumbersAreNotMixed)
     EXPECT_GT(made->activeVoxelCount(), 1000u);
     for (auto voxel = made->cbeginValueOn(); voxel; ++voxel)
         EXPECT_TRUE(*voxel == 10 || *voxel == 20) << *voxel;
+}
+
+TEST(DeformVolume, RefusesOptionsOutOfRange)
+{
+    const ShellMap rest = map_of(as_it_is);
+    const auto source = fog(kLow, kHigh);
+    DeformFigures figures;
+    const auto refused = [&](auto set) {
+        DeformOptions options;
+        set(options);
+        EXPECT_THROW(deformed(*source, rest, rest, figures, options), InvalidOption);
+    };
+    refused([](DeformOptions& o) { o.most_density = 0; });
+    refused([](DeformOptions& o) { o.most_outside = std::nan(""); });
+    refused([](DeformOptions& o) { o.most_samples = 0; });
+    // More than an int counts along three axes.
+    refused([](DeformOptions& o) { o.most_samples = 3000000000; });
 }
 
 TEST(DeformVolume, RefusesWhatItCannotDo)

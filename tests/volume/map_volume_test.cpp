@@ -450,6 +450,15 @@ TEST(MapVolume, RefusesWhatHasNoTiles)
         EXPECT_THROW(map_volume(grid, map, corner, options, figures), InvalidOption);
     };
     refused(*texture, voxels_of(0), slab.texture);
+    const auto refused_with = [&](auto set) {
+        MapOptions options = voxels_of(0.1);
+        set(options);
+        refused(*texture, options, slab.texture);
+    };
+    refused_with([](MapOptions& o) { o.repeat_u = std::nan(""); });
+    refused_with([](MapOptions& o) { o.repeat_depth = 1e12; });
+    refused_with([](MapOptions& o) { o.most_samples = 3000000000; });
+    refused_with([](MapOptions& o) { o.from_depth = o.to_depth = 0.5; });
     refused(*texture, voxels_of(0.1), {});
     refused(*FloatGrid::create(), voxels_of(0.1), slab.texture);
     refused(*openvdb::BoolGrid::create(), voxels_of(0.1), slab.texture);

@@ -278,6 +278,23 @@ TEST(TetDistance, RefusesWhatDoesNotFit)
     const auto wrong = openvdb::Int32Grid::create(-1);
     wrong->tree().setValue({0, 0, 0}, 80);
     EXPECT_THROW(next_tet_distances(stack, tets, tets, *wrong, {kDistanceVoxel}), InvalidOption);
+    TetMesh fewer_points = tets;
+    fewer_points.points.pop_back();
+    EXPECT_THROW(next_tet_distances(stack, tets, fewer_points, *found.nearest, {kDistanceVoxel}),
+                 InvalidOption);
+}
+
+TEST(TetDistance, NumbersOfInactiveVoxelsOfTheLastPoseAreNotTaken)
+{
+    const ShellStack stack = stack_of(test::icosphere(1.0, 1));
+    const TetMesh tets = make_tets(stack);
+    const TetDistances found = tet_distances(stack, tets, {kDistanceVoxel});
+    // Of a file from elsewhere: what is not active may have any number.
+    const auto strange = openvdb::Int32Grid::create(1 << 30);
+    strange->setTransform(found.nearest->transform().copy());
+    strange->tree().setValueOff({0, 0, 0}, 1 << 29);
+    EXPECT_TRUE(
+        same_bits(found, next_tet_distances(stack, tets, tets, *strange, {kDistanceVoxel})));
 }
 
 TEST(TetDistance, CanBeCancelled)

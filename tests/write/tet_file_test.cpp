@@ -230,6 +230,27 @@ TEST(TetFile, VtuHoldsTheFlagsOfCertifiedTets)
     EXPECT_THROW(write_tets(folder / "a.vtu", tets, certified), InvalidOption);
 }
 
+TEST(TetFile, VtuHasPlacesAtRestAndVelocitiesInTheCoordinatesOfThePoints)
+{
+    const TemporaryFolder folder;
+    const TetMesh tets = test::hand_made_shell(test::icosphere(0.1, 1), 0.5).tets;
+    Placement placement;
+    placement.origin = {1000, -2000, 0.1};
+    placement.unit = 4;
+    PointExtras extras;
+    extras.rest = tets.points;
+    extras.velocity.assign(tets.points.size(), Vec3s(1, 0.5f, -2));
+    write_tets(folder / "a.vtu", tets, {}, placement, extras);
+    const std::string text = test::read_bytes(folder / "a.vtu");
+    // The pose is that at rest.
+    const auto points = values_of<openvdb::Vec3d>(vtu_array(text, "Points"));
+    ASSERT_EQ(points.size(), tets.points.size());
+    EXPECT_EQ(points[3], placement.in_file(tets.points[3]));
+    EXPECT_EQ(values_of<openvdb::Vec3d>(vtu_array(text, "rest")), points);
+    for (const Vec3s& v : values_of<Vec3s>(vtu_array(text, "v")))
+        EXPECT_EQ(v, Vec3s(4, 2, -8));
+}
+
 /// Numbers as in German: a decimal comma and grouped thousands.
 struct German : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }

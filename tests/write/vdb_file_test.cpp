@@ -303,7 +303,7 @@ TEST(ReadFloatGrid, FindsByNameOrAlone)
         return std::string();
     };
     EXPECT_NE(message("precise").find("not a float grid"), std::string::npos) << message("precise");
-    EXPECT_NE(message("missing").find("\"precise\" (double)"), std::string::npos)
+    EXPECT_NE(message("missing").find("\"precise\" (double, "), std::string::npos)
         << message("missing");
 }
 

@@ -51,11 +51,14 @@ double estimate_level_set_bytes(const TriangleMesh& mesh, double voxel_size,
 /// What lies in a cavity (a component of odd nesting depth) is outside.
 /// Bodies that cross are one solid. Throws InvalidOption (see above); GeometryError for a mesh
 /// without points or triangles, for voxels larger than the object, smaller than OpenVDB's
-/// transforms can hold or too small for the coordinates' voxel indices, when no voxel centre lies
-/// inside, or when the estimated memory is over the limit; Cancelled. Same bits for any number of
-/// threads.
+/// transforms can hold or too small for the coordinates' voxel indices, or when the estimated
+/// memory is over the limit; Cancelled. Same bits for any number of threads.
 FloatGridPtr mesh_to_level_set(const TriangleMesh& mesh, const LevelSetOptions& options,
                                Interrupter* interrupter = nullptr);
+
+/// Whether a voxel centre lies inside. None need in a part that is thinner than a voxel: growth
+/// makes a shell there all the same, but lines have nothing to step through.
+bool has_inside(const openvdb::FloatGrid& level_set);
 
 /// phi becomes -phi everywhere, inactive values and the background included. In place; done twice
 /// it restores every bit.

@@ -48,7 +48,7 @@ struct WrapResult {
 };
 
 /// Edge length of a voxel of the mesh's wrap, world units. Throws as wrap_mesh. Precondition: the
-/// mesh has points.
+/// mesh has points, and its triangles' corners are among them.
 double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options);
 
 /// A new surface around anything that has triangles: closed, manifold, embedded (contour.h says
@@ -57,7 +57,8 @@ double wrap_voxel_size(const TriangleMesh& mesh, const WrapOptions& options);
 /// such solid, or one thinner than 1.5 voxels: sheets, loose triangles, patches turned the wrong
 /// way. Gaps are closed by the surface where the winding number has that value. Features smaller
 /// than a voxel are lost. docs/stages/wrap.md tells what to expect. Throws InvalidOption for
-/// options out of range, GeometryError for a mesh without triangles or without extent, or when
+/// options out of range, points that are not finite and corners that are none of them;
+/// GeometryError for a mesh without triangles or without extent, or when
 /// float32 cannot hold the voxels at the mesh's coordinates, Cancelled. Same result for any number
 /// of threads.
 WrapResult wrap_mesh(const TriangleMesh& mesh, const WrapOptions& options,

@@ -31,7 +31,7 @@ struct PolygonSoup {
 /// listed in the report, with the polygons' indices in `soup`. `name` (the file's) opens all
 /// messages. Throws ReadError for a coordinate that is not finite in float32 or over
 /// kLargestCoordinate, a corner out of range, and when no triangle remains; InvalidOption when the
-/// polygon sizes do not add up to the number of corners.
+/// polygon sizes do not add up to the number of corners, or there are ids but not one a point.
 ReadResult mesh_of_polygons(const PolygonSoup& soup, const std::string& name,
                             const ReadOptions& options = {});
 

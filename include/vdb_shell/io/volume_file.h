@@ -13,12 +13,15 @@ class OutputSet;
 
 enum class GridKinds { volumes, volumes_and_points };
 
-/// The volumes of a .vdb in the order of the file: grids of floats (half floats too), of vectors of
-/// three floats and of 32-bit whole numbers; and where `kinds` say so those of points. `names`:
+/// Whether read_volumes reads it. Its metadata are enough.
+bool is_volume(const openvdb::GridBase& grid, GridKinds kinds);
+
+/// The volumes of a .vdb in the order of their names: grids of floats (half floats too), of vectors
+/// of three floats and of 32-bit whole numbers; and where `kinds` say so those of points. `names`:
 /// only these, in this order; empty: all that the file has, leaving out grids of other types.
 /// Nothing is decoded before require_whole_vdb has passed the file. Throws ReadError, with the
-/// grids that the file has, for a name that is not there or of another type, and where there is
-/// nothing of these kinds.
+/// grids that the file has, for a name that is not there, of another type or of several
+/// grids, and where there is nothing of these kinds.
 std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
                                       const std::vector<std::string>& names = {},
                                       GridKinds kinds = GridKinds::volumes);

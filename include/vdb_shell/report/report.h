@@ -164,6 +164,9 @@ std::string posed_report_json(const ShellReport& posed, const std::string& at_re
 /// What was found wrong with the shell; empty where nothing was.
 std::string faults_of(const ShellReport& report);
 
+/// The wishes that the shell does not meet (WantedBounds); empty where it meets all.
+std::string unmet_of(const ShellReport& report);
+
 /// The report for a person: some twenty lines.
 std::string report_text(const ShellReport& report);
 /// Of a posed shell: what posing found and did, tets and proofs.

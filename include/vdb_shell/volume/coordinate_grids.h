@@ -44,8 +44,8 @@ std::vector<Coordinate> coordinates_of(const CoordinateOptions& options);
 using CornerTexture = std::array<openvdb::Vec2d, 3>;
 
 struct CoordinateInputs {
-    const ShellMap* map = nullptr;     ///< of the shell where voxels are wanted
-    const ShellStack* stack = nullptr; ///< the same
+    const ShellMap* map = nullptr;     ///< of the shell where voxels are wanted; not null
+    const ShellStack* stack = nullptr; ///< of the same shell; not null
     const ShellMap* rest = nullptr;    ///< of the shell at rest; null: `map` is
     /// By triangle; null: Coordinate::uvw is refused.
     const std::vector<CornerTexture>* texture = nullptr;
@@ -56,7 +56,8 @@ struct CoordinateInputs {
 /// layer. Coordinates are those of ShellMap, so that no borders of tets show. Background 0,
 /// of numbers of triangles and layers -1. In a core there is no prism: numbers are -1, weights and
 /// thickness 0. Same bits for any number of threads. Throws InvalidOption for a voxel size
-/// that is not positive, texture coordinates that are missing, a ramp that is none; GeometryError
+/// that is not positive, texture coordinates that are missing or of another number of triangles
+/// than the shell has, a ramp that is none; GeometryError
 /// for voxels that are larger than the shell, or more than free memory has room for; Cancelled.
 std::vector<GridBasePtr> coordinate_grids(const CoordinateInputs& inputs,
                                           const CoordinateOptions& options,

@@ -21,8 +21,8 @@ namespace vdb_shell
 /// `figures`: active_before and active_after count points, outside is the share of points that no
 /// tet holds, which are left out.
 ///
-/// Preconditions: as deform_volume. Throws InvalidOption, naming the grid, for a
-/// grid that is not of points, has none, has a transform that is not linear or leaves with
+/// Preconditions: as deform_volume. Throws InvalidOption for options out of range, and, naming the
+/// grid, for one that is not of points, has none, has a transform that is not linear or leaves with
 /// different attributes or with positions that are not "P" of three floats, and for more points
 /// outside than DeformOptions::most_outside; Cancelled.
 GridBasePtr deform_points(const openvdb::GridBase& source, const ShellMap& rest,

@@ -67,9 +67,10 @@ struct DeformFigures {
 /// `shift` is added to the shells' coordinates to get the volume's. Preconditions: `rest` and
 /// `posed` are of the same tets. They should have been made
 /// linear alike (make_linear_alike), or a volume does not come back to where it was in some prisms.
-/// Throws InvalidOption, naming the grid, for a type that is none of FloatGrid, Vec3SGrid,
-/// Int32Grid, a transform that does more than scale alike and move, a grid without active voxels,
-/// vectors that are absolute places, and more outside than is allowed; Cancelled.
+/// Throws InvalidOption for options out of range, and, naming the grid, for a type that is none of
+/// FloatGrid, Vec3SGrid, Int32Grid, a transform that does more than scale alike and move, a grid
+/// without active voxels, vectors that are absolute places, and more outside than is allowed;
+/// Cancelled.
 GridBasePtr deform_volume(const openvdb::GridBase& source, const ShellMap& rest,
                           const ShellMap& posed, const openvdb::Vec3d& shift,
                           const DeformOptions& options, DeformFigures& figures,

@@ -8,6 +8,9 @@
 namespace vdb_shell
 {
 
+/// The name that velocities have, of volumes as of attributes.
+inline constexpr const char* kVelocityName = "v";
+
 /// A shell with velocities in the place of points, so that ShellMap::point_of gives the velocity at
 /// a place: both kinds of places are linear in the shell's points.
 ///

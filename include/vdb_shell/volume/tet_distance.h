@@ -53,8 +53,8 @@ TetDistances tet_distances(const ShellStack& stack, const TetMesh& tets,
 /// The same of the next pose of the same tets. A voxel's candidate is the triangle that was nearest
 /// where the tet has carried it from, instead of that of its prism. Exact, it gives the bits that
 /// tet_distances gives. `previous`: the tets of the last pose and its TetDistances::nearest.
-/// Throws InvalidOption also when the number of tets differs, or a triangle that the grid names is
-/// none of the stack.
+/// Throws InvalidOption also when the number of points differs, or the tets do, or a triangle that
+/// the grid names is none of the stack.
 TetDistances next_tet_distances(const ShellStack& stack, const TetMesh& tets,
                                 const TetMesh& previous_tets,
                                 const openvdb::GridBase& previous_nearest,

@@ -30,10 +30,11 @@ struct PointExtras {
 /// whether a program reads them into floats or doubles; with a placement that moves, doubles where
 /// the file of the surface has them. Data beside them, where the format has a
 /// place (docs/file_format.md): per point source vertex and layer, per tet its prism and, where
-/// `certified` is given, its flag (Overlaps::certified; .vtu only); per point its foot on a core
-/// where it was at rest and its velocity, where `extras` have them (.vtu only). Files appear whole
-/// or not at all; same bytes for the same tets, in any locale. Throws InvalidOption for an unknown
-/// extension for flags that are not one a tet and extras that are not one a point, WriteError.
+/// `certified` is given, its flag (Overlaps::certified; .vtu only); per point, where `extras` have
+/// them (.vtu only), its foot on a core, its place at rest and its velocity, in the coordinates and
+/// the unit of the points. Files appear whole or not at all; same bytes for the same tets, in any
+/// locale. Throws InvalidOption for an unknown extension, for flags that are not one a tet and for
+/// extras that are not one a point; WriteError.
 void write_tets(const std::filesystem::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified = {}, const Placement& placement = {},
                 const PointExtras& extras = {}, OutputSet* with = nullptr);
