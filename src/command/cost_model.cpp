@@ -119,6 +119,28 @@ std::vector<std::string> not_counted(const BuildArguments& a)
     return names;
 }
 
+/// Of needles there is a word where they are more than one triangle in a hundred: growth takes 7 to
+/// 91 times as long then, and as long as is said where they are fewer (docs/farm.md).
+std::vector<std::string> needles_not_counted(const TriangleMesh& mesh)
+{
+    constexpr double kNeedle = 100, kMostShare = 0.01; // longest side over height; of the triangles
+    const auto corner = [&](const openvdb::Vec3I& t, int k) {
+        return openvdb::Vec3d(mesh.points[t[k % 3]]);
+    };
+    const auto is_needle = [&](const openvdb::Vec3I& t) {
+        double longest2 = 0;
+        for (int k = 0; k < 3; ++k)
+            longest2 = std::max(longest2, (corner(t, k + 1) - corner(t, k)).lengthSqr());
+        // The height is twice the area over the longest side.
+        return kNeedle * 2 * triangle_area(mesh.points, t) < longest2;
+    };
+    const auto needles = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), is_needle);
+    if (double(needles) <= kMostShare * double(mesh.triangles.size()))
+        return {};
+    return {"growth beside " + std::to_string(needles) +
+            " needles, 100 times as long as they are high (--remesh-to N cuts them up)"};
+}
+
 /// Seconds and memory of a build by what it asks of growth. `--for speed` is what was measured of
 /// the three-tet test; with more fill than that it takes up to as long as the default.
 struct BuildNumbers {
@@ -194,6 +216,9 @@ CallCost estimate_build(const BuildArguments& arguments)
     cost.memory = sum_of(numbers.memory, size);
     cost.disk = disk_of(arguments.outputs, size, kVdbNumbers);
     cost.not_counted = not_counted(arguments);
+    if (shell.grow.method != Method::raw && !shell.remesh.wanted())
+        for (const std::string& needles : needles_not_counted(read.mesh))
+            cost.not_counted.push_back(needles);
     return cost;
 }
 

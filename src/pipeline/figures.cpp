@@ -28,8 +28,9 @@ void measure_field(FieldReport& report, const openvdb::FloatGrid& level_set)
     report.voxel_size = level_set.voxelSize()[0];
     report.active_voxels = level_set.activeVoxelCount();
     report.memory_bytes = level_set.memUsage();
-    // The field is negative inside, so the deepest voxel is the smallest.
-    report.interior_depth = -double(value_range(level_set).least);
+    // The field is negative inside, so the deepest voxel is the smallest; where no voxel
+    // centre lies inside there is none.
+    report.interior_depth = std::max(0.0, -double(value_range(level_set).least));
 }
 
 std::vector<double> lengths_of(const PrismShell& shell)

@@ -116,6 +116,11 @@ TEST_F(Estimate, WhatItDoesNotKnowIsSaid)
     EXPECT_EQ(of(sphere + " --side both --taper").at("not_counted"), json({"--side", "--taper"}));
     EXPECT_EQ(of(sphere + " --thickest").at("not_counted"), json::array());
     EXPECT_EQ(of(sphere + " --method raw").at("not_counted"), json({"--method raw"}));
+    const std::string plate = mesh_file("plate.obj", needled_plate(100));
+    const json beside = of(plate).at("not_counted");
+    ASSERT_EQ(beside.size(), 1u);
+    EXPECT_NE(std::string(beside[0]).find("needles"), std::string::npos) << beside;
+    EXPECT_EQ(of(plate + " --remesh-to 1000").at("not_counted"), json({"--remesh"}));
     const Outcome text = run("estimate " + sphere + " " + sphere + " --wrap");
     EXPECT_NE(text.out.find("s.obj: 320 triangles"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find("not counted: --wrap"), std::string::npos) << text.out;

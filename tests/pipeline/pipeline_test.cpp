@@ -55,6 +55,7 @@ TEST(Pipeline, APlateBetweenVoxelCentresIsFilledAllTheSame)
     options.level_set.resolution = 64; // a voxel is 1.6 long
     const ShellResult result = build_shell(plate, options, "plate");
     EXPECT_FALSE(has_inside(*result.level_set));
+    EXPECT_EQ(result.report.field.interior_depth, 0);
     EXPECT_TRUE(result.report.certificate->certified());
     EXPECT_GT(result.report.fill, 0.99);
     // Lines have nothing to step through, and say what helps.
