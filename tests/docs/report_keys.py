@@ -27,7 +27,7 @@ BOTH_SIDES = ["--side", "both", "--layers", "2", "--thickness-scale", "0.5"]
 # Without either program no report has figures of a filled core.
 FILLER = next(filter(shutil.which, ["tetgen", "gmsh"]), None)
 
-BOUND_NOT_MET, CHECK_FAILED = 6, 7 # of the raw method
+BOUND_NOT_MET, CHECK_FAILED = 6, 7  # of the raw method
 
 # There only where a number is not the whole count, which takes thousands of triangles in one place.
 RARE = {"self_intersections_at_least", "crossings_at_least"}
