@@ -16,7 +16,7 @@ namespace
 using openvdb::FloatGrid;
 using openvdb::GridBase;
 
-GridBase::Ptr named(const std::string& name, float value)
+GridBase::Ptr float_grid(const std::string& name, float value)
 {
     const FloatGrid::Ptr grid = FloatGrid::create();
     grid->setName(name);
@@ -52,7 +52,7 @@ protected:
 
 TEST_F(VolumeFile, GridsComeInTheOrderOfTheirNamesOrOfThoseAskedFor)
 {
-    write({named("z", 1), named("a", 2), named("m", 3)});
+    write({float_grid("z", 1), float_grid("a", 2), float_grid("m", 3)});
     const auto all = read_volumes(path);
     ASSERT_EQ(all.size(), 3u);
     EXPECT_EQ(value_in(*all[0]), 2);
@@ -66,7 +66,7 @@ TEST_F(VolumeFile, GridsComeInTheOrderOfTheirNamesOrOfThoseAskedFor)
 
 TEST_F(VolumeFile, OtherTypesAreLeftOutUnlessAskedFor)
 {
-    write({named("a", 1), empty_grid("mask", "hidden")});
+    write({float_grid("a", 1), empty_grid("mask", "hidden")});
     const auto all = read_volumes(path);
     ASSERT_EQ(all.size(), 1u);
     EXPECT_EQ(all[0]->getName(), "a");
@@ -78,7 +78,7 @@ TEST_F(VolumeFile, OtherTypesAreLeftOutUnlessAskedFor)
 
 TEST_F(VolumeFile, ANameOfSeveralGridsIsRefusedAndOthersAreRead)
 {
-    write({named("a", 1), named("d", 2), named("d", 3)});
+    write({float_grid("a", 1), float_grid("d", 2), float_grid("d", 3)});
     ::testing::internal::CaptureStderr();
     EXPECT_NE(refusal().find("two grids of the name \"d\""), std::string::npos) << refusal();
     EXPECT_NE(refusal({"d"}).find("two grids of the name \"d\""), std::string::npos);
@@ -89,14 +89,14 @@ TEST_F(VolumeFile, ANameOfSeveralGridsIsRefusedAndOthersAreRead)
 
 TEST_F(VolumeFile, WritesWhatItReadsWithTheSameBytes)
 {
-    write({named("a", 1), named("b", 2)});
+    write({float_grid("a", 1), float_grid("b", 2)});
     const auto grids = read_volumes(path);
     const auto first = folder / "first.vdb", second = folder / "second.vdb";
     write_volumes(first, grids);
     write_volumes(second, read_volumes(first));
     EXPECT_EQ(read_bytes(first), read_bytes(second));
     EXPECT_EQ(value_in(*read_volumes(second, {"b"})[0]), 2);
-    EXPECT_THROW(write_volumes(second, {named("a", 1), named("a", 2)}), InvalidOption);
+    EXPECT_THROW(write_volumes(second, {float_grid("a", 1), float_grid("a", 2)}), InvalidOption);
     EXPECT_EQ(read_bytes(first), read_bytes(second));
 }
 
