@@ -130,7 +130,7 @@ double median_slope(const FloatGrid& grid, const TriangleMesh& surface)
 
 openvdb::FloatGrid::Ptr read_level_set(const std::filesystem::path& path, const std::string& name)
 {
-    const FloatGrid::Ptr grid = reading_vdb(path, [&] { return read_named(path.string(), name); });
+    FloatGrid::Ptr grid = reading_vdb(path, [&] { return read_named(path.string(), name); });
     require_level_set(*grid, text(path.string(), ": grid \"", grid->getName(), "\""));
     return grid;
 }

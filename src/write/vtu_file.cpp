@@ -86,6 +86,7 @@ void write_places(TextOut& text, const char* name, const std::vector<openvdb::Ve
     if (!placement.moves())
         return write_array(text, "Float32", name, 3, places);
     std::vector<openvdb::Vec3d> placed;
+    placed.reserve(places.size());
     for (const openvdb::Vec3s& place : places)
         placed.push_back(placement.in_file(place));
     write_array(text, "Float64", name, 3, placed);
