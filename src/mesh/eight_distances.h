@@ -4,6 +4,7 @@
 #include "core/simd.h"
 
 #include <openvdb/Types.h>
+#include <openvdb/math/Coord.h>
 
 #include <array>
 #include <cstdint>
