@@ -23,6 +23,28 @@ std::string one_line(const ordered_json& json)
     return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
+/// Keys that the message does not have are left out and not empty, so that a reader can ask whether
+/// they are there.
+void say_error(const Context& to, int status, const ErrorFacts& facts, const std::string& message)
+{
+    if (to.format == MessageFormat::text)
+        return to.say(LogLevel::error, message);
+    if (to.progress)
+        to.progress->clear_line();
+    ordered_json json{{"event", "error"}, {"code", facts.code}, {"status", status}};
+    if (to.frame)
+        json["frame"] = *to.frame;
+    for (const auto& [key, value] : {std::pair("file", &facts.file),
+                                     {"option", &facts.option},
+                                     {"element", &facts.element},
+                                     {"value", &facts.value},
+                                     {"limit", &facts.limit}})
+        if (!value->empty())
+            json[key] = *value;
+    json["message"] = message;
+    to.err << one_line(json);
+}
+
 } // namespace
 
 const NameTable<LogLevel>& names(LogLevel)
@@ -59,41 +81,17 @@ void Context::say(LogLevel of, const std::string& text) const
     err << one_line(json);
 }
 
-/// Keys that the message does not have are left out and not empty, so that a reader can ask whether
-/// they are there.
 void Context::say(const std::exception& error) const
 {
-    if (format == MessageFormat::text)
-        return say(LogLevel::error, message_of(error));
-    if (progress)
-        progress->clear_line();
-    const ErrorFacts facts = facts_of(error);
-    ordered_json json{{"event", "error"}, {"code", facts.code}, {"status", status_of(error)}};
-    if (frame)
-        json["frame"] = *frame;
-    for (const auto& [key, value] : {std::pair("file", &facts.file),
-                                     {"option", &facts.option},
-                                     {"element", &facts.element},
-                                     {"value", &facts.value},
-                                     {"limit", &facts.limit}})
-        if (!value->empty())
-            json[key] = *value;
-    json["message"] = message_of(error);
-    err << one_line(json);
+    say_error(*this, status_of(error), facts_of(error), message_of(error));
 }
 
 void Context::say_failed(ExitCode status, const std::string& file, const std::string& what) const
 {
-    if (format == MessageFormat::text)
-        return say(LogLevel::error, file + ": " + what);
-    if (progress)
-        progress->clear_line();
-    ordered_json json{{"event", "error"}, {"code", code_of(status)}, {"status", int(status)}};
-    if (frame)
-        json["frame"] = *frame;
-    json["file"] = file;
-    json["message"] = file + ": " + what;
-    err << one_line(json);
+    ErrorFacts facts;
+    facts.code = code_of(status);
+    facts.file = file;
+    say_error(*this, status, facts, file + ": " + what);
 }
 
 } // namespace vdb_shell::command

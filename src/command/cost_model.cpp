@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 
 namespace vdb_shell::command
@@ -94,9 +95,26 @@ double disk_of(const Outputs& outputs, const Size& size, const CostNumbers& vdb)
     return bytes;
 }
 
-/// Options that none of the measured builds had. What they cost is not known, so it is said and not
-/// guessed.
-std::vector<std::string> not_counted(const BuildArguments& a)
+/// Triangles whose longest side is over a hundred times the height on it.
+std::ptrdiff_t count_needles(const TriangleMesh& mesh)
+{
+    constexpr double kNeedle = 100;
+    const auto corner = [&](const openvdb::Vec3I& t, int k) {
+        return openvdb::Vec3d(mesh.points[t[k % 3]]);
+    };
+    return std::count_if(
+        mesh.triangles.begin(), mesh.triangles.end(), [&](const openvdb::Vec3I& t) {
+            double longest2 = 0;
+            for (int k = 0; k < 3; ++k)
+                longest2 = std::max(longest2, (corner(t, k + 1) - corner(t, k)).lengthSqr());
+            // The height is twice the area over the longest side.
+            return kNeedle * 2 * triangle_area(mesh.points, t) < longest2;
+        });
+}
+
+/// Options that none of the measured builds had, and needles. What they cost is not known, so it is
+/// said and not guessed.
+std::vector<std::string> not_counted(const BuildArguments& a, const TriangleMesh& mesh)
 {
     const ShellOptions& s = a.shell;
     std::vector<std::string> names;
@@ -116,29 +134,16 @@ std::vector<std::string> not_counted(const BuildArguments& a)
     add(s.field == FieldRoute::dense, "--field dense");
     add(s.core_fill.wanted(), "--core-fill");
     add(!a.cores.empty(), "--core");
+    // Of more growth takes 7 to 91 times as long, of fewer about as long as others do
+    // (docs/farm.md).
+    constexpr double kMostNeedles = 0.01; // share of the triangles
+    const std::ptrdiff_t needles = count_needles(mesh);
+    if (s.grow.method != Method::raw && !s.remesh.wanted() &&
+        double(needles) > kMostNeedles * double(mesh.triangles.size()))
+        names.push_back(
+            "growth beside " + std::to_string(needles) +
+            " needles, 100 times as long as they are high (--remesh-to N cuts them up)");
     return names;
-}
-
-/// Of needles there is a word where they are more than one triangle in a hundred: growth takes 7 to
-/// 91 times as long then, and as long as is said where they are fewer (docs/farm.md).
-std::vector<std::string> needles_not_counted(const TriangleMesh& mesh)
-{
-    constexpr double kNeedle = 100, kMostShare = 0.01; // longest side over height; of the triangles
-    const auto corner = [&](const openvdb::Vec3I& t, int k) {
-        return openvdb::Vec3d(mesh.points[t[k % 3]]);
-    };
-    const auto is_needle = [&](const openvdb::Vec3I& t) {
-        double longest2 = 0;
-        for (int k = 0; k < 3; ++k)
-            longest2 = std::max(longest2, (corner(t, k + 1) - corner(t, k)).lengthSqr());
-        // The height is twice the area over the longest side.
-        return kNeedle * 2 * triangle_area(mesh.points, t) < longest2;
-    };
-    const auto needles = std::count_if(mesh.triangles.begin(), mesh.triangles.end(), is_needle);
-    if (double(needles) <= kMostShare * double(mesh.triangles.size()))
-        return {};
-    return {"growth beside " + std::to_string(needles) +
-            " needles, 100 times as long as they are high (--remesh-to N cuts them up)"};
 }
 
 /// Seconds and memory of a build by what it asks of growth. `--for speed` is what was measured of
@@ -215,10 +220,7 @@ CallCost estimate_build(const BuildArguments& arguments)
     cost.cpu_seconds = sum_of(numbers.seconds, size);
     cost.memory = sum_of(numbers.memory, size);
     cost.disk = disk_of(arguments.outputs, size, kVdbNumbers);
-    cost.not_counted = not_counted(arguments);
-    if (shell.grow.method != Method::raw && !shell.remesh.wanted())
-        for (const std::string& needles : needles_not_counted(read.mesh))
-            cost.not_counted.push_back(needles);
+    cost.not_counted = not_counted(arguments, read.mesh);
     return cost;
 }
 

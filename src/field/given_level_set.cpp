@@ -13,8 +13,6 @@
 #include "io/vdb_grids.h"
 #include "vdb_shell/core/error.h"
 
-#include <openvdb/io/File.h>
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -73,9 +71,7 @@ std::string only_level_set(const openvdb::GridPtrVec& grids, const std::string& 
 FloatGrid::Ptr read_named(const std::string& file, const std::string& name)
 {
     openvdb::io::File in(file);
-    // Delayed loading would keep the file mapped, and a damaged file would fail only later, where
-    // no message could name it.
-    in.open(/*delayLoad=*/false);
+    open_vdb(in);
     const openvdb::GridPtrVecPtr grids = in.readAllGridMetadata();
     const std::string chosen = name.empty() ? only_level_set(*grids, file) : name;
     // The type is looked at before the voxels are read: a wrong grid may be a large one.

@@ -263,13 +263,7 @@ openvdb::FloatGrid::Ptr mesh_to_level_set(const TriangleMesh& mesh, const LevelS
 
 bool has_inside(const openvdb::FloatGrid& grid)
 {
-    // Leaves are enough to look at: wherever there is an inside, there are active voxels on both
-    // sides of the surface, and those stand in leaves.
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
-        for (auto value = leaf->cbeginValueOn(); value; ++value)
-            if (*value < 0)
-                return true;
-    return false;
+    return value_range(grid).least < 0;
 }
 
 void negate_level_set(openvdb::FloatGrid& level_set)

@@ -12,7 +12,6 @@
 #include "core/stage_progress.h"
 #include "field/field_sampler.h"
 #include "vdb_shell/core/error.h"
-#include "vdb_shell/field/level_set.h"
 #include "vdb_shell/options/option.h"
 #include "vdb_shell/options/option_value.h"
 
@@ -96,12 +95,13 @@ SmoothReport smooth_level_set(openvdb::FloatGrid& level_set, const TriangleMesh&
         return drift_of(mesh, level_set);
 
     const double voxel = level_set.voxelSize()[0];
-    if (!has_inside(level_set))
+    // Measured before the flow, which cuts the inside down to a narrow band.
+    const float deepest = deepest_value(level_set);
+    if (deepest >= 0)
         throw GeometryError("smooth: no voxel centre lies inside the surface, voxel size " +
                             text_of(voxel) + "; a smaller --voxel-size or a larger --resolution");
     const auto exterior_voxels = static_cast<float>(level_set.background() / voxel);
-    // Measured before the flow, which cuts the inside down to a narrow band.
-    const auto interior_voxels = static_cast<float>(-deepest_value(level_set) / voxel + 1);
+    const auto interior_voxels = static_cast<float>(-deepest / voxel + 1);
     LatchedInterrupter latched(interrupter);
     flow(level_set, options.iterations, latched);
     // The flow shrinks closed surfaces, so with enough steps they vanish.

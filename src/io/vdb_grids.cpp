@@ -13,6 +13,11 @@ namespace vdb_shell
 
 using openvdb::GridBase;
 
+void open_vdb(openvdb::io::File& file)
+{
+    file.open(/*delayLoad=*/false);
+}
+
 std::string list_of(const openvdb::GridPtrVec& grids)
 {
     std::string list;

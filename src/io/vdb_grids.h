@@ -5,12 +5,18 @@
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/vdb_header.h"
 
+#include <openvdb/io/File.h>
+
 #include <filesystem>
 #include <new>
 #include <string>
 
 namespace vdb_shell
 {
+
+/// Without delayed loading, which would keep the file mapped, so that damage is found late and in
+/// the wrong place: at the first access to a voxel, outside of reading_vdb().
+void open_vdb(openvdb::io::File& file);
 
 /// For messages: the grids' names, with the type of their values and their class.
 std::string list_of(const openvdb::GridPtrVec& grids);

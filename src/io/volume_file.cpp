@@ -15,8 +15,6 @@
 #include "vdb_shell/core/output_set.h"
 #include "vdb_shell/io/read_file.h"
 
-#include <openvdb/io/File.h>
-
 #include <set>
 
 namespace vdb_shell
@@ -67,8 +65,7 @@ std::vector<GridBasePtr> read_volumes(const std::filesystem::path& path,
 {
     return reading_vdb(path, [&] {
         openvdb::io::File file(path.string());
-        // Delayed loading would find damage at the first access to a voxel, outside of this.
-        file.open(/*delayLoad=*/false);
+        open_vdb(file);
         return read_opened(file, path.string(), names, kinds);
     });
 }

@@ -7,6 +7,7 @@
 #include "step/thickness.h"
 
 #include "core/parallel.h"
+#include "core/voxel_numbers.h"
 #include "vdb_shell/core/error.h"
 
 #include <openvdb/tools/Interpolation.h>
@@ -21,13 +22,6 @@ namespace vdb_shell
 namespace
 {
 
-/// Farther out there are none, and no whole numbers for them.
-bool has_voxels(const openvdb::Vec3d& index)
-{
-    constexpr double kMost = 1 << 30;
-    return std::abs(index[0]) < kMost && std::abs(index[1]) < kMost && std::abs(index[2]) < kMost;
-}
-
 std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::FloatGrid& grid)
 {
     std::vector<double> sampled(mesh.points.size());
@@ -35,7 +29,7 @@ std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::Fl
         const auto accessor = grid.getConstAccessor();
         for (std::size_t v = begin; v < end; ++v) {
             const auto index = grid.transform().worldToIndex(openvdb::Vec3d(mesh.points[v]));
-            sampled[v] = has_voxels(index)
+            sampled[v] = has_voxel_numbers(index)
                              ? double(openvdb::tools::BoxSampler::sample(accessor, index))
                              : double(grid.background());
         }

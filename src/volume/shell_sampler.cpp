@@ -6,6 +6,7 @@
 #include "vdb_shell/volume/shell_sampler.h"
 
 #include "core/box_tree.h"
+#include "core/voxel_numbers.h"
 #include "volume/tet_index_grid.h"
 
 #include <cmath>
@@ -81,9 +82,7 @@ ShellSampler::ShellSampler(ShellSampler&&) noexcept = default;
 ShellPlace ShellSampler::find(const Vec3d& point) const
 {
     const Vec3d voxel = point / parts_->voxel_size;
-    // Farther out there are no voxels, and no whole numbers for them.
-    constexpr double kMost = 1 << 30;
-    if (!(std::abs(voxel[0]) < kMost && std::abs(voxel[1]) < kMost && std::abs(voxel[2]) < kMost))
+    if (!has_voxel_numbers(voxel))
         return {};
     const int near = parts_->near->tree().getValue(openvdb::Coord::round(voxel));
     if (near >= 0) {

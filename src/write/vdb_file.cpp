@@ -27,8 +27,6 @@
 #include "write/point_grids.h"
 #include "write/vdb_metadata.h"
 
-#include <openvdb/io/File.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -94,14 +92,6 @@ FloatGrid::Ptr named_copy(const FloatGrid::ConstPtr& grid, const char* name, boo
     return copy;
 }
 
-/// Opens a file whose outer structure has been checked.
-void open_file(openvdb::io::File& file)
-{
-    // Delayed loading would keep the file mapped, so that damage is found late, and in the wrong
-    // place: at the first access to a voxel, outside of reading_vdb().
-    file.open(/*delayLoad=*/false);
-}
-
 /// A file of which all is known before a grid is decoded.
 struct OpenFile {
     explicit OpenFile(const fs::path& where)
@@ -110,7 +100,7 @@ struct OpenFile {
     }
     static openvdb::MetaMap metadata_of(openvdb::io::File& file)
     {
-        open_file(file);
+        open_vdb(file);
         return *file.getMetadata();
     }
     ShellInfo info() const { return info_from_metadata(*file.getMetadata(), path); }
@@ -287,7 +277,7 @@ ShellInfo read_shell_info(const fs::path& path)
 {
     return reading_vdb(path, [&] {
         openvdb::io::File file(path.string());
-        open_file(file);
+        open_vdb(file);
         return info_from_metadata(*file.getMetadata(), path);
     });
 }
@@ -340,7 +330,7 @@ FloatGrid::Ptr read_float_grid(const fs::path& path, const std::string& name)
 {
     return reading_vdb(path, [&] {
         openvdb::io::File file(path.string());
-        open_file(file);
+        open_vdb(file);
         const openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
         std::string chosen = name;
         // A file of one float grid needs no name; of several none is taken for the right one.
