@@ -9,6 +9,7 @@
 #include "support/files.h"
 #include "support/grids.h"
 #include "support/shapes.h"
+#include "support/sphere_field.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>

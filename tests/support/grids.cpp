@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/grids.h"
 
-#include "support/shapes.h"
-#include "vdb_shell/field/level_set.h"
-
 #include <openvdb/io/File.h>
 #include <openvdb/points/PointAttribute.h>
 #include <openvdb/points/PointConversion.h>
@@ -19,14 +16,6 @@ openvdb::FloatGrid::Ptr sphere_level_set(float radius, float voxel_size)
 {
     return openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(radius, openvdb::Vec3f(0.0f),
                                                                     voxel_size, 3.0f);
-}
-
-openvdb::FloatGrid::Ptr sphere_field(double depth)
-{
-    LevelSetOptions options;
-    options.voxel_size = 0.05;
-    options.interior_depth = depth;
-    return mesh_to_level_set(icosphere(1.0, 3), options);
 }
 
 openvdb::GridBase::Ptr empty_grid(const std::string& value_type, const std::string& name)

@@ -21,9 +21,6 @@ namespace vdb_shell::test
 /// A level set of a sphere about the origin, with a band of three voxels.
 openvdb::FloatGrid::Ptr sphere_level_set(float radius, float voxel_size);
 
-/// A unit sphere's level set of voxels of 0.05 named "surface", with values down to that depth.
-openvdb::FloatGrid::Ptr sphere_field(double depth);
-
 /// An empty grid of those values, named as OpenVDB's trees name them: "vec3s", "int32", "mask".
 openvdb::GridBase::Ptr empty_grid(const std::string& value_type, const std::string& name);
 
