@@ -55,13 +55,6 @@ std::vector<std::vector<std::uint32_t>> vertices_of(const std::vector<Coarsened>
     return from;
 }
 
-/// Where a single round on the whole surface follows, most of the time goes into mending, and
-/// smoothing saves some of that; else rounds win back more than it saves.
-Bends bends_towards(std::size_t triangles, const GrowthSchedule& schedule)
-{
-    return affordable_rounds(triangles, schedule) > 1 ? Bends::kept : Bends::smoothed;
-}
-
 /// A pin on a coarse surface says little about a finer one. So that it holds nobody back there, its
 /// inner point goes to the middle of those beside it.
 void lift_pins(GrowState& s)
@@ -118,8 +111,8 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
     // half as much.
     s.twelve = prism_test_of(job.options) == PrismTest::twelve_tets;
     const std::vector<CoarsePoint> nearest = nearest_coarse_points(mesh, coarser, schedule);
-    const Pillars pillars = prolonged_pillars(coarser, coarser_inner, mesh, nearest, lines,
-                                              bends_towards(job.triangles, s.schedule), schedule);
+    const Pillars pillars =
+        prolonged_pillars(coarser, coarser_inner, mesh, *s.mesh, s.cap, nearest, lines, schedule);
     std::vector<double> lost =
         mend_prolonged(s, pillars.lines, pillars.length, job.progress.part(0, kMendedAt));
     // Before the groups, which win back what shorter pillars beside a pin cost.
@@ -128,6 +121,15 @@ std::vector<double> start_from_coarser(GrowState& s, const TriangleMesh& mesh,
                  : release_last_pins(s, lines.visibility, job.progress.part(kMendedAt, kMendedAt)));
     move_groups(s, group_shares(coarser, nearest), job.progress.part(kMendedAt, kGroupsAt));
     return lost;
+}
+
+/// More is wanted of a level than of the whole: mending on the finer surfaces loses some of what it
+/// has won, and to win that there costs more.
+GrowthSchedule schedule_of_level(GrowthSchedule schedule)
+{
+    double& enough = schedule.barrier.enough_fill;
+    enough = 1 - schedule.multilevel.level_void_share * (1 - enough);
+    return schedule;
 }
 
 /// What has been grown on a level.
@@ -143,7 +145,8 @@ LevelShell grow_on_level(const TriangleMesh& mesh, const std::vector<double>& ca
 {
     const Directions lines = lines_of_level(mesh, job.options, from);
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
-    GrowState s = make_state(connectivity, mesh.points, cap, job.options.schedule);
+    GrowState s =
+        make_state(connectivity, mesh.points, cap, schedule_of_level(job.options.schedule));
     // A level's shell is valid by itself, but nothing reads it except the next prolongation.
     GrowReport ignored;
     start(s, lines, ignored);

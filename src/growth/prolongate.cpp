@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "mesh/nearest_on_triangle.h"
-#include "mesh/topology.h"
 #include "mesh/triangle_corners.h"
 #include "mesh/triangle_tree.h"
 #include "vdb_shell/mesh/normals.h"
@@ -24,6 +23,9 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3s;
+
+// Prolonged pillars miss their caps by how far the two surfaces are beside each other.
+constexpr double kShareOfCap = 0.9;
 
 /// Barycentric coordinates of a point of the triangle; those of its middle where it has no area.
 std::array<double, 3> weights_in(const std::array<Vec3d, 3>& corner, const Vec3d& at)
@@ -50,29 +52,32 @@ Vec3d end_in_prism(const TriangleMesh& coarse, const std::vector<Vec3d>& inner,
     return end;
 }
 
-/// Each pillar halfway to the mean of its neighbours, once: a second pass takes off more thickness
-/// than it spares in mending.
-std::vector<Vec3s> smoothed(const TriangleMesh& mesh, const std::vector<Vec3s>& inner)
+/// Each point halfway to the mean of its neighbours, in so many passes, but for those that are
+/// held. A coarse triangle is mapped to its inner one as a whole, so a finer surface's inner points
+/// lie in patches with kinks between them, and dense on one side of a kink, sparse on the other:
+/// that is where prisms are sheared. The points of the inner surface are averaged and not the
+/// pillars, for these would carry the outer surface's roughness there. Neighbours count by the
+/// inverse square of how far they are on the outer surface, or needles would drag points along for
+/// all their length. What it is worth: docs/measurements/tried.md, "Fair inner surfaces".
+std::vector<Vec3d> fair(const TriangleMesh& mesh, const Connectivity& connectivity,
+                        std::vector<Vec3d> points, const std::vector<std::uint8_t>& held,
+                        int passes)
 {
-    const VertexTriangles around = triangles_around_vertices(inner.size(), mesh.triangles);
-    // A neighbour comes up once for each of the two triangles at their edge, which changes no mean.
-    std::vector<Vec3s> result = inner;
-    for_each_index(inner.size(), [&](std::size_t v) {
-        Vec3d sum(0.0);
-        std::size_t count = 0;
-        for (const std::uint32_t t : around.around(v))
-            for (int k = 0; k < 3; ++k) {
-                const std::uint32_t u = mesh.triangles[t][k];
-                if (u == v)
-                    continue;
-                sum += Vec3d(inner[u]) - Vec3d(mesh.points[u]);
-                ++count;
+    std::vector<Vec3d> next(points.size());
+    for (int pass = 0; pass < passes; ++pass) {
+        for_each_index(points.size(), [&](std::size_t v) {
+            Vec3d sum(0.0);
+            double weights = 0;
+            for (const int u : neighbours(connectivity, static_cast<int>(v))) {
+                const double squared = (Vec3d(mesh.points[u]) - Vec3d(mesh.points[v])).lengthSqr();
+                if (squared > 0)
+                    sum += points[u] / squared, weights += 1 / squared;
             }
-        if (count > 0)
-            result[v] =
-                Vec3s(0.5 * (Vec3d(inner[v]) + Vec3d(mesh.points[v]) + sum / double(count)));
-    });
-    return result;
+            next[v] = !held[v] && weights > 0 ? 0.5 * (points[v] + sum / weights) : points[v];
+        });
+        points.swap(next);
+    }
+    return points;
 }
 
 } // namespace
@@ -80,12 +85,12 @@ std::vector<Vec3s> smoothed(const TriangleMesh& mesh, const std::vector<Vec3s>& 
 Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Directions lines)
 {
     Pillars pillars{std::move(lines), std::vector<double>(inner.size())};
-    for (std::size_t v = 0; v < inner.size(); ++v) {
+    for_each_index(inner.size(), [&](std::size_t v) {
         const Vec3d arm = Vec3d(inner[v]) - Vec3d(mesh.points[v]);
         pillars.length[v] = arm.length();
         if (pillars.length[v] > 0)
             pillars.lines.inward[v] = arm / pillars.length[v];
-    }
+    });
     return pillars;
 }
 
@@ -108,23 +113,28 @@ std::vector<CoarsePoint> nearest_coarse_points(const TriangleMesh& mesh, const T
 }
 
 Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& coarse_inner,
-                          const TriangleMesh& mesh, const std::vector<CoarsePoint>& nearest,
-                          const Directions& lines, Bends bends, const MultilevelSchedule& schedule)
+                          const TriangleMesh& mesh, const Connectivity& connectivity,
+                          const std::vector<double>& cap, const std::vector<CoarsePoint>& nearest,
+                          const Directions& lines, const MultilevelSchedule& schedule)
 {
-    std::vector<Vec3s> inner(mesh.points.size());
-    for_each_index(inner.size(), [&](std::size_t v) {
-        inner[v] = Vec3s(end_in_prism(coarse, coarse_inner, nearest[v]));
+    std::vector<Vec3d> ends(mesh.points.size());
+    std::vector<std::uint8_t> held(ends.size());
+    for_each_index(ends.size(), [&](std::size_t v) {
+        ends[v] = end_in_prism(coarse, coarse_inner, nearest[v]);
+        // As thick as is allowed: nothing is to be won, and where the next is allowed less, lost.
+        held[v] = (ends[v] - Vec3d(mesh.points[v])).length() > kShareOfCap * cap[v];
     });
-    Pillars pillars =
-        pillars_to(mesh, bends == Bends::smoothed ? smoothed(mesh, inner) : inner, lines);
+    ends = fair(mesh, connectivity, std::move(ends), held, schedule.fair_passes);
+    const std::vector<Vec3s> inner(ends.begin(), ends.end());
+    Pillars pillars = pillars_to(mesh, inner, lines);
     // A pillar that its own triangles hide would be shortened to nothing by mending.
-    std::vector<Vec3d> outward(inner.size());
-    for (std::size_t v = 0; v < outward.size(); ++v)
-        outward[v] = -pillars.lines.inward[v];
+    std::vector<Vec3d>& outward = ends;
+    for_each_index(outward.size(), [&](std::size_t v) { outward[v] = -pillars.lines.inward[v]; });
     const std::vector<double> visibility = visibility_of(mesh, outward);
-    for (std::size_t v = 0; v < outward.size(); ++v)
+    for_each_index(outward.size(), [&](std::size_t v) {
         if (!(visibility[v] > schedule.least_visibility))
             pillars.lines.inward[v] = lines.inward[v];
+    });
     return pillars;
 }
 

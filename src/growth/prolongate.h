@@ -3,6 +3,7 @@
 
 // The shell of a coarser surface prolonged to a finer one.
 
+#include "growth/connectivity.h"
 #include "vdb_shell/growth/schedule.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 #include "vdb_shell/step/directions.h"
@@ -27,11 +28,6 @@ struct Pillars {
 Pillars pillars_to(const TriangleMesh& mesh, const std::vector<openvdb::Vec3s>& inner,
                    Directions lines);
 
-/// What to do with the bends of prolonged pillars over the edges of coarse triangles, where most of
-/// the sheared prisms are: smoothed, there are fewer of them, but the inner surface takes on some
-/// of the outer one's roughness.
-enum class Bends { kept, smoothed };
-
 /// A point of a coarse surface.
 struct CoarsePoint {
     std::uint32_t triangle;
@@ -43,11 +39,13 @@ std::vector<CoarsePoint> nearest_coarse_points(const TriangleMesh& mesh, const T
                                                const MultilevelSchedule& schedule);
 
 /// The pillars of a surface prolonged from the shell of a coarser one of about the same shape: each
-/// vertex goes along the prism in which its nearest point on the coarse surface lies. A pillar of
-/// poor visibility goes along the vertex's line instead, as far.
+/// vertex goes along the prism in which its nearest point on the coarse surface lies, and the inner
+/// points are made fair as the schedule says, but for those at their cap. A pillar of poor
+/// visibility goes along the vertex's line instead, as far.
 Pillars prolonged_pillars(const TriangleMesh& coarse,
                           const std::vector<openvdb::Vec3d>& coarse_inner, const TriangleMesh& mesh,
+                          const Connectivity& connectivity, const std::vector<double>& cap,
                           const std::vector<CoarsePoint>& nearest, const Directions& lines,
-                          Bends bends, const MultilevelSchedule& schedule = {});
+                          const MultilevelSchedule& schedule = {});
 
 } // namespace vdb_shell::growth

@@ -90,6 +90,8 @@ const Number kNumbers[] = {
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, one_round_triangles),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, cost_share),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, nearest_tolerance),
+    VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, fair_passes),
+    VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, level_void_share),
     VDB_SHELL_NUMBER(multilevel, MultilevelSchedule, least_visibility),
     VDB_SHELL_NUMBER(mend, MendSchedule, first_cut),
     VDB_SHELL_NUMBER(mend, MendSchedule, greatest_cut),

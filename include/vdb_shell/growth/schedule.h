@@ -100,6 +100,10 @@ struct MultilevelSchedule {
     double cost_share = 1.0 / 3;
     /// Share of the coarse surface's diagonal: the nearest point on it is found to within this.
     float nearest_tolerance = 1e-4F;
+    /// Count. Passes that make prolonged inner points fair, over about half a coarse edge.
+    int fair_passes = 3;
+    /// Share of the void that is enough on the whole surface: what is enough on a coarser one.
+    double level_void_share = 0.75;
     /// Cosine. A prolonged pillar whose visibility is not above this gives way to the line.
     double least_visibility = 0.05;
 };
