@@ -61,7 +61,9 @@ def build(command, mesh, flags, read=None, written=(0,)):
 
 
 def figures(report):
-    coverage, certificate = report["coverage"], report["certificate"]
+    certificate = report["certificate"]
+    # null without samples, as with --for speed.
+    coverage = report["coverage"] or {"samples": 0, "in_several": 0, "in_none": 0}
     scale, cut, growth = report.get("scale") or {}, report.get("cut") or {}, report.get("growth") or {}
     failed = {name: value for name, value in certificate.items() if isinstance(value, dict) and value.get("count")}
     return {"certified": certificate["certified"], "failed": failed, "fill": report["volume"]["fill"],
