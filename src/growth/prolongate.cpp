@@ -80,6 +80,24 @@ std::vector<Vec3d> fair(const TriangleMesh& mesh, const Connectivity& connectivi
     return points;
 }
 
+/// The inner points under the vertices, made fair.
+std::vector<Vec3s> prolonged_points(const TriangleMesh& coarse,
+                                    const std::vector<Vec3d>& coarse_inner,
+                                    const TriangleMesh& mesh, const Connectivity& connectivity,
+                                    const std::vector<double>& cap,
+                                    const std::vector<CoarsePoint>& nearest, int fair_passes)
+{
+    std::vector<Vec3d> ends(mesh.points.size());
+    std::vector<std::uint8_t> held(ends.size());
+    for_each_index(ends.size(), [&](std::size_t v) {
+        ends[v] = end_in_prism(coarse, coarse_inner, nearest[v]);
+        // As thick as is allowed: nothing is to be won, and where the next is allowed less, lost.
+        held[v] = (ends[v] - Vec3d(mesh.points[v])).length() > kShareOfCap * cap[v];
+    });
+    ends = fair(mesh, connectivity, std::move(ends), held, fair_passes);
+    return {ends.begin(), ends.end()};
+}
+
 } // namespace
 
 Pillars pillars_to(const TriangleMesh& mesh, const std::vector<Vec3s>& inner, Directions lines)
@@ -117,18 +135,12 @@ Pillars prolonged_pillars(const TriangleMesh& coarse, const std::vector<Vec3d>& 
                           const std::vector<double>& cap, const std::vector<CoarsePoint>& nearest,
                           const Directions& lines, const MultilevelSchedule& schedule)
 {
-    std::vector<Vec3d> ends(mesh.points.size());
-    std::vector<std::uint8_t> held(ends.size());
-    for_each_index(ends.size(), [&](std::size_t v) {
-        ends[v] = end_in_prism(coarse, coarse_inner, nearest[v]);
-        // As thick as is allowed: nothing is to be won, and where the next is allowed less, lost.
-        held[v] = (ends[v] - Vec3d(mesh.points[v])).length() > kShareOfCap * cap[v];
-    });
-    ends = fair(mesh, connectivity, std::move(ends), held, schedule.fair_passes);
-    const std::vector<Vec3s> inner(ends.begin(), ends.end());
-    Pillars pillars = pillars_to(mesh, inner, lines);
+    Pillars pillars = pillars_to(mesh,
+                                 prolonged_points(coarse, coarse_inner, mesh, connectivity, cap,
+                                                  nearest, schedule.fair_passes),
+                                 lines);
     // A pillar that its own triangles hide would be shortened to nothing by mending.
-    std::vector<Vec3d>& outward = ends;
+    std::vector<Vec3d> outward(mesh.points.size());
     for_each_index(outward.size(), [&](std::size_t v) { outward[v] = -pillars.lines.inward[v]; });
     const std::vector<double> visibility = visibility_of(mesh, outward);
     for_each_index(outward.size(), [&](std::size_t v) {
