@@ -63,7 +63,7 @@ Certificate certify_shell(const PrismShell& shell, const PrismSplit& split, Pris
 
     // Sorted once for three tests: edges, fans of vertices and components all read the uses of an
     // edge one after the other.
-    const std::vector<EdgeUse> uses = sorted_edge_uses(shell.triangles);
+    const EdgeUses uses = sorted_edge_uses(shell.triangles);
     std::vector<char> open_triangle(shell.triangles.size());
     check_edges(split, pinned, uses, certificate, open_triangle);
     check_vertices(shell, uses, certificate);

@@ -41,7 +41,7 @@ using Pair = std::array<std::uint32_t, 2>;
 void check_outer_surface(const ShellStack& stack, ComplexCertificate& certificate)
 {
     const PrismShell& top = stack.layers.front();
-    const std::vector<EdgeUse> uses = sorted_edge_uses(top.triangles);
+    const EdgeUses uses = sorted_edge_uses(top.triangles);
     // Called for edges and fans. As if all were pinned, for diagonals are a matter of conformity.
     Certificate found;
     std::vector<char> open_triangle(top.triangles.size());
@@ -120,7 +120,7 @@ public:
         std::vector<FloatBox> boxes(mesh.tets.size());
         for_each_index(boxes.size(),
                        [&](std::size_t t) { boxes[t] = box_of(corners_of(mesh, t)); });
-        tree_.build(std::move(boxes));
+        tree_.build(boxes);
     }
 
     template <typename Corners> static FloatBox box_of(const Corners& corners)

@@ -127,9 +127,8 @@ void check_prisms(const PrismShell& shell, const PrismSplit& split, const std::v
     certificate.cyclic_prisms = raised(cyclic);
 }
 
-void check_edges(const PrismSplit& split, const std::vector<char>& pinned,
-                 const std::vector<EdgeUse>& uses, Certificate& certificate,
-                 std::vector<char>& open_triangle)
+void check_edges(const PrismSplit& split, const std::vector<char>& pinned, const EdgeUses& uses,
+                 Certificate& certificate, std::vector<char>& open_triangle)
 {
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)
@@ -151,8 +150,7 @@ void check_edges(const PrismSplit& split, const std::vector<char>& pinned,
     }
 }
 
-void check_vertices(const PrismShell& shell, const std::vector<EdgeUse>& uses,
-                    Certificate& certificate)
+void check_vertices(const PrismShell& shell, const EdgeUses& uses, Certificate& certificate)
 {
     // Corners of triangles are united across common edges; two classes at one vertex are two fans.
     // At an edge of more than two triangles all of them are united, so that such an edge is

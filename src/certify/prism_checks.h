@@ -19,12 +19,10 @@ void check_prisms(const PrismShell& shell, const PrismSplit& split, const std::v
                   Certificate& certificate);
 
 /// open_edges and non_conforming_edges. Raises `open_triangle` beside each open edge.
-void check_edges(const PrismSplit& split, const std::vector<char>& pinned,
-                 const std::vector<EdgeUse>& uses, Certificate& certificate,
-                 std::vector<char>& open_triangle);
+void check_edges(const PrismSplit& split, const std::vector<char>& pinned, const EdgeUses& uses,
+                 Certificate& certificate, std::vector<char>& open_triangle);
 
 /// split_vertices.
-void check_vertices(const PrismShell& shell, const std::vector<EdgeUse>& uses,
-                    Certificate& certificate);
+void check_vertices(const PrismShell& shell, const EdgeUses& uses, Certificate& certificate);
 
 } // namespace vdb_shell

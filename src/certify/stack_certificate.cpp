@@ -34,7 +34,7 @@ bool of_one_component(const std::vector<std::uint32_t>& component_of)
 void check_hull(const ShellStack& stack, StackCertificate& certificate)
 {
     const PrismShell hull = hull_of(stack);
-    const std::vector<EdgeUse> uses = sorted_edge_uses(hull.triangles);
+    const EdgeUses uses = sorted_edge_uses(hull.triangles);
     const auto component_of = component_of_triangles(uses, hull.triangles.size());
     if (of_one_component(component_of))
         return;

@@ -9,7 +9,6 @@
 
 #include "core/box_tree.h"
 
-#include "core/parallel.h"
 #include "core/stage_stop.h"
 
 #include <cassert>
@@ -30,52 +29,29 @@ constexpr int kSubtree = 2048;
 
 } // namespace
 
-/// What the splits move: the number of a box with its middle, so that boxes themselves stay in
-/// place.
-struct BoxTree::Item {
-    std::array<float, 3> twice_middle;
-    int box;
-};
-
-void BoxTree::build(std::vector<FloatBox> boxes)
+RawVector<BoxTree::Item> BoxTree::items_for(std::size_t count)
 {
-    const std::size_t count = boxes.size();
     nodes_.clear();
     subtrees_.clear();
     upper_.clear();
     item_.resize(count);
     boxes_.resize(count);
-    if (count == 0)
-        return;
-    RawVector<Item> items(count);
-    for_each_index(
-        count,
-        [&](std::size_t i) {
-            // Twice the middle is in the same order as the middle, without halving.
-            const FourFloats sum = boxes[i].lo + boxes[i].hi;
-            items[i] = {{sum[0], sum[1], sum[2]}, static_cast<int>(i)};
-        },
-        1024);
-    split(items, 0, static_cast<int>(count));
-    for_each_index(
-        count,
-        [&](std::size_t i) {
-            item_[i] = items[i].box;
-            boxes_[i] = boxes[static_cast<std::size_t>(items[i].box)];
-        },
-        1024);
-    // Of tens of millions of boxes these, and room for nodes that are not needed, take gigabytes.
-    boxes = {};
-    items = {};
-    add_all_nodes();
-    fit_nodes();
+    return RawVector<Item>(count);
+}
+
+void BoxTree::split_all(RawVector<Item>& items)
+{
+    split(items, 0, static_cast<int>(items.size()));
 }
 
 /// Where a range of more than kLeaf boxes is split: by number alone, so the shape of the tree
-/// follows from how many boxes there are.
+/// follows from how many boxes there are. About in the middle, so that groups and leaves are full
+/// but for the last ones: halves of halves end anywhere between two and four boxes, and leaves of
+/// two are twice as many nodes.
 int BoxTree::middle_of(int begin, int end)
 {
-    return begin + (end - begin) / 2;
+    const int count = end - begin, whole = count > int(kGroup) ? int(kGroup) : kLeaf;
+    return begin + (count / 2 + whole - 1) / whole * whole;
 }
 
 /// Calls visit(begin, end) for what becomes a child of the node over a range of more than kLeaf
@@ -149,6 +125,8 @@ void BoxTree::split(RawVector<Item>& items, int begin, int end)
 
 void BoxTree::add_all_nodes()
 {
+    if (item_.empty())
+        return;
     NodeCounts counts;
     const auto boxes = static_cast<int>(item_.size());
     nodes_.resize(counts.of(boxes));
@@ -158,8 +136,10 @@ void BoxTree::add_all_nodes()
         [&](std::size_t i) {
             std::size_t next = subtrees_[i].node;
             add_nodes(subtrees_[i].begin, subtrees_[i].end, next);
+            fit_subtree(subtrees_[i]);
         },
         1);
+    fit_upper_nodes();
 }
 
 /// Makes the nodes above the subtrees and lists these.
@@ -194,20 +174,6 @@ void BoxTree::add_nodes(int begin, int end, std::size_t& next)
         n.child[n.children++] = static_cast<int>(next);
         add_nodes(from, to, next);
     });
-}
-
-void BoxTree::refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed)
-{
-    assert(boxes.size() == boxes_.size());
-    for_each_index(
-        boxes.size(),
-        [&](std::size_t i) {
-            const auto item = static_cast<std::size_t>(item_[i]);
-            if (changed.empty() || changed[item])
-                boxes_[i] = boxes[item];
-        },
-        1024);
-    fit_nodes();
 }
 
 void BoxTree::index_parents()
@@ -274,10 +240,8 @@ void BoxTree::fit_subtree(const Subtree& subtree)
     }
 }
 
-void BoxTree::fit_nodes()
+void BoxTree::fit_upper_nodes()
 {
-    for_each_index(
-        subtrees_.size(), [&](std::size_t i) { fit_subtree(subtrees_[i]); }, 1);
     for (std::size_t i = upper_.size(); i-- > 0;) {
         Node& n = nodes_[upper_[i]];
         for (unsigned lane = 0; lane < n.children; ++lane)

@@ -3,6 +3,7 @@
 
 #include "core/box_ray.h"
 #include "core/float_box.h"
+#include "core/parallel.h"
 #include "core/raw_vector.h"
 
 #include <openvdb/Types.h>
@@ -23,11 +24,59 @@ class BoxTree
     static constexpr std::size_t kWide = 4;
 
 public:
-    void build(std::vector<FloatBox> boxes);
+    /// Over the boxes box_of(0) to box_of(count - 1), which is called twice for each, from any
+    /// thread: a list of tens of millions of boxes beside the tree would take a gigabyte.
+    template <class BoxOf> void build(std::size_t count, const BoxOf& box_of)
+    {
+        RawVector<Item> items = items_for(count);
+        for_each_index(
+            count,
+            [&](std::size_t i) {
+                // Twice the middle is in the same order as the middle, without halving.
+                const FloatBox box = box_of(i);
+                const FourFloats sum = box.lo + box.hi;
+                items[i] = {{sum[0], sum[1], sum[2]}, static_cast<int>(i)};
+            },
+            kGrain);
+        split_all(items);
+        for_each_index(
+            count,
+            [&](std::size_t i) {
+                item_[i] = items[i].box;
+                boxes_[i] = box_of(static_cast<std::size_t>(items[i].box));
+            },
+            kGrain);
+        // Of tens of millions of boxes these and the nodes take gigabytes.
+        items = {};
+        add_all_nodes();
+    }
+    void build(const std::vector<FloatBox>& boxes)
+    {
+        build(boxes.size(), [&](std::size_t i) { return boxes[i]; });
+    }
     std::size_t size() const { return item_.size(); }
-    /// Same boxes, moved: the tree keeps its shape. Precondition: as many boxes as in build().
-    /// Only those marked in `changed` are looked at; empty: all.
-    void refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed = {});
+    /// Same boxes, moved: the tree keeps its shape. Only those marked in `changed` are looked at,
+    /// and the nodes over them; empty: all.
+    template <class BoxOf>
+    void refit(const BoxOf& box_of, const std::vector<std::uint8_t>& changed = {})
+    {
+        for_each_index(
+            subtrees_.size(),
+            [&](std::size_t i) {
+                bool moved = false;
+                for (int place = subtrees_[i].begin; place < subtrees_[i].end; ++place) {
+                    const auto item = static_cast<std::size_t>(item_[std::size_t(place)]);
+                    if (!changed.empty() && !changed[item])
+                        continue;
+                    boxes_[std::size_t(place)] = box_of(item);
+                    moved = true;
+                }
+                if (moved)
+                    fit_subtree(subtrees_[i]);
+            },
+            1);
+        fit_upper_nodes();
+    }
 
     /// Makes ready for widen(); to be called after each build().
     void index_parents();
@@ -188,11 +237,20 @@ private:
         std::size_t node, nodes;
         int begin, end;
     };
-    struct Item;
+    /// What the splits move: the number of a box with its middle, so that boxes themselves stay in
+    /// place.
+    struct Item {
+        std::array<float, 3> twice_middle;
+        int box;
+    };
     // The tree is split at medians, twice a node, so its depth stays below 17.
     static constexpr int kStack = 64;
     static constexpr std::size_t kGroup = 16;
+    // Boxes that one thread takes at a time: some microseconds' work.
+    static constexpr std::size_t kGrain = 1024;
 
+    RawVector<Item> items_for(std::size_t count);
+    static void split_all(RawVector<Item>& items);
     static int middle_of(int begin, int end);
     class NodeCounts;
     static void split(RawVector<Item>& items, int begin, int end);
@@ -201,7 +259,7 @@ private:
     void add_nodes(int begin, int end, std::size_t& next);
     void add_all_nodes();
     void fit_subtree(const Subtree& subtree);
-    void fit_nodes();
+    void fit_upper_nodes();
 
     /// Calls visit(place), until it returns false, for every box that is met, leaving out what lies
     /// under boxes that are not: meets(node, its four boxes) has a bit for each that is.

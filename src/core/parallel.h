@@ -7,8 +7,10 @@
 // templates see costs a source a third of a second (GCC 12), and a call per range costs nothing
 // beside the range.
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -57,6 +59,23 @@ void for_each_index(std::size_t count, const Body& body, std::size_t grain = 64)
                 body(i);
         },
         grain);
+}
+
+/// The sum of term(index) over [0, count): terms are found on all threads and added on this one, in
+/// the order of their indices, so that it is rounded the same way each time.
+template <typename Term> double sum_in_order(std::size_t count, const Term& term)
+{
+    constexpr std::size_t kBlock = 1 << 15; // terms that stay in the cache
+    std::vector<double> terms(std::min(count, kBlock));
+    double sum = 0;
+    for (std::size_t first = 0; first < count; first += kBlock) {
+        const std::size_t size = std::min(kBlock, count - first);
+        for_each_index(
+            size, [&](std::size_t i) { terms[i] = term(first + i); }, 1024);
+        for (std::size_t i = 0; i < size; ++i)
+            sum += terms[i];
+    }
+    return sum;
 }
 
 /// Calls them all, in any order or at once: for jobs that are serial in part and write what none of

@@ -160,21 +160,11 @@ private:
         return any_crowd_ && BoxTree::have_common(marks_of(s), marks_of(t));
     }
     FloatBox box_of(std::uint32_t t) const { return triangle_box(points_, triangles_[t]); }
-    std::vector<FloatBox> boxes_of_asked() const
-    {
-        std::vector<FloatBox> boxes = triangle_boxes(points_, triangles_);
-        if (asked_.size() == triangles_.size())
-            return boxes;
-        for (std::size_t i = 0; i < asked_.size(); ++i)
-            boxes[i] = boxes[asked_[i]];
-        boxes.resize(asked_.size());
-        return boxes;
-    }
     /// Pairs that share no crowded corner.
     void look_at_groups()
     {
         BoxTree tree;
-        tree.build(boxes_of_asked());
+        tree.build(asked_.size(), [&](std::size_t i) { return box_of(asked_[i]); });
         std::vector<char> crowded(asked_.size());
         const std::size_t groups = tree.groups();
         const std::size_t parts = (groups + kTriangleGroupsInPart - 1) / kTriangleGroupsInPart;
@@ -252,14 +242,11 @@ private:
                               std::vector<std::vector<Pair>>& found) const
     {
         std::vector<std::uint32_t> others;
-        std::vector<FloatBox> of_others;
         for (std::size_t i = 0; i < crowded.size(); ++i)
-            if (!crowded[i]) {
+            if (!crowded[i])
                 others.push_back(asked_[i]);
-                of_others.push_back(box_of(asked_[i]));
-            }
         BoxTree tree;
-        tree.build(std::move(of_others));
+        tree.build(others.size(), [&](std::size_t i) { return box_of(others[i]); });
         for_each_index(places.size(), [&](std::size_t p) {
             if (!many[p])
                 return;

@@ -63,7 +63,7 @@ std::vector<char> cannot_cross_another(const TriangleMesh& mesh,
         else
             box_of[component_of[t]].add(boxes[t]);
     BoxTree tree;
-    tree.build(std::move(box_of));
+    tree.build(box_of);
     std::vector<char> left_out = find_degenerate(mesh.points, mesh.triangles);
     for_each_index(boxes.size(), [&](std::size_t t) {
         bool near = false;
@@ -78,7 +78,7 @@ std::vector<char> cannot_cross_another(const TriangleMesh& mesh,
 
 std::vector<TriangleMesh> split_by_nesting(const TriangleMesh& mesh, Interrupter* interrupter)
 {
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     const std::vector<std::uint32_t> component_of =
         component_of_triangles(uses, mesh.triangles.size());
     if (std::all_of(component_of.begin(), component_of.end(), [](auto c) { return c == 0; }))

@@ -8,6 +8,7 @@
 
 #include "core/marked.h"
 #include "core/parallel.h"
+#include "core/propose_in_blocks.h"
 #include "growth/move_tests.h"
 
 #include <algorithm>
@@ -263,39 +264,53 @@ std::array<int, 2> better_orders(const GrowState& s, const Seam& seam, const Sco
     return better ? std::array{f_order, g_order} : std::array{-1, -1};
 }
 
-/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows. The
-/// first look at all seams changes nothing and is parallel; turning is serial, since a turned
-/// diagonal changes what its neighbours may do. A seam is looked at again only once another of its
-/// two prisms has been turned.
+/// Passes over the seams in their order, as long as they turn diagonals and `passes` allows.
+/// Turning is serial, since a turned diagonal changes what its neighbours may do; what to turn is
+/// found on all threads, and anew where one of the two prisms has been turned since. A seam is
+/// looked at again only once another of its two prisms has been turned.
 template <class Score, class Join>
 std::size_t flip_passes(GrowState& s, int passes, const Score& score, const Join& join)
 {
     const Seams seams(*s.mesh);
-    std::vector<std::uint8_t> look(seams.seam.size());
-    for_each_index(
-        look.size(),
-        [&](std::size_t i) { look[i] = better_orders(s, seams.seam[i], score, join)[0] >= 0; },
-        256);
+    const auto valid_orders = [&](const Seam& seam) {
+        const std::array<int, 2> orders = better_orders(s, seam, score, join);
+        const bool valid = orders[0] >= 0 && split_positive(s, seam.from.face, orders[0]) &&
+                           split_positive(s, seam.across.face, orders[1]);
+        return valid ? orders : std::array{-1, -1};
+    };
+    constexpr std::size_t kBlock = 4096;
+    std::vector<std::uint8_t> look(seams.seam.size(), 1);
+    std::vector<std::array<int, 2>> proposed(std::min(kBlock, look.size()));
+    // By face, when it was turned last: the number of a block, from 1 on.
+    std::vector<std::uint32_t> turned(s.mesh->faces.size(), 0);
+    std::uint32_t block = 0;
     std::size_t total = 0;
     for (int pass = 0; pass < passes; ++pass) {
         const std::size_t before = total;
-        for (std::size_t i = 0; i < look.size(); ++i) {
-            if (!look[i])
-                continue;
-            // Scores have not changed since it was looked at, unless one of its prisms has turned.
-            look[i] = 0;
-            const int f = seams.seam[i].from.face, g = seams.seam[i].across.face;
-            const std::array<int, 2> orders = better_orders(s, seams.seam[i], score, join);
-            if (orders[0] < 0 || !split_positive(s, f, orders[0]) ||
-                !split_positive(s, g, orders[1]))
-                continue;
-            set_orders(s, seams.seam[i], orders);
-            ++total;
-            for (const int face : {f, g})
-                for (const int other : seams.of_face[face])
-                    if (other >= 0)
-                        look[other] = 1;
-        }
+        propose_in_blocks(
+            look.size(), kBlock, [&] { ++block; },
+            [&](std::size_t i, std::size_t slot) {
+                if (look[i])
+                    proposed[slot] = valid_orders(seams.seam[i]);
+            },
+            [&](std::size_t i, std::size_t slot) {
+                if (!std::exchange(look[i], std::uint8_t(0)))
+                    return;
+                const Seam& seam = seams.seam[i];
+                const int f = seam.from.face, g = seam.across.face;
+                const bool stale = turned[f] == block || turned[g] == block;
+                const std::array<int, 2> orders = stale ? valid_orders(seam) : proposed[slot];
+                if (orders[0] < 0)
+                    return;
+                set_orders(s, seam, orders);
+                ++total;
+                for (const int face : {f, g}) {
+                    turned[face] = block;
+                    for (const int other : seams.of_face[face])
+                        if (other >= 0)
+                            look[other] = 1;
+                }
+            });
         if (total == before)
             break;
     }
@@ -309,16 +324,15 @@ void order_by_length(GrowState& s)
     // The long pillar's outer end goes with the short one's inner end: of the two diagonals that is
     // the shorter one where pillars are about parallel.
     std::vector<double> length(s.b.size());
-    for (std::size_t v = 0; v < length.size(); ++v)
-        length[v] = (s.b[v] - s.a[v]).length();
-    for (int f = 0; f < s.mesh->face_count(); ++f) {
+    for_each_index(length.size(), [&](std::size_t v) { length[v] = (s.b[v] - s.a[v]).length(); });
+    for_each_index(s.order.size(), [&](std::size_t f) {
         const Vec3I& t = s.mesh->faces[f];
         PrismOrder order{0, 1, 2};
         std::sort(order.begin(), order.end(), [&](int l, int m) {
             return length[t[l]] != length[t[m]] ? length[t[l]] > length[t[m]] : t[l] < t[m];
         });
         s.order[f] = static_cast<std::uint8_t>(order_index(order));
-    }
+    });
 }
 
 std::size_t flip_to_mend(GrowState& s, const std::vector<int>& faces)

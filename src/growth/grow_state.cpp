@@ -68,13 +68,10 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     // Diagonals that do not conform yet: under the twelve-tet test every order is valid, and a
     // conforming one is chosen before it matters (order_by_length, improve).
     s.order.assign(mesh.faces.size(), 0);
-    std::vector<FloatBox> boxes(mesh.faces.size());
-    for_each_index(
-        boxes.size(),
-        [&](std::size_t f) { boxes[f] = float_box_of(outer_corners(s, static_cast<int>(f))); },
-        256);
     // Outer triangles never move: their tree is built once, that of the inner ones in each round.
-    s.outer_tree.build(std::move(boxes));
+    s.outer_tree.build(mesh.faces.size(), [&](std::size_t f) {
+        return float_box_of(outer_corners(s, static_cast<int>(f)));
+    });
     const Box all = box_around(s.a);
     s.diagonal = outer.empty() ? 0 : (all.hi - all.lo).length();
     double largest = 0;
@@ -123,10 +120,10 @@ double volume6(const std::vector<Vec3d>& p, const std::vector<Vec3I>& faces)
         return 0;
     // Relative to a point of the surface, so that a solid far from the origin loses no digits.
     const Vec3d origin = p[0];
-    double sum = 0;
-    for (const Vec3I& f : faces)
-        sum += (p[f[0]] - origin).dot((p[f[1]] - origin).cross(p[f[2]] - origin));
-    return sum;
+    return sum_in_order(faces.size(), [&](std::size_t i) {
+        const Vec3I& f = faces[i];
+        return (p[f[0]] - origin).dot((p[f[1]] - origin).cross(p[f[2]] - origin));
+    });
 }
 
 Vec3d inner_volume6_gradient(const GrowState& s, int v)
@@ -154,13 +151,14 @@ bool bounds_thickness(const std::vector<double>& cap)
     return std::any_of(cap.begin(), cap.end(), [](double c) { return c > 0 && std::isfinite(c); });
 }
 
-std::vector<FloatBox> inner_boxes(const GrowState& s)
+FloatBox inner_box(const GrowState& s, std::size_t f)
 {
-    std::vector<FloatBox> boxes(s.mesh->faces.size());
-    for_each_index(boxes.size(), [&](std::size_t f) {
-        boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
-    });
-    return boxes;
+    return float_box_of(inner_corners(s, static_cast<int>(f)));
+}
+
+void build_inner_tree(GrowState& s)
+{
+    s.inner_tree.build(s.mesh->faces.size(), [&](std::size_t f) { return inner_box(s, f); });
 }
 
 Box box_of_star(const GrowState& s, int v, const Vec3d& x)

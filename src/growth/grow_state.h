@@ -122,8 +122,10 @@ double fill_of(const GrowState& s);
 /// Whether one of these is the user's thickness: neither infinite nor the 0 of a core's vertices.
 bool bounds_thickness(const std::vector<double>& cap);
 
-/// By face, the box of its inner triangle as it is.
-std::vector<FloatBox> inner_boxes(const GrowState& s);
+/// The box of a face's inner triangle as it is.
+FloatBox inner_box(const GrowState& s, std::size_t face);
+/// Over these boxes.
+void build_inner_tree(GrowState& s);
 /// The box of the inner triangles around v, with b_v = x.
 Box box_of_star(const GrowState& s, int v, const Vec3d& x);
 

@@ -94,7 +94,7 @@ std::vector<double> half_rays(const GrowState& s, const Directions& directions)
     const bool by_parts = s.mesh->has_crowds;
     if (by_parts) {
         parts = part_boxes({s.a.begin(), s.a.end()}, s.mesh->faces);
-        tree_of_parts.build(std::move(parts.boxes));
+        tree_of_parts.build(parts.boxes);
     }
     for_each_index(half.size(), [&](std::size_t i) {
         const int v = static_cast<int>(i);

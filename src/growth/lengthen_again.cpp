@@ -189,7 +189,7 @@ std::size_t lengthen_again(GrowState& s, const std::vector<Vec3d>& before,
 {
     const std::vector<int> vertices = most_lost_first(s, volume6_lost(s, before));
     // A tree that was refitted often is slow, and later stages go in its order.
-    s.inner_tree.build(inner_boxes(s));
+    build_inner_tree(s);
     s.inner_tree.index_parents();
     PuttingBack putting(s, before);
     std::size_t begun = 0, moved = 0;

@@ -43,13 +43,16 @@ Vec3d mean_of_neighbours(const TriangleMesh& mesh, const VertexTriangles& around
 void mend_directions(const TriangleMesh& mesh, Directions& directions,
                      const InitialSchedule& schedule)
 {
-    const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
+    const VertexTriangles around = triangles_around_vertices(mesh.points.size(), mesh.triangles);
     for_each_index(mesh.points.size(), [&](std::size_t v) {
-        if (normals[v].empty() || directions.visibility[v] > schedule.poor_visibility)
+        if (directions.visibility[v] > schedule.poor_visibility)
             return;
-        const Vec3d d = most_visible(normals[v]);
+        const std::vector<Vec3d> normals = star_normals(mesh, around.around(v));
+        if (normals.empty())
+            return;
+        const Vec3d d = most_visible(normals);
         // Where no direction sees the whole star, as at some saddles, the given one may be as good.
-        const double visibility = smallest_dot(normals[v], d);
+        const double visibility = smallest_dot(normals, d);
         if (visibility <= directions.visibility[v])
             return;
         directions.inward[v] = d;
@@ -60,8 +63,10 @@ void mend_directions(const TriangleMesh& mesh, Directions& directions,
 void smooth_directions(const TriangleMesh& mesh, Directions& directions,
                        const InitialSchedule& schedule)
 {
-    const std::vector<std::vector<Vec3d>> normals = star_normals(mesh);
     const VertexTriangles around = triangles_around_vertices(mesh.points.size(), mesh.triangles);
+    std::vector<std::vector<Vec3d>> normals(mesh.points.size());
+    for_each_index(normals.size(),
+                   [&](std::size_t v) { normals[v] = star_normals(mesh, around.around(v)); });
     // Weights come from the directions as they were given: from smoothed ones a crease would wear
     // away, pass by pass. Each pass reads a copy of what the last one left, so the order in which
     // vertices are visited has no effect.

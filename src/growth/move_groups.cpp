@@ -43,7 +43,7 @@ std::vector<Group> groups_of(const std::vector<GroupShare>& shares)
 
 void rebuild_tree(GrowState& s)
 {
-    s.inner_tree.build(inner_boxes(s));
+    build_inner_tree(s);
     s.inner_tree.index_parents();
 }
 

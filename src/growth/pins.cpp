@@ -131,24 +131,23 @@ void box_in(GrowState& s, const std::vector<double>& longest)
     std::transform(longest.begin(), longest.end(), around.begin(), [](double l) { return l > 0; });
     for (int ring = 0; ring < 2; ++ring)
         around = with_neighbours(s, around);
-    std::vector<FloatBox> boxes(s.mesh->faces.size());
-    for_each_index(boxes.size(), [&](std::size_t i) {
+    s.inner_tree.refit([&](std::size_t i) {
         const int f = static_cast<int>(i);
         double most = 0;
         for (int k = 0; k < 3; ++k)
             most = std::max(most, longest[s.mesh->corner(f, k)]);
         const double wider = most > 0 ? (1 + kRadiusMargin) * most + s.rounding : 0;
-        boxes[i] = float_box_of(inner_corners(s, f), wider);
+        FloatBox box = float_box_of(inner_corners(s, f), wider);
         for (int k = 0; k < 3; ++k) {
             const int v = s.mesh->corner(f, k);
             // A pillar that is changed is at most half as long after it, in any direction, or lies
             // along what it was.
             if (around[v])
-                boxes[i].add(float_box_of({s.a[v], s.a[v], s.a[v]},
-                                          0.5 * (s.b[v] - s.a[v]).length() + 2 * s.rounding));
+                box.add(float_box_of({s.a[v], s.a[v], s.a[v]},
+                                     0.5 * (s.b[v] - s.a[v]).length() + 2 * s.rounding));
         }
+        return box;
     });
-    s.inner_tree.refit(boxes);
 }
 
 /// Those that a pillar may be found for, in the order of their indices.

@@ -8,6 +8,8 @@
 
 #include "growth/trust_radius.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 
 namespace vdb_shell::growth
@@ -40,8 +42,9 @@ double first_radius(const GrowState& s, int v, bool nearly_full)
 void set_first_radii(GrowState& s, double fill)
 {
     const bool nearly_full = s.bounded && fill > s.schedule.lines.nearly_full;
-    for (int v = 0; v < s.mesh->vertices; ++v)
-        s.trust_radius[v] = first_radius(s, v, nearly_full);
+    for_each_index(s.trust_radius.size(), [&](std::size_t v) {
+        s.trust_radius[v] = first_radius(s, static_cast<int>(v), nearly_full);
+    });
 }
 
 void adapt_radii(GrowState& s, const std::vector<std::uint8_t>& inactive)
@@ -49,14 +52,14 @@ void adapt_radii(GrowState& s, const std::vector<std::uint8_t>& inactive)
     const TrustRadiusSchedule& schedule = s.schedule.radius;
     const double least =
         std::max(schedule.shortest * s.diagonal, kLeastRadiusInRoundings * s.rounding);
-    for (int v = 0; v < s.mesh->vertices; ++v) {
+    for_each_index(s.trust_radius.size(), [&](std::size_t v) {
         if (inactive[v])
-            continue;
+            return;
         // A vertex that came to rest keeps a share of its radius, so that it can start again.
         const double ahead = schedule.factor_on_move * (s.b[v] - s.trust_centre[v]).length();
         s.trust_radius[v] = std::max({least, schedule.kept_share * s.trust_radius[v],
                                       std::min(ahead, schedule.longest * s.diagonal)});
-    }
+    });
 }
 
 Vec3d within_trust_radius(const GrowState& s, int v, const Vec3d& x)

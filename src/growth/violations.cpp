@@ -141,16 +141,6 @@ private:
     Marks& bad_;
 };
 
-void update_tree(GrowState& s, const std::vector<std::uint8_t>& changed, bool first)
-{
-    std::vector<FloatBox> boxes(changed.size());
-    for_each_index(boxes.size(), [&](std::size_t f) {
-        if (changed[f])
-            boxes[f] = float_box_of(inner_corners(s, static_cast<int>(f)));
-    });
-    first ? s.inner_tree.build(std::move(boxes)) : s.inner_tree.refit(boxes, changed);
-}
-
 /// Marks the triangles that touch others in a place where they should not, of those that `changed`
 /// and are not marked yet.
 void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed, Marks& bad)
@@ -173,7 +163,7 @@ std::vector<std::uint8_t> prisms_near(const GrowState& s, const std::vector<int>
     for (const int w : witnesses)
         points.push_back(float_box(box_of({s.b[w], s.b[w], s.b[w]})));
     BoxTree tree;
-    tree.build(std::move(points));
+    tree.build(points);
     std::vector<std::uint8_t> near(s.mesh->faces.size(), 0);
     for_each_index(
         near.size(),
@@ -201,7 +191,10 @@ template <class Moved> std::vector<int> witnesses_of(const GrowState& s, const M
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
                                           bool first)
 {
-    update_tree(s, changed, first);
+    if (first)
+        build_inner_tree(s);
+    else
+        s.inner_tree.refit([&](std::size_t f) { return inner_box(s, f); }, changed);
     Marks bad(changed.size());
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);
@@ -211,7 +204,10 @@ std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::u
     // A face that fails already is not tested for contacts: its pillars will be shortened anyway,
     // and contact tests are the dearer ones.
     mark_contacts(s, changed, bad);
-    return {bad.begin(), bad.end()};
+    std::vector<std::uint8_t> found(bad.size());
+    for_each_index(
+        found.size(), [&](std::size_t f) { found[f] = bad[f]; }, 4096);
+    return found;
 }
 
 std::vector<int> violating_among(GrowState& s, const std::vector<int>& changed)
@@ -286,9 +282,14 @@ std::vector<std::uint8_t> faces_around(const GrowState& s, const std::vector<std
     const std::vector<int> witnesses = witnesses_of(s, [&](int w) { return moved[w] != 0; });
     std::vector<std::uint8_t> faces =
         witnesses.empty() ? std::vector<std::uint8_t>(m.faces.size()) : prisms_near(s, witnesses);
-    for (int f = 0; f < m.face_count(); ++f)
-        if (moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)])
-            faces[f] = 1;
+    for_each_index(
+        faces.size(),
+        [&](std::size_t i) {
+            const int f = static_cast<int>(i);
+            if (moved[m.corner(f, 0)] || moved[m.corner(f, 1)] || moved[m.corner(f, 2)])
+                faces[i] = 1;
+        },
+        4096);
     return faces;
 }
 

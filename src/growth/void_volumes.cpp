@@ -60,7 +60,8 @@ std::vector<double> void_volumes(const PrismShell& shell)
 {
     const TriangleMesh inner = inner_surface(shell);
     BoxTree tree;
-    tree.build(triangle_boxes(inner.points, inner.triangles));
+    tree.build(inner.triangles.size(),
+               [&](std::size_t t) { return triangle_box(inner.points, inner.triangles[t]); });
     const double longest = diagonal_of(bounds_of(inner.points));
     std::vector<double> volumes(inner.triangles.size());
     for_each_index(volumes.size(), [&](std::size_t t) {

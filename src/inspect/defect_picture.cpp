@@ -70,7 +70,7 @@ void mark_edges(Marked& marked, const std::vector<Edge>& edges, Mark mark)
 
 /// The triangles of the marked edges: those at the edge, not all at its ends, where most triangles
 /// are sound. The uses come sorted by edge, so those of one edge stand together.
-void mark_triangles_at(Marked& marked, const std::vector<EdgeUse>& uses)
+void mark_triangles_at(Marked& marked, const EdgeUses& uses)
 {
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)

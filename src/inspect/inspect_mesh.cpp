@@ -73,7 +73,7 @@ std::vector<FlippedPatch> patches_of(const DefectMarks& marks, std::size_t trian
     std::vector<char> flipped(triangle_count);
     for (const std::uint32_t t : marks.flipped)
         flipped[t] = 1;
-    std::vector<EdgeUse> between;
+    EdgeUses between;
     for (const EdgeUse& use : marks.uses)
         if (flipped[use.triangle])
             between.push_back(use);

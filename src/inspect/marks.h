@@ -11,7 +11,7 @@ namespace vdb_shell
 
 /// All that inspect_mesh counts, every element of it, ascending.
 struct DefectMarks {
-    std::vector<EdgeUse> uses;
+    EdgeUses uses;
     SurfaceDefects surface;
     std::vector<std::uint32_t> flipped, one_sided; ///< triangles; first triangles of pieces
     std::vector<std::uint32_t> blind;              ///< points

@@ -11,20 +11,21 @@
 #include "io/vdb_archive.h"
 
 #include "core/parallel.h"
+#include "core/point_grid_instances.h"
 #include "vdb_shell/core/digest.h"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/io/GridDescriptor.h>
+#include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <mutex>
-#include <optional>
+#include <iterator>
 #include <ostream>
 #include <stdexcept>
 #include <streambuf>
@@ -42,37 +43,75 @@ using openvdb::FloatTree;
 using openvdb::GridBase;
 using openvdb::io::DelayedLoadMetadata;
 using openvdb::io::StreamMetadata;
+using openvdb::points::PointDataGrid;
 
 using Leaf = FloatTree::LeafNodeType;
 using Leaves = openvdb::tree::LeafManager<const FloatTree>;
 
-/// What is written to it, in a string that can be taken: std::ostringstream gives copies only, and
-/// the grids of points of a million triangles have a hundred megabytes each.
+/// Bytes of a file in the order in which they stand there.
+using Parts = std::vector<std::string>;
+
+std::int64_t size_of(const Parts& parts)
+{
+    std::int64_t size = 0;
+    for (const std::string& part : parts)
+        size += std::int64_t(part.size());
+    return size;
+}
+
+std::string joined(Parts&& parts)
+{
+    std::string all = parts.empty() ? std::string() : std::move(parts.front());
+    for (std::size_t i = 1; i < parts.size(); ++i)
+        all += parts[i];
+    return all;
+}
+
+void append(Parts&& added, Parts& parts)
+{
+    std::move(added.begin(), added.end(), std::back_inserter(parts));
+}
+
+/// What is written to it, in strings that can be taken: std::ostringstream gives copies only, and
+/// the grids of points of a million triangles have a hundred megabytes each. One string would be
+/// copied each time that it has to grow.
 class Bytes : public std::streambuf
 {
 public:
-    std::string take() { return std::exchange(bytes_, {}); }
+    Parts take()
+    {
+        size_ = 0;
+        return std::exchange(parts_, {});
+    }
 
 private:
     int_type overflow(int_type c) override
     {
-        if (!traits_type::eq_int_type(c, traits_type::eof()))
-            bytes_.push_back(traits_type::to_char_type(c));
-        return traits_type::not_eof(c);
+        if (traits_type::eq_int_type(c, traits_type::eof()))
+            return traits_type::not_eof(c);
+        const char byte = traits_type::to_char_type(c);
+        xsputn(&byte, 1);
+        return c;
     }
     std::streamsize xsputn(const char* data, std::streamsize size) override
     {
-        bytes_.append(data, std::size_t(size));
+        constexpr std::size_t kPart = std::size_t(1) << 20;
+        const auto count = std::size_t(size);
+        if (parts_.empty() || parts_.back().size() + count > kPart)
+            parts_.emplace_back();
+        parts_.back().append(data, count);
+        size_ += size;
         return size;
     }
     /// Where the next byte goes; nothing can be written over.
     pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override
     {
-        return by == 0 && from != std::ios_base::beg ? pos_type(off_type(bytes_.size()))
+        return by == 0 && from != std::ios_base::beg ? pos_type(off_type(size_))
                                                      : pos_type(off_type(-1));
     }
 
-    std::string bytes_;
+    Parts parts_;
+    std::streamsize size_ = 0;
 };
 
 /// A stream in memory that OpenVDB finds its settings on.
@@ -89,16 +128,7 @@ struct Stream {
 
 /// A grid as it stands in the file, but for its descriptor.
 struct GridBytes {
-    std::string head, topology;
-    std::vector<std::string> buffers;
-
-    std::int64_t buffers_size() const
-    {
-        std::int64_t sum = 0;
-        for (const std::string& part : buffers)
-            sum += std::int64_t(part.size());
-        return sum;
-    }
+    Parts head, topology, buffers;
 };
 
 /// How many bytes of a written leaf precede its compressed values: its mask, the flag that says
@@ -142,7 +172,7 @@ std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
         write_leaf(stream.out, leaves.leaf(i), settings);
     }
     starts.push_back(std::size_t(stream.out.tellp()));
-    std::string bytes = stream.bytes.take();
+    std::string bytes = joined(stream.bytes.take());
     for (std::size_t i = begin; i < end; ++i) {
         const std::size_t start = starts[i - begin], next = starts[i - begin + 1];
         const auto flag = std::int8_t(bytes[start + sizeof(Leaf::NodeMaskType)]);
@@ -157,8 +187,8 @@ std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
 }
 
 /// The buffers of all leaves in parts, in the order of the tree.
-std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
-                                       DelayedLoadMetadata& sizes)
+Parts float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
+                    DelayedLoadMetadata& sizes)
 {
     const Leaves leaves(grid.constTree());
     const std::size_t count = leaves.leafCount();
@@ -167,7 +197,7 @@ std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetada
     constexpr std::size_t kLeavesInPart = 256;
     // Each part is compressed into a stream of its own; a leaf's bytes do not depend on the leaves
     // before it.
-    std::vector<std::string> parts((count + kLeavesInPart - 1) / kLeavesInPart);
+    Parts parts((count + kLeavesInPart - 1) / kLeavesInPart);
     for_each_index(
         parts.size(),
         [&](std::size_t i) {
@@ -178,6 +208,88 @@ std::vector<std::string> float_buffers(const FloatGrid& grid, const StreamMetada
         1);
     return parts;
 }
+
+/// What OpenVDB writes of points' voxels and attributes (openvdb/points/PointDataGrid.h): a number
+/// of passes, and these: sizes of voxels; attributes' names and types; for each attribute the sizes
+/// of its pages; the voxels; for each attribute its pages. A page is filled from leaf to leaf and
+/// goes over to the next attribute for none, so each pass can be written by itself.
+class PointBuffers
+{
+public:
+    PointBuffers(const PointDataGrid& grid, const StreamMetadata& settings)
+        : grid_(grid), settings_(settings)
+    {
+        grid.constTree().getNodes(leaves_);
+        attributes_ = std::uint32_t(leaves_.front()->attributeSet().size());
+    }
+
+    /// Passes for all leaves alike, which OpenVDB's own way of writing does not need.
+    static bool apply_to(const PointDataGrid& grid)
+    {
+        const auto first = grid.constTree().cbeginLeaf();
+        bool same = bool(first);
+        for (auto leaf = first; leaf && same; ++leaf)
+            same = leaf->attributeSet().descriptorPtr() == first->attributeSet().descriptorPtr();
+        return same;
+    }
+
+    Parts write() const
+    {
+        std::vector<Parts> parts(2 * attributes_ + 2);
+        // The pages first, which take the longest.
+        for_each_index(
+            parts.size(),
+            [&](std::size_t i) {
+                const std::size_t place = parts.size() - 1 - i;
+                parts[place] = part(std::uint32_t(place));
+            },
+            1);
+        Parts all;
+        for (Parts& part : parts)
+            append(std::move(part), all);
+        return all;
+    }
+
+private:
+    Parts part(std::uint32_t place) const
+    {
+        Stream stream(settings_);
+        const std::uint32_t voxels = 1 + attributes_;
+        if (place == 0) {
+            const auto passes = std::uint16_t(leaves_.front()->buffers());
+            stream.out.write(reinterpret_cast<const char*>(&passes), sizeof passes);
+            add_pass(0, stream);
+            add_pass(1, stream);
+        } else if (place == voxels) {
+            add_pass(attributes_ + 2, stream);
+        } else {
+            add_pages(place < voxels ? place - 1 : place - voxels - 1, place < voxels, stream);
+        }
+        return stream.bytes.take();
+    }
+
+    void add_pass(std::uint32_t pass, Stream& stream) const
+    {
+        stream.settings->setPass(leaves_.front()->buffers() << 16U | pass);
+        grid_.constTree().writeBuffers(stream.out, grid_.saveFloatAsHalf());
+    }
+
+    void add_pages(std::uint32_t attribute, bool sizes, Stream& stream) const
+    {
+        openvdb::compression::PagedOutputStream pages;
+        pages.setOutputStream(stream.out);
+        pages.setSizeOnly(sizes);
+        for (const auto* leaf : leaves_)
+            leaf->attributeSet().getConst(attribute)->writePagedBuffers(pages,
+                                                                        /*outputTransient=*/false);
+        pages.flush();
+    }
+
+    const PointDataGrid& grid_;
+    const StreamMetadata& settings_;
+    std::vector<const PointDataGrid::TreeType::LeafNodeType*> leaves_;
+    std::uint32_t attributes_ = 0;
+};
 
 /// Gives access to the parts of OpenVDB's writer.
 class Archive : public openvdb::io::Archive
@@ -196,7 +308,7 @@ public:
         metadata.writeMeta(stream.out);
         const auto count = std::int32_t(grids);
         stream.out.write(reinterpret_cast<const char*>(&count), sizeof count);
-        return stream.bytes.take();
+        return joined(stream.bytes.take());
     }
 
     GridBytes bytes_of(const GridBase& grid) const
@@ -223,8 +335,13 @@ public:
             Stream all(*head.settings);
             grid.writeTopology(all.out);
             bytes.topology = all.bytes.take();
-            grid.writeBuffers(all.out);
-            bytes.buffers.push_back(all.bytes.take());
+            const auto* points = dynamic_cast<const PointDataGrid*>(&grid);
+            if (points && PointBuffers::apply_to(*points)) {
+                bytes.buffers = PointBuffers(*points, *all.settings).write();
+            } else {
+                grid.writeBuffers(all.out);
+                bytes.buffers = all.bytes.take();
+            }
         }
         described->addStatsMetadata();
         described->insertMeta(GridBase::META_FILE_COMPRESSION,
@@ -237,13 +354,8 @@ public:
     }
 };
 
-void write_bytes(std::ostream& out, const std::string& bytes)
-{
-    out.write(bytes.data(), std::streamsize(bytes.size()));
-}
-
 /// The descriptor of a grid that stands at a place of the file.
-std::string descriptor_bytes(std::int64_t place, const GridBase& grid, const GridBytes& bytes)
+Parts descriptor_bytes(std::int64_t place, const GridBase& grid, const GridBytes& bytes)
 {
     Stream stream{StreamMetadata()};
     openvdb::io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
@@ -251,9 +363,8 @@ std::string descriptor_bytes(std::int64_t place, const GridBase& grid, const Gri
     // The grid begins behind its three positions, which are written before it.
     constexpr std::int64_t kPositionsSize = 3 * sizeof(std::int64_t);
     descriptor.setGridPos(place + std::int64_t(stream.out.tellp()) + kPositionsSize);
-    descriptor.setBlockPos(descriptor.getGridPos() +
-                           std::int64_t(bytes.head.size() + bytes.topology.size()));
-    descriptor.setEndPos(descriptor.getBlockPos() + bytes.buffers_size());
+    descriptor.setBlockPos(descriptor.getGridPos() + size_of(bytes.head) + size_of(bytes.topology));
+    descriptor.setEndPos(descriptor.getBlockPos() + size_of(bytes.buffers));
     descriptor.writeStreamPos(stream.out);
     return stream.bytes.take();
 }
@@ -261,15 +372,16 @@ std::string descriptor_bytes(std::int64_t place, const GridBase& grid, const Gri
 VdbArchive::Grid write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
 {
     Digest digest;
-    const auto write = [&](const std::string& part) {
-        digest.add(part.data(), part.size());
-        write_bytes(out, part);
+    const auto write = [&](const Parts& parts) {
+        for (const std::string& part : parts) {
+            digest.add(part.data(), part.size());
+            out.write(part.data(), std::streamsize(part.size()));
+        }
     };
     write(descriptor_bytes(std::int64_t(out.tellp()), grid, bytes));
     write(bytes.head);
     write(bytes.topology);
-    for (const std::string& part : bytes.buffers)
-        write(part);
+    write(bytes.buffers);
     return {grid.getName(), digest.words()};
 }
 
@@ -288,35 +400,29 @@ VdbArchive write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtr
     result.head = archive.head(metadata, grids.size());
     errno = 0;
     std::ofstream out(path, std::ios::binary);
-    write_bytes(out, result.head);
+    out.write(result.head.data(), std::streamsize(result.head.size()));
     // The reason is known to the thread alone that met it, and only at once.
     int reason = out ? 0 : errno;
-    std::mutex writing;
-    std::vector<std::optional<GridBytes>> ready(grids.size());
-    std::size_t written = 0;
-    // The last grid is begun first. Where there are points it is that of the tets, which takes the
-    // longest, as one thread writes it; the other grids are on their way to the disk, and their
-    // memory is free, when that one is done.
-    for_each_index(
-        grids.size(),
-        [&](std::size_t i) {
-            const std::size_t last = grids.size() - 1 - i;
-            GridBytes bytes = archive.bytes_of(*grids[last]);
-            // Grids that are written are freed after the lock is: OpenVDB frees on all threads, and
-            // a thread that waits for the others may take up the next grid here meanwhile, which
-            // needs the lock.
-            openvdb::GridPtrVec done;
-            const std::lock_guard<std::mutex> lock(writing);
-            ready[last] = std::move(bytes);
-            for (; written < grids.size() && ready[written]; ++written) {
+    // A grid is on its way to the disk while the next one is compressed.
+    GridBytes ready;
+    for (std::size_t i = 0; i <= grids.size(); ++i) {
+        GridBytes next;
+        run_together(
+            [&] {
+                if (i == 0)
+                    return;
                 errno = 0;
-                result.grids.push_back(write_grid(out, *grids[written], *ready[written]));
+                result.grids.push_back(write_grid(out, *grids[i - 1], ready));
                 reason = !out && reason == 0 ? errno : reason;
-                ready[written].reset();
-                done.push_back(std::move(grids[written]));
-            }
-        },
-        1);
+                ready = {};
+                grids[i - 1].reset();
+            },
+            [&] {
+                if (i < grids.size())
+                    next = archive.bytes_of(*grids[i]);
+            });
+        ready = std::move(next);
+    }
     errno = 0;
     result.size = std::uint64_t(out.tellp());
     out.close();

@@ -59,7 +59,7 @@ void require_well_formed(const TriangleMesh& mesh, const std::string& caller)
                                     std::to_string(mesh.points.size()) + " points");
 }
 
-MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+MeshCheck summarise(const TriangleMesh& mesh, const EdgeUses& sorted_uses,
                     const SurfaceDefects& defects)
 {
     MeshCheck check;
@@ -88,7 +88,7 @@ MeshCheck check_mesh(const TriangleMesh& mesh, Interrupter* interrupter)
 {
     const StageProgress progress(interrupter, "check");
     require_well_formed(mesh, "check_mesh");
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     return summarise(mesh, uses, find_defects(mesh, uses, interrupter));
 }
 

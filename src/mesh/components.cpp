@@ -97,7 +97,7 @@ struct EdgeFindings {
     std::vector<int> edges;
 };
 
-EdgeFindings look_at_edges(const std::vector<EdgeUse>& uses, const Indices& component_of,
+EdgeFindings look_at_edges(const EdgeUses& uses, const Indices& component_of,
                            std::size_t components)
 {
     EdgeFindings found{std::vector<char>(components, 1), std::vector<char>(components, 1),
@@ -199,7 +199,7 @@ public:
             }
         PartBoxes parts = part_boxes(mesh.points, closed);
         part_ = std::move(parts.triangle);
-        tree_.build(std::move(parts.boxes));
+        tree_.build(parts.boxes);
         for (const auto& [a, b] : crossing) {
             crossed_[a].push_back(b);
             crossed_[b].push_back(a);
@@ -290,7 +290,7 @@ private:
 
 } // namespace
 
-Indices component_of_triangles(const std::vector<EdgeUse>& sorted_uses, std::size_t triangle_count)
+Indices component_of_triangles(const EdgeUses& sorted_uses, std::size_t triangle_count)
 {
     DisjointSets sets(triangle_count);
     for (std::size_t i = 1; i < sorted_uses.size(); ++i) {
@@ -327,7 +327,7 @@ crossing_components(const std::vector<TrianglePair>& pairs, const Indices& compo
 }
 
 std::vector<Component>
-describe_components(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+describe_components(const TriangleMesh& mesh, const EdgeUses& sorted_uses,
                     const Indices& component_of,
                     const std::vector<std::array<std::uint32_t, 2>>& crossing)
 {

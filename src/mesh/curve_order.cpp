@@ -9,6 +9,7 @@
 
 #include "core/bucket_sort.h"
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 
 #include <algorithm>
 #include <array>
@@ -53,7 +54,7 @@ std::vector<std::uint32_t> vertices_along_curve(const TriangleMesh& mesh)
         }
         keys[v] = {key, static_cast<std::uint32_t>(v)};
     });
-    std::sort(keys.begin(), keys.end());
+    parallel_sort(keys.begin(), keys.end(), std::less<>());
     std::vector<std::uint32_t> vertices(keys.size());
     std::transform(keys.begin(), keys.end(), vertices.begin(),
                    [](const auto& key) { return key.second; });

@@ -115,15 +115,16 @@ Vec3d most_visible(const std::vector<Vec3d>& normals)
                                         : most_visible_of_many(normals);
 }
 
-std::vector<std::vector<Vec3d>> star_normals(const TriangleMesh& mesh)
+std::vector<Vec3d> star_normals(const TriangleMesh& mesh, const VertexTriangles::Range& around)
 {
-    std::vector<std::vector<Vec3d>> normals(mesh.points.size());
-    for (const Vec3I& t : mesh.triangles) {
+    std::vector<Vec3d> normals;
+    for (const std::uint32_t triangle : around) {
+        const Vec3I& t = mesh.triangles[triangle];
         const Vec3d a(mesh.points[t[0]]);
         const Vec3d n =
             unit_vector((Vec3d(mesh.points[t[2]]) - a).cross(Vec3d(mesh.points[t[1]]) - a));
-        for (int k = 0; k < 3 && n.lengthSqr() > 0; ++k)
-            normals[t[k]].push_back(n);
+        if (n.lengthSqr() > 0)
+            normals.push_back(n);
     }
     return normals;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/topology.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
 #include <cstdint>
@@ -17,8 +18,9 @@ openvdb::Vec3d most_visible(const std::vector<openvdb::Vec3d>& normals);
 /// The smallest dot product of d and one of these; infinite where there are none.
 double smallest_dot(const std::vector<openvdb::Vec3d>& normals, const openvdb::Vec3d& d);
 
-/// By vertex, the inward unit normals of its triangles; those without area have none.
-std::vector<std::vector<openvdb::Vec3d>> star_normals(const TriangleMesh& mesh);
+/// The inward unit normals of the triangles around a vertex; those without area have none.
+std::vector<openvdb::Vec3d> star_normals(const TriangleMesh& mesh,
+                                         const VertexTriangles::Range& around);
 
 /// Vertices from which no direction sees all their triangles, ascending: wherever their pillar
 /// goes, some tet on it is flat or inverted. Exact; a triangle without area does not count.

@@ -10,6 +10,7 @@
 #include "vdb_shell/mesh/normals.h"
 
 #include "core/parallel.h"
+#include "core/raw_vector.h"
 #include "mesh/topology.h"
 
 #include <algorithm>
@@ -31,9 +32,9 @@ Vec3d corner(const TriangleMesh& mesh, std::uint32_t triangle, int i)
 
 /// Unit normals, zero for triangles without area. Edges of float32 points are exact enough in
 /// double that their cross product vanishes only where the area does.
-std::vector<Vec3d> triangle_normals(const TriangleMesh& mesh)
+RawVector<Vec3d> triangle_normals(const TriangleMesh& mesh)
 {
-    std::vector<Vec3d> normals(mesh.triangles.size());
+    RawVector<Vec3d> normals(mesh.triangles.size());
     for_each_index(normals.size(), [&](std::size_t i) {
         const auto t = static_cast<std::uint32_t>(i);
         const Vec3d a = corner(mesh, t, 0);
@@ -70,7 +71,7 @@ std::vector<Vec3d> pseudo_normals(const TriangleMesh& mesh)
 {
     const VertexTriangles vertex_triangles =
         triangles_around_vertices(mesh.points.size(), mesh.triangles);
-    const std::vector<Vec3d> normals = triangle_normals(mesh);
+    const RawVector<Vec3d> normals = triangle_normals(mesh);
     std::vector<Vec3d> result(mesh.points.size());
     for_each_index(result.size(), [&](std::size_t v) {
         Vec3d sum(0.0);
@@ -90,7 +91,7 @@ std::vector<double> visibility_of(const TriangleMesh& mesh, const std::vector<Ve
     assert(outward.size() == mesh.points.size());
     const VertexTriangles vertex_triangles =
         triangles_around_vertices(mesh.points.size(), mesh.triangles);
-    const std::vector<Vec3d> normals = triangle_normals(mesh);
+    const RawVector<Vec3d> normals = triangle_normals(mesh);
     std::vector<double> result(outward.size());
     for_each_index(result.size(), [&](std::size_t v) {
         // No direction has the visibility 0, which the vector holds already.

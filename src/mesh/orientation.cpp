@@ -23,7 +23,7 @@ struct Neighbour {
     bool disagrees = false; ///< runs through the common edge the same way
 };
 
-std::vector<std::array<Neighbour, 3>> neighbours_of(const std::vector<EdgeUse>& uses,
+std::vector<std::array<Neighbour, 3>> neighbours_of(const EdgeUses& uses,
                                                     std::size_t triangle_count)
 {
     std::vector<std::array<Neighbour, 3>> neighbours(triangle_count);
@@ -42,8 +42,7 @@ std::vector<std::array<Neighbour, 3>> neighbours_of(const std::vector<EdgeUse>& 
 
 } // namespace
 
-Orientation consistent_orientation(const std::vector<EdgeUse>& sorted_uses,
-                                   std::size_t triangle_count)
+Orientation consistent_orientation(const EdgeUses& sorted_uses, std::size_t triangle_count)
 {
     const auto neighbours = neighbours_of(sorted_uses, triangle_count);
     Orientation result{std::vector<std::uint32_t>(triangle_count, kNone),

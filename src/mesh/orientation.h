@@ -18,7 +18,6 @@ struct Orientation {
     std::vector<char> one_sided;         ///< by piece: no choice makes all its neighbours agree
 };
 
-Orientation consistent_orientation(const std::vector<EdgeUse>& sorted_uses,
-                                   std::size_t triangle_count);
+Orientation consistent_orientation(const EdgeUses& sorted_uses, std::size_t triangle_count);
 
 } // namespace vdb_shell

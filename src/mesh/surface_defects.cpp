@@ -38,7 +38,7 @@ template <typename Flags> std::vector<std::uint32_t> raised(const Flags& flags)
     return indices;
 }
 
-void look_at_edges(const std::vector<EdgeUse>& uses, SurfaceDefects& defects)
+void look_at_edges(const EdgeUses& uses, SurfaceDefects& defects)
 {
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)
@@ -169,7 +169,7 @@ std::vector<TrianglePair> find_self_intersections(const TriangleMesh& mesh,
     return find_contacts(mesh, left_out, PairBounds{}, interrupter).pairs;
 }
 
-SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+SurfaceDefects find_defects(const TriangleMesh& mesh, const EdgeUses& sorted_uses,
                             Interrupter* interrupter)
 {
     SurfaceDefects defects;

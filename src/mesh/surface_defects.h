@@ -32,14 +32,14 @@ std::vector<char> find_degenerate(const std::vector<openvdb::Vec3s>& points,
                                   const std::vector<openvdb::Vec3I>& triangles);
 
 /// The interrupter may be null; throws Cancelled.
-SurfaceDefects find_defects(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+SurfaceDefects find_defects(const TriangleMesh& mesh, const EdgeUses& sorted_uses,
                             Interrupter* interrupter = nullptr);
 
 /// Throws InvalidOption unless the points are finite and the corners index them.
 void require_well_formed(const TriangleMesh& mesh, const std::string& caller);
 
 /// What check_mesh says, given the defects.
-MeshCheck summarise(const TriangleMesh& mesh, const std::vector<EdgeUse>& sorted_uses,
+MeshCheck summarise(const TriangleMesh& mesh, const EdgeUses& sorted_uses,
                     const SurfaceDefects& defects);
 
 } // namespace vdb_shell

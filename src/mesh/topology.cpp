@@ -8,12 +8,13 @@
 
 #include "mesh/topology.h"
 
-#include "core/bucket_sort.h"
 #include "core/parallel.h"
 #include "core/stage_stop.h"
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -124,28 +125,55 @@ Rims rims_around_vertices(std::size_t vertex_count, const std::vector<openvdb::V
     return rims;
 }
 
-std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangles)
+namespace
 {
-    std::vector<EdgeUse> uses;
-    uses.reserve(triangles.size() * 3);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
+
+/// Calls visit(use) for the uses of which this vertex is the smaller one, by triangle and side.
+template <class Visit>
+void for_each_use_from(std::uint32_t vertex, const std::vector<openvdb::Vec3I>& triangles,
+                       const VertexTriangles::Range& around, const Visit& visit)
+{
+    for (const std::uint32_t* t = around.begin(); t != around.end(); ++t) {
+        // A triangle that has a corner twice stands there twice.
+        if (t != around.begin() && *t == t[-1])
+            continue;
         for (std::uint8_t side = 0; side < 3; ++side) {
-            const std::uint32_t a = triangles[t][side], b = triangles[t][(side + 1) % 3];
-            uses.push_back(
-                {{std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(t), side, a < b});
+            const std::uint32_t a = triangles[*t][side], b = triangles[*t][(side + 1) % 3];
+            if (std::min(a, b) == vertex)
+                visit(EdgeUse{{vertex, std::max(a, b)}, *t, side, a < b});
         }
     }
-    stop_if_stage_wants();
+}
+
+} // namespace
+
+EdgeUses sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangles)
+{
     std::uint32_t vertices = 0;
-    for (const EdgeUse& use : uses)
-        vertices = std::max(vertices, use.edge[1] + 1);
-    // Triangle and side tell all uses of an edge apart, so the order is unique.
-    return bucket_sort<EdgeUse>(
-        std::array{std::move(uses)}, vertices, [](const EdgeUse& use) { return use.edge[0]; },
-        [](const EdgeUse& x, const EdgeUse& y) {
-            return std::tie(x.edge[1], x.triangle, x.side) <
-                   std::tie(y.edge[1], y.triangle, y.side);
-        });
+    for (const openvdb::Vec3I& t : triangles)
+        vertices = std::max(vertices, std::max({t[0], t[1], t[2]}) + 1);
+    const VertexTriangles around = triangles_around_vertices(vertices, triangles);
+    stop_if_stage_wants();
+    // By vertex, where the uses begin of which it is the smaller one.
+    std::vector<std::size_t> begin(vertices + std::size_t(1), 0);
+    for_each_index(vertices, [&](std::size_t v) {
+        for_each_use_from(std::uint32_t(v), triangles, around.around(v),
+                          [&](const EdgeUse&) { ++begin[v + 1]; });
+    });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    EdgeUses uses(begin.back());
+    for_each_index(vertices, [&](std::size_t v) {
+        std::size_t end = begin[v];
+        for_each_use_from(std::uint32_t(v), triangles, around.around(v),
+                          [&](const EdgeUse& use) { uses[end++] = use; });
+        // Triangle and side tell all uses of an edge apart, so the order is unique.
+        std::sort(uses.begin() + std::ptrdiff_t(begin[v]), uses.begin() + std::ptrdiff_t(end),
+                  [](const EdgeUse& x, const EdgeUse& y) {
+                      return std::tie(x.edge[1], x.triangle, x.side) <
+                             std::tie(y.edge[1], y.triangle, y.side);
+                  });
+    });
+    return uses;
 }
 
 } // namespace vdb_shell

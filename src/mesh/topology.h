@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/raw_vector.h"
+
 #include <openvdb/Types.h>
 
 #include <array>
@@ -52,7 +54,9 @@ struct EdgeUse {
     bool forward; ///< the triangle runs from the smaller to the larger vertex
 };
 
+using EdgeUses = RawVector<EdgeUse>;
+
 /// All edge uses, sorted by edge, then triangle: uses of one edge stand together.
-std::vector<EdgeUse> sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangles);
+EdgeUses sorted_edge_uses(const std::vector<openvdb::Vec3I>& triangles);
 
 } // namespace vdb_shell

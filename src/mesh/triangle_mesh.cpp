@@ -8,6 +8,8 @@
 
 #include "vdb_shell/mesh/triangle_mesh.h"
 
+#include "core/parallel.h"
+
 namespace vdb_shell
 {
 
@@ -35,13 +37,13 @@ double signed_volume(const std::vector<openvdb::Vec3s>& points,
     const Bounds bounds = bounds_of(points);
     // About the middle the terms are as small as they can be, so least is lost where they cancel.
     const openvdb::Vec3d centre = 0.5 * (bounds.low + bounds.high);
-    double six_volumes = 0.0;
-    for (const openvdb::Vec3I& t : triangles) {
+    const double six_volumes = sum_in_order(triangles.size(), [&](std::size_t i) {
+        const openvdb::Vec3I& t = triangles[i];
         const openvdb::Vec3d a = openvdb::Vec3d(points[t[0]]) - centre;
         const openvdb::Vec3d b = openvdb::Vec3d(points[t[1]]) - centre;
         const openvdb::Vec3d c = openvdb::Vec3d(points[t[2]]) - centre;
-        six_volumes += a.dot(b.cross(c));
-    }
+        return a.dot(b.cross(c));
+    });
     return six_volumes / 6.0;
 }
 

@@ -106,8 +106,8 @@ private:
     }
 
     const TriangleMesh& mesh_;
-    std::vector<Vec3f> points_;
-    std::vector<Item> items_;
+    RawVector<Vec3f> points_;
+    RawVector<Item> items_;
     std::size_t leaves_ = 1;
 };
 
@@ -215,8 +215,8 @@ TriangleTree::Node make_node(const Ordered& ordered, std::size_t first_leaf, std
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh, double unit)
 {
-    std::vector<Node>& nodes = arrays_.nodes;
-    std::vector<Block>& blocks = arrays_.blocks;
+    RawVector<Node>& nodes = arrays_.nodes;
+    RawVector<Block>& blocks = arrays_.blocks;
     arrays_.unit = unit;
     const Bounds bounds = bounds_of(mesh.points);
     arrays_.middle = 0.5 * (bounds.low + bounds.high);

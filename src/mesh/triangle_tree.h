@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/raw_vector.h"
 #include "core/simd.h"
 #include "vdb_shell/mesh/triangle_mesh.h"
 
@@ -82,8 +83,8 @@ public:
     struct Arrays {
         openvdb::Vec3d middle{0.0};
         double unit = 1;
-        std::vector<Node> nodes;
-        std::vector<Block> blocks;
+        RawVector<Node> nodes;
+        RawVector<Block> blocks;
         std::uint32_t root = 0;
     };
     /// Of the numbers of nodes, marks those of blocks.

@@ -41,7 +41,8 @@ class Sight
 public:
     explicit Sight(const TriangleMesh& inner) : inner_(inner)
     {
-        tree_.build(triangle_boxes(inner.points, inner.triangles));
+        tree_.build(inner.triangles.size(),
+                    [&](std::size_t t) { return triangle_box(inner.points, inner.triangles[t]); });
     }
     bool blocked(const Vec3s& from, const Vec3s& to) const
     {

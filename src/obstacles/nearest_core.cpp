@@ -128,7 +128,7 @@ double least_distance(const TriangleMesh& first, const TriangleMesh& second)
     for (std::size_t t = 0; t < second.triangles.size(); ++t)
         boxes.push_back(box_around(triangle_corners(second, t), 0));
     BoxTree tree;
-    tree.build(std::move(boxes));
+    tree.build(boxes);
     std::vector<double> squared(first.triangles.size(), bound * bound);
     for_each_index(squared.size(), [&](std::size_t t) {
         const Corners c = triangle_corners(first, t);

@@ -71,17 +71,16 @@ void box_ways(GrowState& s, const std::vector<int>& points, const std::vector<Ve
     std::vector<std::uint8_t> moves(s.b.size(), 0);
     for (const int v : points)
         moves[v] = 1;
-    std::vector<FloatBox> boxes(s.mesh->faces.size());
-    for_each_index(boxes.size(), [&](std::size_t i) {
+    s.inner_tree.refit([&](std::size_t i) {
         const int f = static_cast<int>(i);
         growth::Corners there = growth::inner_corners(s, f);
-        boxes[i] = growth::float_box_of(there, s.rounding);
+        FloatBox box = growth::float_box_of(there, s.rounding);
         for (int k = 0; k < 3; ++k)
             if (moves[s.mesh->corner(f, k)])
                 there[k] = goal[s.mesh->corner(f, k)];
-        boxes[i].add(growth::float_box_of(there, s.rounding));
+        box.add(growth::float_box_of(there, s.rounding));
+        return box;
     });
-    s.inner_tree.refit(boxes);
 }
 
 bool valid_at(GrowState& s, int v, const Vec3d& x)

@@ -112,7 +112,7 @@ void colour_points(Parts& parts)
 
 void list_neighbours(Parts& parts)
 {
-    const std::vector<EdgeUse> uses = sorted_edge_uses(parts.stack.triangles());
+    const EdgeUses uses = sorted_edge_uses(parts.stack.triangles());
     for (std::size_t i = 1; i < uses.size(); ++i)
         if (uses[i].edge == uses[i - 1].edge)
             parts.neighbours.push_back({uses[i - 1].triangle, uses[i].triangle});
@@ -149,7 +149,7 @@ Leaf leaf_at(const Parts& parts, const EdgeUse& use)
 void list_neighbour_faces(Parts& parts)
 {
     const FreeFaces& free = parts.free;
-    const std::vector<EdgeUse> uses = sorted_edge_uses(free.faces);
+    const EdgeUses uses = sorted_edge_uses(free.faces);
     std::vector<Leaf> leaves;
     for (std::size_t first = 0, last = 0; first < uses.size(); first = last) {
         leaves.clear();

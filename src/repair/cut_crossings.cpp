@@ -66,7 +66,7 @@ std::vector<char> crossing_triangles(const TriangleMesh& mesh, Interrupter* inte
     return {crossing.begin(), crossing.end()};
 }
 
-void mark_rims(const std::vector<EdgeUse>& uses, std::vector<char>& marked)
+void mark_rims(const EdgeUses& uses, std::vector<char>& marked)
 {
     // The uses of one edge stand together; a single one is a rim.
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {

@@ -46,7 +46,7 @@ public:
         boxes.reserve(points.size());
         for (const Vec3d& p : points)
             boxes.push_back(box_around({p}));
-        tree_.build(std::move(boxes));
+        tree_.build(boxes);
         tree_.index_parents();
     }
 

@@ -97,7 +97,7 @@ void pair_around(const TriangleMesh& mesh, const EdgeUse* uses, std::size_t coun
 std::vector<std::uint32_t> pair_sides(const TriangleMesh& mesh)
 {
     std::vector<std::uint32_t> partner(3 * mesh.triangles.size(), kUnpaired);
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)
             ++end;

@@ -56,7 +56,7 @@ void forget_unused(WorkingSurface& surface)
 
 std::vector<char> loose_triangles(const TriangleMesh& mesh)
 {
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     const std::vector<std::uint32_t> component_of =
         component_of_triangles(uses, mesh.triangles.size());
     std::vector<char> at_rim(mesh.triangles.size());

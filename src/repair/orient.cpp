@@ -34,8 +34,7 @@ struct BadEdge {
     bool changed = false; ///< a piece of it goes
 };
 
-std::vector<BadEdge> bad_edges(const std::vector<EdgeUse>& uses,
-                               const std::vector<std::uint32_t>& piece_of)
+std::vector<BadEdge> bad_edges(const EdgeUses& uses, const std::vector<std::uint32_t>& piece_of)
 {
     std::vector<BadEdge> bad;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
@@ -108,7 +107,7 @@ std::vector<char> find_sheets(const TriangleMesh& mesh)
     // A share of the area of what is there at the time. A piece with more than that is taken for a
     // part of the object, not for a sheet on it.
     constexpr double kLargestShare = 0.25;
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     const Orientation pieces = consistent_orientation(uses, mesh.triangles.size());
     std::vector<BadEdge> bad = bad_edges(uses, pieces.piece_of);
     const auto edges = edges_by_piece(bad, pieces.one_sided.size());

@@ -90,7 +90,7 @@ std::size_t add_middles(WorkingSurface& surface, const std::vector<std::uint32_t
                         std::vector<std::uint32_t>& middle_of, RepairReport& report)
 {
     TriangleMesh& mesh = surface.mesh;
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     std::size_t edges = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)
@@ -166,7 +166,7 @@ void part_edges(WorkingSurface& surface, const std::vector<std::uint32_t>& partn
 
 std::size_t count_crowded(const TriangleMesh& mesh)
 {
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     std::size_t crowded = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)

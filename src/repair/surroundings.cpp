@@ -43,7 +43,7 @@ void Surroundings::add_from(std::size_t begin)
     PartBoxes boxes = part_boxes(
         mesh_.points, {mesh_.triangles.begin() + std::ptrdiff_t(begin), mesh_.triangles.end()});
     parts_.push_back({begin, end, {}, std::move(boxes.triangle)});
-    parts_.back().tree.build(std::move(boxes.boxes));
+    parts_.back().tree.build(boxes.boxes);
 }
 
 } // namespace vdb_shell::repair

@@ -27,7 +27,7 @@ void drop_triangles(WorkingSurface& surface, const std::vector<char>& drop);
 void add_sources(Defect<std::uint32_t>& defect, const WorkingSurface& surface,
                  const std::vector<char>& marked);
 /// Marks the triangles at open rims. Precondition: uses sorted by edge.
-void mark_rims(const std::vector<EdgeUse>& uses, std::vector<char>& marked);
+void mark_rims(const EdgeUses& uses, std::vector<char>& marked);
 
 // The steps, in order. Each adds what it did to the report.
 

@@ -12,7 +12,7 @@
 #include "resample/edge_collapse.h"
 
 #include "core/parallel.h"
-#include "core/stage_stop.h"
+#include "core/parallel_sort.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_corners.h"
@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace vdb_shell
 {
@@ -34,9 +35,6 @@ using openvdb::Vec3I;
 // A triangle may turn by 40 degrees in one collapse, of which this is the cosine; more is the
 // beginning of a fold.
 constexpr double kLeastCosine = 0.766;
-// Share of the vertices that may go in one round. In sequence each collapse would be the cheapest
-// at its time; rounds of a bounded share stand for that order, and can be looked at in parallel.
-constexpr double kShareOfRound = 0.2;
 
 struct Collapse {
     double cost = std::numeric_limits<double>::infinity();
@@ -67,15 +65,10 @@ public:
         // Relative to a point of the surface: the terms of a quadric are squares of coordinates,
         // which would cancel far from the origin.
         const Vec3d origin = mesh.points.empty() ? Vec3d(0.0) : Vec3d(mesh.points.front());
-        for (std::size_t v = 0; v < points_.size(); ++v)
-            points_[v] = Vec3d(mesh.points[v]) - origin;
-        for (const Vec3I& t : triangles_) {
-            const Vec3d cross = cross_of(points_[t[0]], points_[t[1]], points_[t[2]]);
-            const double length = cross.length();
-            for (int k = 0; k < 3 && length > 0; ++k)
-                quadric_[t[k]].add_plane(cross / length, -cross.dot(points_[t[0]]) / length,
-                                         0.5 * length);
-        }
+        for_each_index(points_.size(),
+                       [&](std::size_t v) { points_[v] = Vec3d(mesh.points[v]) - origin; });
+        around_ = triangles_around_vertices(points_.size(), triangles_);
+        for_each_index(points_.size(), [&](std::size_t v) { add_planes(v); });
         if (bounds_distance())
             place_samples();
     }
@@ -89,6 +82,19 @@ public:
     const std::vector<Vec3I>& triangles() const { return triangles_; }
 
 private:
+    /// Those of the triangles around it.
+    void add_planes(std::size_t v)
+    {
+        for (const std::uint32_t triangle : around_.around(v)) {
+            const Vec3I& t = triangles_[triangle];
+            const Vec3d cross = cross_of(points_[t[0]], points_[t[1]], points_[t[2]]);
+            const double length = cross.length();
+            if (length > 0)
+                quadric_[v].add_plane(cross / length, -cross.dot(points_[t[0]]) / length,
+                                      0.5 * length);
+        }
+    }
+
     /// The vertices, by their own numbers; after them, if wanted, the middles of triangles and
     /// edges, each with a triangle that it lies on.
     void place_samples()
@@ -118,7 +124,6 @@ private:
     /// themselves are done in one order, so threads do not matter.
     bool round()
     {
-        around_ = triangles_around_vertices(points_.size(), triangles_);
         for_each_range(points_.size(), [&](std::size_t begin, std::size_t end) {
             Scratch scratch;
             for (std::size_t v = begin; v < end; ++v)
@@ -126,36 +131,85 @@ private:
                     best_[v] = best_collapse(static_cast<std::uint32_t>(v), scratch);
         });
         std::fill(touched_.begin(), touched_.end(), 0);
-        std::size_t done = 0;
         // On a closed surface each collapse removes two triangles.
-        const std::size_t wanted = (triangles_.size() - limits_.fewest_triangles + 1) / 2;
-        for (const std::uint32_t v : cheapest()) {
-            const std::uint32_t u = best_[v].onto;
-            stop_if_stage_wants(done);
-            if (done == wanted)
-                break;
-            if (touched_[v] || touched_[u])
-                continue;
-            collapse(v, u);
-            ++done;
-        }
+        const std::size_t done =
+            collapse_in_order(cheapest(), (triangles_.size() - limits_.fewest_triangles + 1) / 2);
         drop_collapsed();
+        around_ = triangles_around_vertices(points_.size(), triangles_);
         return done > 0;
+    }
+
+    /// Does as many of these as are wanted, but for those that touch one done before; how many. Of
+    /// a block, one thread chooses, all list what a collapse would touch and do those that are
+    /// chosen: these have no triangle and no target in common.
+    std::size_t collapse_in_order(const std::vector<std::uint32_t>& order, std::size_t wanted)
+    {
+        constexpr std::size_t kBlock = 4096;
+        std::vector<std::vector<std::uint32_t>> stars(std::min(kBlock, order.size()));
+        std::vector<std::uint32_t> chosen;
+        std::size_t done = 0;
+        for (std::size_t first = 0; first < order.size() && done < wanted; first += kBlock) {
+            const std::size_t size = std::min(kBlock, order.size() - first);
+            for_each_index(size, [&](std::size_t i) { list_touched(order[first + i], stars[i]); });
+            chosen.clear();
+            for (std::size_t i = 0; i < size && done < wanted; ++i) {
+                const std::uint32_t v = order[first + i];
+                if (stars[i].empty() || touched_[v] || touched_[best_[v].onto])
+                    continue;
+                for (const std::uint32_t w : stars[i])
+                    touched_[w] = 1;
+                chosen.push_back(v);
+                ++done;
+            }
+            for_each_index(chosen.size(), [&](std::size_t i) { collapse(chosen[i]); });
+        }
+        return done;
+    }
+
+    /// What a collapse would touch; nothing where it touches what has been touched already.
+    void list_touched(std::uint32_t v, std::vector<std::uint32_t>& star) const
+    {
+        star.clear();
+        if (touched_[v] || touched_[best_[v].onto])
+            return;
+        for (const std::uint32_t t : around_.around(v))
+            for (int k = 0; k < 3; ++k)
+                star.push_back(triangles_[t][k]);
     }
 
     void drop_collapsed()
     {
-        std::size_t left = 0;
-        for (std::size_t t = 0; t < triangles_.size(); ++t) {
-            if (triangles_[t][0] == triangles_[t][1])
-                continue;
-            if (bounds_distance() && left != t)
-                samples_of_[left] = std::move(samples_of_[t]);
-            triangles_[left++] = triangles_[t];
-        }
-        triangles_.resize(left);
-        if (bounds_distance())
-            samples_of_.resize(left);
+        constexpr std::size_t kBlock = std::size_t(1) << 14;
+        const auto stays = [&](std::size_t t) { return triangles_[t][0] != triangles_[t][1]; };
+        const auto for_each_block = [&](const auto& visit) {
+            for_each_index((triangles_.size() + kBlock - 1) / kBlock,
+                           [&](std::size_t block) {
+                               visit(block, block * kBlock,
+                                     std::min(triangles_.size(), (block + 1) * kBlock));
+                           },
+                           1);
+        };
+        // By block, where what is left of it begins.
+        std::vector<std::size_t> begin(triangles_.size() / kBlock + 2, 0);
+        for_each_block([&](std::size_t block, std::size_t first, std::size_t last) {
+            for (std::size_t t = first; t < last; ++t)
+                begin[block + 1] += stays(t);
+        });
+        std::partial_sum(begin.begin(), begin.end(), begin.begin());
+        std::vector<Vec3I> triangles(begin.back());
+        std::vector<std::vector<std::uint32_t>> samples_of(bounds_distance() ? begin.back() : 0);
+        for_each_block([&](std::size_t block, std::size_t first, std::size_t last) {
+            std::size_t left = begin[block];
+            for (std::size_t t = first; t < last; ++t) {
+                if (!stays(t))
+                    continue;
+                if (bounds_distance())
+                    samples_of[left] = std::move(samples_of_[t]);
+                triangles[left++] = triangles_[t];
+            }
+        });
+        triangles_ = std::move(triangles);
+        samples_of_ = std::move(samples_of);
     }
 
     /// Vertices in the order of what their collapses cost, as many as a round may take. A closed
@@ -170,20 +224,19 @@ private:
         const auto before = [&](std::uint32_t v, std::uint32_t w) {
             return best_[v].cost != best_[w].cost ? best_[v].cost < best_[w].cost : v < w;
         };
-        const auto least = std::ptrdiff_t(kShareOfRound * double(triangles_.size()) / 2) + 1;
+        const auto least =
+            std::ptrdiff_t(limits_.share_of_round * double(triangles_.size()) / 2) + 1;
         if (std::ptrdiff_t(order.size()) > least) {
             std::nth_element(order.begin(), order.begin() + least, order.end(), before);
             order.resize(std::size_t(least));
         }
-        std::sort(order.begin(), order.end(), before);
+        parallel_sort(order.begin(), order.end(), before);
         return order;
     }
 
-    void collapse(std::uint32_t v, std::uint32_t u)
+    void collapse(std::uint32_t v)
     {
-        for (const std::uint32_t t : around_.around(v))
-            for (int k = 0; k < 3; ++k)
-                touched_[triangles_[t][k]] = 1;
+        const std::uint32_t u = best_[v].onto;
         for (const std::uint32_t t : around_.around(v)) {
             Vec3I& corners = triangles_[t];
             if (corners[0] == u || corners[1] == u || corners[2] == u)

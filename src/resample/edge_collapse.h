@@ -33,6 +33,10 @@ struct CollapseLimits {
     /// of the edge. Where the surface is flat the quadric error says nothing, and the shortest edge
     /// goes.
     double length_weight = 1e-3;
+    /// Of the vertices, how many may go in one round. In sequence each collapse would be the
+    /// cheapest at its time; rounds of a bounded share stand for that order, and can be looked at
+    /// in parallel.
+    double share_of_round = 0.2;
     std::vector<char> fixed; ///< by vertex: it stays; empty: none has to
 };
 

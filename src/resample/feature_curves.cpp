@@ -38,7 +38,7 @@ using Neighbours = std::vector<std::vector<std::uint32_t>>;
 Neighbours sharp_neighbours(const TriangleMesh& mesh, double angle)
 {
     Neighbours around(mesh.points.size());
-    const std::vector<EdgeUse> uses = sorted_edge_uses(mesh.triangles);
+    const EdgeUses uses = sorted_edge_uses(mesh.triangles);
     // Each edge of a closed manifold surface has two uses, which stand together.
     for (std::size_t i = 0; i + 1 < uses.size(); i += 2) {
         if (!(angle_between(cross_of(mesh, uses[i].triangle),

@@ -31,7 +31,7 @@ enum class Arc : std::uint8_t { unset, from_smaller, from_larger };
 
 struct Sides {
     std::vector<Three> edge;           ///< per triangle and side
-    std::vector<EdgeUse> uses;         ///< by edge
+    EdgeUses uses;                     ///< by edge
     std::vector<std::uint32_t> offset; ///< uses of edge e stand at [offset[e], offset[e+1])
 };
 

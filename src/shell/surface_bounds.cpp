@@ -81,7 +81,7 @@ double least_edge_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c)
 
 std::vector<EdgeAngle> edge_angles(const TriangleMesh& surface, Side side)
 {
-    const std::vector<EdgeUse> uses = sorted_edge_uses(surface.triangles);
+    const EdgeUses uses = sorted_edge_uses(surface.triangles);
     std::vector<EdgeAngle> angles;
     for (std::size_t i = 0, next = 0; i < uses.size(); i = next) {
         for (next = i; next < uses.size() && uses[next].edge == uses[i].edge;)

@@ -292,7 +292,7 @@ void build_trees(TaperState& s)
     outer.reserve(s.mesh->faces.size());
     for (int f = 0; f < s.faces(); ++f)
         outer.push_back(growth::float_box_of(InnerTriangle(s, 0, f).corners));
-    s.outer_tree.build(std::move(outer));
+    s.outer_tree.build(outer);
     rebuild_inner_tree(s);
 }
 
@@ -302,7 +302,7 @@ void rebuild_inner_tree(TaperState& s)
     boxes.reserve(s.mesh->faces.size());
     for (int f = 0; f < s.faces(); ++f)
         boxes.push_back(growth::float_box_of(InnerTriangle(s, s.levels, f).corners));
-    s.inner_tree.build(std::move(boxes));
+    s.inner_tree.build(boxes);
     // For widen, which goes from a leaf of the tree up to its root.
     s.inner_tree.index_parents();
 }

@@ -36,7 +36,7 @@ using openvdb::Vec4d;
 std::vector<Vec3I> triangles_beyond(const std::vector<Vec3I>& triangles)
 {
     std::vector<Vec3I> beyond(triangles.size(), Vec3I(ShellPlace::kNone));
-    const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
+    const EdgeUses uses = sorted_edge_uses(triangles);
     for (std::size_t i = 0; i + 1 < uses.size(); ++i) {
         const EdgeUse &a = uses[i], &b = uses[i + 1];
         if (a.edge != b.edge)

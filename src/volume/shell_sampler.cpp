@@ -31,7 +31,7 @@ BoxTree tree_of(const TetMesh& tets)
         boxes.push_back(box);
     }
     BoxTree tree;
-    tree.build(std::move(boxes));
+    tree.build(boxes);
     return tree;
 }
 

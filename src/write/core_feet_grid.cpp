@@ -27,16 +27,6 @@ constexpr const char* kTriangle = "core_triangle";
 constexpr const char* kUvw = "core_uvw";
 constexpr const char* kDistance = "core_distance";
 
-template <typename T, typename Get>
-std::vector<T> column(const std::vector<CoreFoot>& feet, const Get& get)
-{
-    std::vector<T> values;
-    values.reserve(feet.size());
-    for (const CoreFoot& foot : feet)
-        values.push_back(get(foot));
-    return values;
-}
-
 template <typename T>
 AttributeHandle<T> handle_of(const PointLeaf& leaf, const char* attribute, std::size_t rows,
                              const std::string& name)
@@ -91,11 +81,10 @@ void add_core_feet(PointGridBuilder& builder, const ShellPoints& points,
     if (feet.empty())
         return;
     const std::vector<CoreFoot> rows = feet_by_id(points, feet);
-    builder.add(kCore, column<std::int32_t>(rows, [](const CoreFoot& f) { return f.core; }));
-    builder.add(kTriangle,
-                column<std::int32_t>(rows, [](const CoreFoot& f) { return f.triangle; }));
-    builder.add(kUvw, column<Vec3s>(rows, [](const CoreFoot& f) { return f.uvw; }));
-    builder.add(kDistance, column<float>(rows, [](const CoreFoot& f) { return f.distance; }));
+    builder.add<std::int32_t>(kCore, [&](std::size_t i) { return rows[i].core; });
+    builder.add<std::int32_t>(kTriangle, [&](std::size_t i) { return rows[i].triangle; });
+    builder.add<Vec3s>(kUvw, [&](std::size_t i) { return rows[i].uvw; });
+    builder.add<float>(kDistance, [&](std::size_t i) { return rows[i].distance; });
 }
 
 std::vector<CoreFoot> read_core_feet(const openvdb::points::PointDataGrid& grid,

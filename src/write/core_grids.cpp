@@ -18,14 +18,6 @@ namespace
 using openvdb::Vec3d;
 using openvdb::Vec3s;
 
-std::vector<std::int32_t> ids(std::size_t count)
-{
-    std::vector<std::int32_t> made;
-    for (std::size_t i = 0; i < count; ++i)
-        made.push_back(std::int32_t(i));
-    return made;
-}
-
 /// Where a tet is drawn. Nothing is read back from it.
 Vec3s centre_of(const TetMesh& all, const openvdb::Vec4I& tet)
 {
@@ -42,7 +34,7 @@ CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const 
 {
     CoreGrids grids;
     PointGridBuilder own(kCorePointsGrid, core.points);
-    own.add("id", ids(core.points.size()));
+    own.add<std::int32_t>("id", [](std::size_t i) { return i; });
     // Houdini and its users take `rest` for places at rest. A posed shell has those under that
     // name, and its exact positions under another.
     own.add(position_attribute(rest.posed()), core.points);
@@ -50,28 +42,25 @@ CoreGrids make_core_grids(const ShellPoints& points, const TetMesh& tets, const 
         own.add("rest", rest.core);
     if (!rest.velocity.empty())
         own.add("v", rest.velocity.core);
-    std::vector<std::int32_t> vertex;
-    for (const std::uint32_t v : core.source_vertex)
-        vertex.push_back(v == CoreTets::kNoVertex ? -1 : std::int32_t(v));
-    own.add("source_vertex", vertex);
+    own.add<std::int32_t>("source_vertex", [&](std::size_t i) {
+        const std::uint32_t v = core.source_vertex[i];
+        return v == CoreTets::kNoVertex ? -1 : std::int32_t(v);
+    });
     grids.points = own.take();
 
     const TetMesh all = joined_tets(tets, core);
     std::vector<Vec3s> centres;
-    std::vector<std::int32_t> corners;
-    for (const openvdb::Vec4I& tet : core.tets) {
+    for (const openvdb::Vec4I& tet : core.tets)
         centres.push_back(centre_of(all, tet));
-        for (int k = 0; k < 4; ++k)
-            corners.push_back(
-                // Three numberings meet here: that of the joined tets, that of the shell's points
-                // by id, and that of the core's own points, which goes on behind the shell's.
-                std::int32_t(tet[k] < tets.points.size()
-                                 ? points.id_of_tet_point[tet[k]]
-                                 : points.position.size() + (tet[k] - tets.points.size())));
-    }
     PointGridBuilder filling(kCoreTetsGrid, centres);
-    filling.add("id", ids(core.tets.size()));
-    filling.add_tuples("tet", 4, corners);
+    filling.add<std::int32_t>("id", [](std::size_t t) { return t; });
+    filling.add_tuples("tet", 4, [&](std::size_t k) {
+        // Three numberings meet here: that of the joined tets, that of the shell's points by id,
+        // and that of the core's own points, which goes on behind the shell's.
+        const std::uint32_t point = core.tets[k / 4][int(k % 4)];
+        return point < tets.points.size() ? points.id_of_tet_point[point]
+                                          : points.position.size() + (point - tets.points.size());
+    });
     grids.tets = filling.take();
     return grids;
 }

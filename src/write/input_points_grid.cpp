@@ -13,17 +13,12 @@ namespace vdb_shell
 
 openvdb::points::PointDataGrid::Ptr make_input_points_grid(const InputPoints& input)
 {
-    std::vector<std::int32_t> id, corners;
-    for (std::size_t i = 0; i < input.points.size(); ++i) {
-        id.push_back(std::int32_t(i));
-        for (int k = 0; k < 3; ++k)
-            corners.push_back(std::int32_t(input.corners[i][k]));
-    }
     PointGridBuilder builder(kInputPointsGrid, input.points);
-    builder.add("id", id);
+    builder.add<std::int32_t>("id", [](std::size_t i) { return i; });
     // P of an OpenVDB point is relative to its voxel and need not give the same float again.
     builder.add("rest", input.points);
-    builder.add_tuples("corner", 3, corners);
+    builder.add_tuples("corner", 3,
+                       [&](std::size_t k) { return input.corners[k / 3][int(k % 3)]; });
     builder.add("weights", input.weights);
     return builder.take();
 }

@@ -65,7 +65,7 @@ std::vector<std::uint8_t> prism_tints(const std::vector<openvdb::Vec3I>& triangl
     // make the picture less regular. Tints follow from the order of the triangles and from nothing
     // random.
     std::vector<std::vector<std::uint32_t>> neighbours(triangles.size());
-    const std::vector<EdgeUse> uses = sorted_edge_uses(triangles);
+    const EdgeUses uses = sorted_edge_uses(triangles);
     for (std::size_t i = 0; i + 1 < uses.size(); ++i)
         if (uses[i].edge == uses[i + 1].edge) {
             neighbours[uses[i].triangle].push_back(uses[i + 1].triangle);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes positions and columns of values; gives an OpenVDB grid of points with these attributes.
+// Takes positions and the values of columns; gives an OpenVDB grid of points with these attributes.
 // OpenVDB decides the order of points inside a grid: rows are visited in the order of the index
 // grid, because that is the order in which createPointDataGrid laid the points down. Trap: an
 // attribute cannot be appended to a tree without leaves, so a grid without points gets none.
@@ -56,45 +56,6 @@ openvdb::math::Transform::Ptr transform_for(const std::vector<Vec3s>& positions)
     return transform;
 }
 
-/// `elements` values a point, which begin `stride` apart.
-template <typename T> struct Column {
-    const T* values;
-    std::size_t stride;
-    openvdb::Index elements;
-};
-
-/// Leaves are filled in parallel; each writes its own arrays and reads shared data only.
-template <typename T>
-void append(const PointIndexGrid& index, PointDataTree& tree, const std::string& name,
-            const Column<T>& column)
-{
-    const auto first = tree.cbeginLeaf();
-    if (!first)
-        return;
-    openvdb::points::appendAttribute<T>(tree, name, openvdb::zeroVal<T>(), column.elements);
-    // Attributes are appended to all leaves alike, so the place is the same in each.
-    const auto position = tree.cbeginLeaf()->attributeSet().find(name);
-    std::vector<PointDataTree::LeafNodeType*> leaves;
-    tree.getNodes(leaves);
-    const auto fill = [&](std::size_t k) {
-        // The typed array and not a handle, which calls a function for each value.
-        auto& array =
-            openvdb::points::TypedAttributeArray<T>::cast(leaves[k]->attributeArray(position));
-        array.expand(/*fill=*/false);
-        openvdb::Index to = 0;
-        for (const auto point : index.tree().probeConstLeaf(leaves[k]->origin())->indices()) {
-            const T* values = column.values + point * column.stride;
-            for (openvdb::Index element = 0; element < column.elements; ++element)
-                array.setUnsafe(to++, values[element]);
-        }
-        // Floats are left as they are: compacting takes -0 and 0 for the same value.
-        if (std::is_integral_v<T>)
-            // Equal numbers all over a leaf, as layers and pins mostly are, are stored once.
-            array.compact();
-    };
-    for_each_index(leaves.size(), fill, 1);
-}
-
 } // namespace
 
 PointGridBuilder::PointGridBuilder(const char* name, const std::vector<Vec3s>& positions)
@@ -107,32 +68,55 @@ PointGridBuilder::PointGridBuilder(const char* name, const std::vector<Vec3s>& p
     grid_->setName(name);
 }
 
-void PointGridBuilder::add(const std::string& name, const std::vector<std::int32_t>& column)
+/// Leaves are filled in parallel; each writes its own arrays and reads shared data only.
+template <typename T>
+void PointGridBuilder::append(const std::vector<std::string>& names, const PointValues<T>& column)
 {
-    append<std::int32_t>(*index_, grid_->tree(), name, {column.data(), 1, 1});
+    using Array = openvdb::points::TypedAttributeArray<T>;
+    PointDataTree& tree = grid_->tree();
+    if (!tree.cbeginLeaf())
+        return;
+    std::vector<std::size_t> place; // of each array among those of a leaf, the same in all leaves
+    for (const std::string& name : names) {
+        openvdb::points::appendAttribute<T>(tree, name, openvdb::zeroVal<T>(),
+                                            name == names.front() ? openvdb::Index(column.stride)
+                                                                  : 1);
+        place.push_back(tree.cbeginLeaf()->attributeSet().find(name));
+    }
+    std::vector<PointDataTree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
+    const auto fill = [&](PointDataTree::LeafNodeType& leaf, std::vector<T>& values) {
+        const auto& points = index_->tree().probeConstLeaf(leaf.origin())->indices();
+        values.resize(points.size() * column.stride);
+        column.list(column, points.data(), points.size(), values.data());
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            // The typed array and not a handle, which calls a function for each value.
+            auto& array = Array::cast(leaf.attributeArray(place[i]));
+            array.expand(/*fill=*/false);
+            const std::size_t first = i == 0 ? 0 : i - 1, step = i == 0 ? 1 : column.stride;
+            openvdb::Index to = 0;
+            for (std::size_t at = first; at < values.size(); at += step)
+                array.setUnsafe(to++, values[at]);
+            // Floats are left as they are: compacting takes -0 and 0 for the same value.
+            if (std::is_integral_v<T>)
+                // Equal numbers all over a leaf, as layers and pins mostly are, are stored once.
+                array.compact();
+        }
+    };
+    for_each_range(
+        leaves.size(),
+        [&](std::size_t begin, std::size_t end) {
+            std::vector<T> values;
+            for (std::size_t i = begin; i < end; ++i)
+                fill(*leaves[i], values);
+        },
+        4);
 }
 
-void PointGridBuilder::add(const std::string& name, const std::vector<float>& column)
-{
-    append<float>(*index_, grid_->tree(), name, {column.data(), 1, 1});
-}
-
-void PointGridBuilder::add(const std::string& name, const std::vector<Vec3s>& column)
-{
-    append<Vec3s>(*index_, grid_->tree(), name, {column.data(), 1, 1});
-}
-
-void PointGridBuilder::add_tuples(const std::string& name, openvdb::Index stride,
-                                  const std::vector<std::int32_t>& column)
-{
-    if (column.empty())
-        return; // no leaf has an array
-    append<std::int32_t>(*index_, grid_->tree(), name, {column.data(), stride, stride});
-    for (openvdb::Index element = 0; element < stride; ++element)
-        // From the same column by its stride, so nothing is copied.
-        append<std::int32_t>(*index_, grid_->tree(), name + std::to_string(element),
-                             {column.data() + element, stride, 1});
-}
+template void PointGridBuilder::append(const std::vector<std::string>&,
+                                       const PointValues<std::int32_t>&);
+template void PointGridBuilder::append(const std::vector<std::string>&, const PointValues<float>&);
+template void PointGridBuilder::append(const std::vector<std::string>&, const PointValues<Vec3s>&);
 
 void PointGridBuilder::add_group(const std::string& name, const std::vector<short>& member)
 {

@@ -30,13 +30,8 @@ using openvdb::points::PointDataGrid;
 template <typename T, typename Get> std::vector<T> column(std::size_t count, const Get& get)
 {
     std::vector<T> values(count);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = T(get(i));
+    for_each_index(count, [&](std::size_t i) { values[i] = T(get(i)); });
     return values;
-}
-template <typename Get> std::vector<std::int32_t> integers(std::size_t count, const Get& get)
-{
-    return column<std::int32_t>(count, get);
 }
 
 /// Where a prism or a tet is drawn. Nothing is read back from it, so its rounding does not matter.
@@ -53,8 +48,8 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
 void add_stop_reasons(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points)
 {
     const auto add = [&](const char* name, const PrismShell& layer) {
-        builder.add(name, integers(points.vertex.size(),
-                                   [&](std::size_t i) { return layer.stop[points.vertex[i]]; }));
+        builder.add<std::int32_t>(name,
+                                  [&](std::size_t i) { return layer.stop[points.vertex[i]]; });
     };
     add("stop_reason", stack.layers.back());
     // Only then are there two reasons for a vertex; other files go without the column.
@@ -66,7 +61,6 @@ void add_stop_reasons(PointGridBuilder& builder, const ShellStack& stack, const 
 void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points,
                   const RestPoints& rest)
 {
-    const std::size_t count = points.position.size();
     std::vector<std::vector<Vec3s>> normals;
     for (std::size_t k = 0; k < stack.surfaces(); ++k)
         normals.push_back(layer_normals(stack.surface(k), stack.triangles()));
@@ -75,15 +69,13 @@ void add_geometry(PointGridBuilder& builder, const ShellStack& stack, const Shel
         builder.add("rest", vectors_by_id(points, rest));
     if (!rest.velocity.empty())
         builder.add("v", vectors_by_id(points, rest.velocity));
-    builder.add("opposite", column<Vec3s>(count, [&](std::size_t i) {
-                    return opposite_of(stack, points.layer[i], points.vertex[i]);
-                }));
-    builder.add("N", column<Vec3s>(count, [&](std::size_t i) {
-                    return normals[points.layer[i]][points.vertex[i]];
-                }));
-    builder.add("thickness", column<float>(count, [&](std::size_t i) {
-                    return thickness_of(stack, points.vertex[i]);
-                }));
+    builder.add<Vec3s>("opposite", [&](std::size_t i) {
+        return opposite_of(stack, points.layer[i], points.vertex[i]);
+    });
+    builder.add<Vec3s>("N",
+                       [&](std::size_t i) { return normals[points.layer[i]][points.vertex[i]]; });
+    builder.add<float>("thickness",
+                       [&](std::size_t i) { return thickness_of(stack, points.vertex[i]); });
 }
 
 PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& points,
@@ -94,12 +86,12 @@ PointDataGrid::Ptr make_points(const ShellStack& stack, const ShellPoints& point
     const auto is_pinned = [&](std::size_t i) {
         return pinned_throughout(stack, points.vertex[i]);
     };
-    builder.add("id", integers(count, [](std::size_t i) { return i; }));
-    builder.add("tet_point", integers(count, [&](std::size_t i) { return points.tet_point[i]; }));
-    builder.add("layer", integers(count, [&](std::size_t i) { return points.layer[i]; }));
-    builder.add("source_vertex", integers(count, [&](std::size_t i) { return points.vertex[i]; }));
+    builder.add<std::int32_t>("id", [](std::size_t i) { return i; });
+    builder.add<std::int32_t>("tet_point", [&](std::size_t i) { return points.tet_point[i]; });
+    builder.add<std::int32_t>("layer", [&](std::size_t i) { return points.layer[i]; });
+    builder.add<std::int32_t>("source_vertex", [&](std::size_t i) { return points.vertex[i]; });
     add_stop_reasons(builder, stack, points);
-    builder.add("pinned", integers(count, is_pinned));
+    builder.add<std::int32_t>("pinned", is_pinned);
     add_geometry(builder, stack, points, rest);
     add_core_feet(builder, points, feet);
     const auto on_surface = [&](std::size_t surface) {
@@ -115,27 +107,26 @@ PointDataGrid::Ptr make_prisms(const ShellStack& stack, const ShellPoints& point
 {
     const std::vector<Vec3I>& triangles = stack.triangles();
     const std::size_t faces = triangles.size(), count = stack.layers.size() * faces;
-    std::vector<Vec3s> centres(count);
-    for (std::size_t p = 0; p < count; ++p) {
-        const Vec3I t = triangles[p % faces];
-        const PrismShell& layer = stack.layers[p / faces];
-        centres[p] =
-            mean_of(6, [&](int i) { return i < 3 ? layer.outer[t[i]] : layer.inner[t[i - 3]]; });
-    }
-    PointGridBuilder builder(kPrismsGrid, centres);
-    builder.add("id", integers(count, [](std::size_t p) { return p; }));
-    builder.add_tuples("prism_pts", 6, integers(6 * count, [&](std::size_t k) {
-                           const std::size_t p = k / 6, i = k % 6;
-                           const std::size_t surface = p / faces + (i < 3 ? 0 : 1);
-                           return points.id[surface][triangles[p % faces][int(i % 3)]];
-                       }));
-    builder.add_tuples("split_order", 3, integers(3 * count, [&](std::size_t k) {
-                           const std::size_t p = k / 3;
-                           return stack.splits[p / faces].order[p % faces][k % 3];
-                       }));
+    PointGridBuilder builder(kPrismsGrid, column<Vec3s>(count, [&](std::size_t p) {
+                                 const Vec3I t = triangles[p % faces];
+                                 const PrismShell& layer = stack.layers[p / faces];
+                                 return mean_of(6, [&](int i) {
+                                     return i < 3 ? layer.outer[t[i]] : layer.inner[t[i - 3]];
+                                 });
+                             }));
+    builder.add<std::int32_t>("id", [](std::size_t p) { return p; });
+    builder.add_tuples("prism_pts", 6, [&](std::size_t k) {
+        const std::size_t p = k / 6, i = k % 6;
+        const std::size_t surface = p / faces + (i < 3 ? 0 : 1);
+        return points.id[surface][triangles[p % faces][int(i % 3)]];
+    });
+    builder.add_tuples("split_order", 3, [&](std::size_t k) {
+        const std::size_t p = k / 3;
+        return stack.splits[p / faces].order[p % faces][k % 3];
+    });
     if (stack.layers.size() > 1) {
-        builder.add("layer", integers(count, [&](std::size_t p) { return p / faces; }));
-        builder.add("triangle", integers(count, [&](std::size_t p) { return p % faces; }));
+        builder.add<std::int32_t>("layer", [&](std::size_t p) { return p / faces; });
+        builder.add<std::int32_t>("triangle", [&](std::size_t p) { return p % faces; });
     }
     return builder.take();
 }
@@ -148,15 +139,14 @@ PointDataGrid::Ptr make_tet_points(const ShellStack& stack, const TetMesh& tets,
         return mean_of(4, [&](int i) { return tets.points[tets.tets[t][i]]; });
     };
     PointGridBuilder builder(kTetsGrid, column<Vec3s>(count, centre));
-    builder.add("id", integers(count, [](std::size_t t) { return t; }));
-    builder.add_tuples("tet", 4, integers(4 * count, [&](std::size_t k) {
-                           return points.id_of_tet_point[tets.tets[k / 4][int(k % 4)]];
-                       }));
-    builder.add("prism", integers(count, [&](std::size_t t) {
-                    return tets.prism_layer[t] * faces + tets.prism[t];
-                }));
+    builder.add<std::int32_t>("id", [](std::size_t t) { return t; });
+    builder.add_tuples("tet", 4, [&](std::size_t k) {
+        return points.id_of_tet_point[tets.tets[k / 4][int(k % 4)]];
+    });
+    builder.add<std::int32_t>(
+        "prism", [&](std::size_t t) { return tets.prism_layer[t] * faces + tets.prism[t]; });
     if (stack.layers.size() > 1)
-        builder.add("layer", integers(count, [&](std::size_t t) { return tets.prism_layer[t]; }));
+        builder.add<std::int32_t>("layer", [&](std::size_t t) { return tets.prism_layer[t]; });
     return builder.take();
 }
 

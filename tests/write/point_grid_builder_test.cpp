@@ -63,7 +63,7 @@ TEST_F(PointGridBuilderTest, EveryPointHasItsRowOfEachColumn)
         zeros[i] = -0.0F;
     builder.add("zero", zeros);
     builder.add("rest", points);
-    builder.add_tuples("pair", 2, numbers(200));
+    builder.add_tuples("pair", 2, [](std::size_t k) { return k; });
     const auto grid = builder.take();
     EXPECT_EQ(grid->getName(), "g");
     std::size_t count = 0;
