@@ -35,7 +35,7 @@ RawVector<BoxTree::Item> BoxTree::items_for(std::size_t count)
     subtrees_.clear();
     upper_.clear();
     item_.resize(count);
-    boxes_.resize(count);
+    leaves_.resize((count + kWide - 1) / kWide);
     return RawVector<Item>(count);
 }
 
@@ -77,7 +77,7 @@ public:
     std::size_t of(int boxes)
     {
         if (boxes <= kLeaf)
-            return 1;
+            return 0;
         const auto found = counted_.find(boxes);
         if (found != counted_.end())
             return found->second;
@@ -151,7 +151,7 @@ void BoxTree::add_upper_node(std::size_t id, int begin, int end, NodeCounts& cou
     }
     upper_.push_back(id);
     Node& n = nodes_[id];
-    n = {FourBoxes::none(), {}, 0, false};
+    n = {FourBoxes::none(), {}, 0};
     std::size_t next = id + 1;
     for_each_child(begin, end, [&](int from, int to) {
         n.child[n.children++] = static_cast<int>(next);
@@ -160,20 +160,18 @@ void BoxTree::add_upper_node(std::size_t id, int begin, int end, NodeCounts& cou
     });
 }
 
-/// `next`: the number of the first node, then the one after the last.
-void BoxTree::add_nodes(int begin, int end, std::size_t& next)
+/// The node or leaf over a range. `next`: the number of the first new node, then the one after the
+/// last.
+int BoxTree::add_nodes(int begin, int end, std::size_t& next)
 {
+    if (end - begin <= kLeaf)
+        return ~(begin / kLeaf);
+    const auto id = static_cast<int>(next);
     Node& n = nodes_[next++];
-    n = {FourBoxes::none(), {}, 0, end - begin <= kLeaf};
-    if (n.leaf) {
-        for (int place = begin; place < end; ++place)
-            n.child[n.children++] = place;
-        return;
-    }
-    for_each_child(begin, end, [&](int from, int to) {
-        n.child[n.children++] = static_cast<int>(next);
-        add_nodes(from, to, next);
-    });
+    n = {FourBoxes::none(), {}, 0};
+    for_each_child(begin, end,
+                   [&](int from, int to) { n.child[n.children++] = add_nodes(from, to, next); });
+    return id;
 }
 
 void BoxTree::index_parents()
@@ -181,20 +179,23 @@ void BoxTree::index_parents()
     place_.resize(item_.size());
     for (std::size_t i = 0; i < item_.size(); ++i)
         place_[static_cast<std::size_t>(item_[i])] = i;
-    lane_of_place_.resize(item_.size());
+    lane_of_leaf_.assign(leaves_.size(), {-1, 0});
     lane_of_node_.assign(nodes_.size(), {-1, 0});
     for (std::size_t i = 0; i < nodes_.size(); ++i)
-        for (unsigned lane = 0; lane < nodes_[i].children; ++lane)
-            (nodes_[i].leaf ? lane_of_place_
-                            : lane_of_node_)[static_cast<std::size_t>(nodes_[i].child[lane])] = {
-                static_cast<int>(i), lane};
+        for (unsigned lane = 0; lane < nodes_[i].children; ++lane) {
+            const int child = nodes_[i].child[lane];
+            (child < 0 ? lane_of_leaf_[leaf_of(child)]
+                       : lane_of_node_[std::size_t(child)]) = {static_cast<int>(i), lane};
+        }
 }
 
 void BoxTree::widen(std::size_t i, const FloatBox& box)
 {
     const std::size_t place = place_[i];
-    boxes_[place].add(box);
-    for (Lane at = lane_of_place_[place]; at.node >= 0;
+    FloatBox own = box_at(place);
+    own.add(box);
+    set_box(place, own);
+    for (Lane at = lane_of_leaf_[place / kWide]; at.node >= 0;
          at = lane_of_node_[static_cast<std::size_t>(at.node)]) {
         FourBoxes& boxes = nodes_[static_cast<std::size_t>(at.node)].box;
         FloatBox wider = boxes.get(at.lane);
@@ -206,21 +207,29 @@ void BoxTree::widen(std::size_t i, const FloatBox& box)
 void BoxTree::replace(std::size_t i, const FloatBox& box)
 {
     const std::size_t place = place_[i];
-    boxes_[place] = box;
-    FloatBox around = box;
-    for (Lane at = lane_of_place_[place]; at.node >= 0;
+    set_box(place, box);
+    FloatBox below = around_leaf(place / kWide);
+    for (Lane at = lane_of_leaf_[place / kWide]; at.node >= 0;
          at = lane_of_node_[static_cast<std::size_t>(at.node)]) {
         Node& n = nodes_[static_cast<std::size_t>(at.node)];
-        n.box.set(at.lane, around);
-        around = n.around();
+        n.box.set(at.lane, below);
+        below = around(n);
     }
 }
 
-FloatBox BoxTree::Node::around() const
+FloatBox BoxTree::around_leaf(std::size_t leaf) const
 {
-    FloatBox all = box.get(0);
-    for (unsigned lane = 1; lane < children; ++lane)
-        all.add(box.get(lane));
+    FloatBox all = box_at(kWide * leaf);
+    for (std::size_t place = kWide * leaf + 1; place < leaf_end(leaf); ++place)
+        all.add(box_at(place));
+    return all;
+}
+
+FloatBox BoxTree::around(const Node& node)
+{
+    FloatBox all = node.box.get(0);
+    for (unsigned lane = 1; lane < node.children; ++lane)
+        all.add(node.box.get(lane));
     return all;
 }
 
@@ -232,8 +241,9 @@ void BoxTree::fit_subtree(const Subtree& subtree)
     for (std::size_t i = subtree.nodes; i-- > 0;) {
         Node& n = nodes_[subtree.node + i];
         for (unsigned lane = 0; lane < n.children; ++lane) {
-            const auto child = static_cast<std::size_t>(n.child[lane]);
-            const FloatBox& box = n.leaf ? boxes_[child] : around[child - subtree.node];
+            const int child = n.child[lane];
+            const FloatBox box =
+                child < 0 ? around_leaf(leaf_of(child)) : around[std::size_t(child) - subtree.node];
             n.box.set(lane, box);
             lane == 0 ? void(around[i] = box) : around[i].add(box);
         }
@@ -245,7 +255,7 @@ void BoxTree::fit_upper_nodes()
     for (std::size_t i = upper_.size(); i-- > 0;) {
         Node& n = nodes_[upper_[i]];
         for (unsigned lane = 0; lane < n.children; ++lane)
-            n.box.set(lane, nodes_[static_cast<std::size_t>(n.child[lane])].around());
+            n.box.set(lane, around(nodes_[static_cast<std::size_t>(n.child[lane])]));
     }
 }
 
@@ -265,11 +275,11 @@ bool BoxTree::list_overlaps(const FloatBox& box, Near& near, std::size_t most) c
     near.clear();
     const FourBoxes wanted = FourBoxes::same(box);
     bool all = true;
-    descend([&](std::size_t, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
+    descend([&](int, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
             [&](std::size_t at) {
                 all = near.size() < most;
                 if (all)
-                    near.add(boxes_[at], item_[at]);
+                    near.add(box_at(at), item_[at]);
                 return all;
             });
     return all;
@@ -278,22 +288,29 @@ bool BoxTree::list_overlaps(const FloatBox& box, Near& near, std::size_t most) c
 void BoxTree::mark(const std::vector<Marks>& marks)
 {
     assert(marks.size() == item_.size());
-    common_.assign(kWide * nodes_.size(), {kNoMark, kNoMark, kNoMark});
-    // By node, of all its lanes. Children stand behind their node, as in fit_nodes().
-    std::vector<Marks> under(nodes_.size());
-    for (std::size_t i = nodes_.size(); i-- > 0;) {
-        const Node& n = nodes_[i];
-        for (unsigned lane = 0; lane < n.children; ++lane) {
-            const auto child = static_cast<std::size_t>(n.child[lane]);
-            Marks& own = common_[kWide * i + lane];
-            own = n.leaf ? marks[static_cast<std::size_t>(item_[child])] : under[child];
-            if (lane == 0)
-                under[i] = own;
-            for (std::uint32_t& mark : under[i])
-                if (std::find(own.begin(), own.end(), mark) == own.end())
+    constexpr Marks kNone{kNoMark, kNoMark, kNoMark};
+    own_.assign(kWide * leaves_.size(), kNone);
+    for (std::size_t place = 0; place < item_.size(); ++place)
+        own_[place] = marks[static_cast<std::size_t>(item_[place])];
+    common_.assign(kWide * nodes_.size(), kNone);
+    const auto common_of = [](const Marks* lanes, std::size_t count) {
+        Marks common = lanes[0];
+        for (std::uint32_t& mark : common)
+            for (std::size_t lane = 1; lane < count; ++lane)
+                if (std::find(lanes[lane].begin(), lanes[lane].end(), mark) == lanes[lane].end())
                     mark = kNoMark;
+        return common;
+    };
+    // Children stand behind their node, as in fit_subtree().
+    for (std::size_t i = nodes_.size(); i-- > 0;)
+        for (unsigned lane = 0; lane < nodes_[i].children; ++lane) {
+            const int child = nodes_[i].child[lane];
+            common_[kWide * i + lane] =
+                child < 0 ? common_of(&own_[kWide * leaf_of(child)],
+                                      leaf_end(leaf_of(child)) - kWide * leaf_of(child))
+                          : common_of(&common_[kWide * std::size_t(child)],
+                                      nodes_[std::size_t(child)].children);
         }
-    }
 }
 
 } // namespace vdb_shell

@@ -40,12 +40,15 @@ public:
             kGrain);
         split_all(items);
         for_each_index(
-            count,
-            [&](std::size_t i) {
-                item_[i] = items[i].box;
-                boxes_[i] = box_of(static_cast<std::size_t>(items[i].box));
+            leaves_.size(),
+            [&](std::size_t leaf) {
+                leaves_[leaf] = FourBoxes::none();
+                for (std::size_t place = kWide * leaf; place < leaf_end(leaf); ++place) {
+                    item_[place] = items[place].box;
+                    set_box(place, box_of(static_cast<std::size_t>(items[place].box)));
+                }
             },
-            kGrain);
+            kGrain / kWide);
         // Of tens of millions of boxes these and the nodes take gigabytes.
         items = {};
         add_all_nodes();
@@ -68,7 +71,7 @@ public:
                     const auto item = static_cast<std::size_t>(item_[std::size_t(place)]);
                     if (!changed.empty() && !changed[item])
                         continue;
-                    boxes_[std::size_t(place)] = box_of(item);
+                    set_box(std::size_t(place), box_of(item));
                     moved = true;
                 }
                 if (moved)
@@ -76,6 +79,10 @@ public:
             },
             1);
         fit_upper_nodes();
+    }
+    void refit(const std::vector<FloatBox>& boxes, const std::vector<std::uint8_t>& changed = {})
+    {
+        refit([&](std::size_t i) { return boxes[i]; }, changed);
     }
 
     /// Makes ready for widen(); to be called after each build().
@@ -98,7 +105,7 @@ public:
     template <class Visit> void for_each_overlap(const FloatBox& query, Visit&& visit) const
     {
         const FourBoxes wanted = FourBoxes::same(query);
-        descend([&](std::size_t, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
+        descend([&](int, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
                 [&](std::size_t at) {
                     visit(item_[at]);
                     return true;
@@ -108,7 +115,7 @@ public:
     template <class Visit> void for_each_overlap_while(const FloatBox& query, Visit&& visit) const
     {
         const FourBoxes wanted = FourBoxes::same(query);
-        descend([&](std::size_t, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
+        descend([&](int, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
                 [&](std::size_t at) { return visit(item_[at]); });
     }
     /// The same but for boxes that carry one of these marks, until visit(i) returns false.
@@ -119,9 +126,9 @@ public:
         const FourBoxes wanted = FourBoxes::same(query);
         const bool any = marks != Marks{kNoMark, kNoMark, kNoMark};
         descend(
-            [&](std::size_t node, const FourBoxes& boxes) {
+            [&](int four, const FourBoxes& boxes) {
                 const unsigned met = boxes.overlaps(wanted);
-                return any ? without(marks, node, met) : met;
+                return any ? without(marks, four, met) : met;
             },
             [&](std::size_t at) { return visit(item_[at]); });
     }
@@ -140,7 +147,7 @@ public:
                          Visit&& visit) const
     {
         descend_along(
-            BoxRay(p, d), limit, [](std::size_t, unsigned met) { return met; },
+            BoxRay(p, d), limit, [](int, unsigned met) { return met; },
             [&](std::size_t at) {
                 visit(item_[at]);
                 return true;
@@ -153,8 +160,7 @@ public:
                                  const openvdb::Vec3d& d, double limit, Visit&& visit) const
     {
         descend_along(
-            BoxRay(p, d), limit,
-            [&](std::size_t node, unsigned met) { return without(marks, node, met); },
+            BoxRay(p, d), limit, [&](int four, unsigned met) { return without(marks, four, met); },
             [&](std::size_t at) { return visit(item_[at]); });
     }
 
@@ -199,8 +205,8 @@ public:
         for (std::size_t i = begin; i < end; ++i)
             if (wanted(item_[i])) {
                 if (!any)
-                    all = boxes_[i];
-                all.add(boxes_[i]);
+                    all = box_at(i);
+                all.add(box_at(i));
                 any = true;
             }
         if (!any)
@@ -209,7 +215,7 @@ public:
             return false;
         for (std::size_t i = begin; i < end; ++i)
             if (wanted(item_[i]))
-                near.any_overlap(boxes_[i], [&](int j) {
+                near.any_overlap(box_at(i), [&](int j) {
                     visit(item_[i], j);
                     return false;
                 });
@@ -223,14 +229,11 @@ public:
     }
 
 private:
-    /// Up to four nodes, or in a leaf boxes.
+    /// Up to four nodes or leaves: a leaf by what ~ makes of its number.
     struct Node {
         FourBoxes box;
-        std::array<int, kWide> child; ///< a node; in a leaf a place among the boxes
+        std::array<int, kWide> child;
         unsigned children;
-        bool leaf;
-
-        FloatBox around() const;
     };
     /// The node over a range of boxes, and all below it, which stand behind it.
     struct Subtree {
@@ -256,30 +259,58 @@ private:
     static void split(RawVector<Item>& items, int begin, int end);
     template <class Visit> static void for_each_child(int begin, int end, const Visit& visit);
     void add_upper_node(std::size_t id, int begin, int end, NodeCounts& counts);
-    void add_nodes(int begin, int end, std::size_t& next);
+    int add_nodes(int begin, int end, std::size_t& next);
     void add_all_nodes();
     void fit_subtree(const Subtree& subtree);
     void fit_upper_nodes();
 
+    /// Four boxes or fewer, those at the places from kWide * leaf on: splits leave all leaves full
+    /// but for the last.
+    std::size_t leaf_end(std::size_t leaf) const
+    {
+        return std::min(item_.size(), kWide * (leaf + 1));
+    }
+    static std::size_t leaf_of(int child) { return static_cast<std::size_t>(~child); }
+    FloatBox box_at(std::size_t place) const { return leaves_[place / kWide].get(place % kWide); }
+    void set_box(std::size_t place, const FloatBox& box)
+    {
+        leaves_[place / kWide].set(place % kWide, box);
+    }
+    FloatBox around_leaf(std::size_t leaf) const;
+    static FloatBox around(const Node& node);
+    /// Where a walk begins: nothing where there are no boxes.
+    int root() const { return nodes_.empty() ? ~0 : 0; }
+    unsigned lanes_of(int four) const
+    {
+        const std::size_t count = four >= 0 ? nodes_[std::size_t(four)].children
+                                            : leaf_end(leaf_of(four)) - kWide * leaf_of(four);
+        return (1U << count) - 1U;
+    }
+    const FourBoxes& boxes_of(int four) const
+    {
+        return four >= 0 ? nodes_[std::size_t(four)].box : leaves_[leaf_of(four)];
+    }
+
     /// Calls visit(place), until it returns false, for every box that is met, leaving out what lies
-    /// under boxes that are not: meets(node, its four boxes) has a bit for each that is.
+    /// under boxes that are not: meets(node or leaf, its four boxes) has a bit for each that is.
     template <class Meets, class Visit> void descend(const Meets& meets, Visit&& visit) const
     {
-        if (nodes_.empty())
+        if (item_.empty())
             return;
         std::array<int, kStack> stack;
         int top = 0;
-        stack[top++] = 0;
+        stack[top++] = root();
         while (top > 0) {
-            const auto at = static_cast<std::size_t>(stack[--top]);
-            const Node& n = nodes_[at];
-            unsigned met = meets(at, n.box) & ((1U << n.children) - 1U);
-            if (n.leaf) {
+            const int at = stack[--top];
+            // Lanes that are not used overlap nothing.
+            unsigned met = meets(at, boxes_of(at));
+            if (at < 0) {
                 for (; met != 0; met &= met - 1)
-                    if (!visit(static_cast<std::size_t>(n.child[std::size_t(__builtin_ctz(met))])))
+                    if (!visit(kWide * leaf_of(at) + std::size_t(__builtin_ctz(met))))
                         return;
                 continue;
             }
+            const Node& n = nodes_[std::size_t(at)];
             for (std::size_t lane = kWide; lane-- > 0;)
                 if ((met >> lane & 1U) != 0)
                     stack[top++] = n.child[lane];
@@ -287,37 +318,38 @@ private:
     }
 
     /// The same along a ray, nearer nodes first: what visit finds in them lowers the limit before
-    /// those behind are looked at. left(node, met) may take bits away from those that are met.
+    /// those behind are looked at. left(node or leaf, met) may take bits away from those that are
+    /// met.
     template <class Left, class Visit>
     void descend_along(const BoxRay& ray, const double& limit, const Left& left,
                        Visit&& visit) const
     {
-        if (nodes_.empty())
+        if (item_.empty())
             return;
         struct Waiting {
-            std::size_t node;
+            int four;
             double entry;
         };
         std::array<Waiting, kStack> stack;
         std::size_t top = 0;
-        stack[top++] = {0, 0.0};
+        stack[top++] = {root(), 0.0};
         std::array<double, kWide> entry;
         while (top > 0) {
             const Waiting at = stack[--top];
             if (at.entry > BoxRay::no_less(limit))
                 continue;
-            const Node& n = nodes_[at.node];
             unsigned met =
-                left(at.node, ray.meets(n.box, limit, entry) & ((1U << n.children) - 1U));
+                left(at.four, ray.meets(boxes_of(at.four), limit, entry) & lanes_of(at.four));
             const std::size_t first = top;
             for (; met != 0; met &= met - 1) {
                 const auto lane = std::size_t(__builtin_ctz(met));
-                const auto child = static_cast<std::size_t>(n.child[lane]);
-                if (n.leaf) {
-                    if (entry[lane] <= BoxRay::no_less(limit) && !visit(child))
+                if (at.four < 0) {
+                    if (entry[lane] <= BoxRay::no_less(limit) &&
+                        !visit(kWide * leaf_of(at.four) + lane))
                         return;
                     continue;
                 }
+                const int child = nodes_[std::size_t(at.four)].child[lane];
                 // The nearest is on top of the stack.
                 std::size_t place = top++;
                 for (; place > first && stack[place - 1].entry < entry[lane]; --place)
@@ -327,33 +359,35 @@ private:
         }
     }
 
-    /// Of the lanes of a node that are met those without these marks.
-    unsigned without(const Marks& marks, std::size_t node, unsigned met) const
+    /// Of the lanes of a node or leaf that are met those without these marks.
+    unsigned without(const Marks& marks, int four, unsigned met) const
     {
-        for (unsigned left = met & ((1U << nodes_[node].children) - 1U); left != 0;
-             left &= left - 1) {
+        const Marks* const common =
+            four >= 0 ? &common_[kWide * std::size_t(four)] : &own_[kWide * leaf_of(four)];
+        for (unsigned left = met; left != 0; left &= left - 1) {
             const auto lane = unsigned(__builtin_ctz(left));
-            if (have_common(marks, common_[kWide * node + lane]))
+            if (have_common(marks, common[lane]))
                 met &= ~(1U << lane);
         }
         return met;
     }
-    RawVector<int> item_;       ///< in the order of the leaves
-    RawVector<FloatBox> boxes_; ///< of the items, in that order
-    RawVector<Node> nodes_;     ///< each before its children
+    RawVector<int> item_;         ///< in the order of the leaves
+    RawVector<FourBoxes> leaves_; ///< the boxes of the items, in that order
+    RawVector<Node> nodes_;       ///< each before its children
     /// What a thread takes at a time, and the nodes above these, each before its children.
     std::vector<Subtree> subtrees_;
     std::vector<std::size_t> upper_;
-    /// Of index_parents: the place of each item; the node and the lane that hold a place, and the
-    /// node and the lane that hold a node, of the root -1.
+    /// Of index_parents: the place of each item; the node and the lane that hold a leaf, and those
+    /// that hold a node, of the root -1.
     struct Lane {
         int node;
         unsigned lane;
     };
     std::vector<std::size_t> place_;
-    std::vector<Lane> lane_of_place_, lane_of_node_;
-    /// Of mark(), kWide to a node: what all boxes under a lane carry.
-    std::vector<Marks> common_;
+    std::vector<Lane> lane_of_leaf_, lane_of_node_;
+    /// Of mark(): by place what its box carries, and kWide to a node what all boxes under a lane
+    /// do.
+    std::vector<Marks> own_, common_;
 };
 
 } // namespace vdb_shell

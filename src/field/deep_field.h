@@ -12,7 +12,8 @@ namespace vdb_shell
 class DeepField
 {
 public:
-    /// The precondition of mesh_to_narrow_band holds for the mesh, and `band` is its result.
+    /// The precondition of mesh_to_narrow_band holds for the mesh, and `band` is its result, or
+    /// that of a finer surface.
     DeepField(const TriangleMesh& mesh, const openvdb::FloatGrid& band)
         : mesh_(mesh), band_(band), voxel_(band.voxelSize()[0]), tree_(mesh, voxel_)
     {

@@ -5,7 +5,7 @@
 
 #include "growth/group_shares.h"
 
-#include <algorithm>
+#include "core/parallel_sort.h"
 
 namespace vdb_shell::growth
 {
@@ -22,8 +22,9 @@ std::vector<GroupShare> group_shares(const TriangleMesh& coarse,
                 shares.push_back(
                     {static_cast<int>(coarse.triangles[points[v].triangle][static_cast<int>(k)]),
                      static_cast<int>(v), points[v].weight[k]});
-    std::stable_sort(shares.begin(), shares.end(),
-                     [](const GroupShare& x, const GroupShare& y) { return x.group < y.group; });
+    parallel_sort(shares.begin(), shares.end(), [](const GroupShare& x, const GroupShare& y) {
+        return x.group != y.group ? x.group < y.group : x.vertex < y.vertex;
+    });
     return shares;
 }
 

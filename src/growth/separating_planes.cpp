@@ -295,8 +295,7 @@ void separate_triangles(GrowState& s, const std::vector<std::uint8_t>& inactive,
     take_snapshot(s, inactive, planes.faces);
     const FaceSnapshot& faces = planes.faces;
     const bool refit = update == TreeUpdate::refit && s.inner_tree.size() == faces.box.size();
-    const auto box_of = [&](std::size_t f) { return faces.box[f]; };
-    refit ? s.inner_tree.refit(box_of) : s.inner_tree.build(faces.box.size(), box_of);
+    refit ? s.inner_tree.refit(faces.box) : s.inner_tree.build(faces.box);
     // Ranges of groups are listed apart and joined in order, so the planes do not depend on
     // threads.
     planes.rounding_error = rounding_of_values(s);

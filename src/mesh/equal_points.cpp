@@ -8,7 +8,8 @@
 
 #include "mesh/equal_points.h"
 
-#include <algorithm>
+#include "core/parallel_sort.h"
+
 #include <numeric>
 #include <tuple>
 
@@ -24,8 +25,8 @@ std::vector<std::uint32_t> first_equal_point(const std::vector<openvdb::Vec3s>& 
     };
     std::vector<std::uint32_t> order(points.size()), first(points.size());
     std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    parallel_sort(order.begin(), order.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     for (std::size_t k = 0; k < order.size(); ++k) {
         const bool repeats = k > 0 && points[order[k]] == points[order[k - 1]];
         first[order[k]] = repeats ? first[order[k - 1]] : order[k];

@@ -15,6 +15,7 @@
 #include "step/thickness.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vdb_shell
@@ -128,6 +129,25 @@ std::vector<std::uint32_t> vertices_to_step(const SideJob& job)
                                              : vertices_of_coarsest(job.surface, job.start.levels);
 }
 
+/// The coarsest surface that is the same to voxels: the one that distances are measured to beyond
+/// the narrow band. A tree over ten million triangles takes longer than all that lines ask it.
+const TriangleMesh& surface_from_afar(const SideJob& job)
+{
+    // In the mean; distances are then off by a few hundredths of a voxel.
+    constexpr double kEdgeVoxels = 0.5;
+    const TriangleMesh* coarsest = &job.surface;
+    if (job.start.levels.empty())
+        return *coarsest;
+    // Of an equilateral triangle the area is sqrt(3) / 4 times its edge squared.
+    const double longest = kEdgeVoxels * job.level_set.voxelSize()[0],
+                 most_area = 0.25 * std::sqrt(3.0) * longest * longest,
+                 area = surface_area(job.surface.points, job.surface.triangles);
+    for (const Coarsened& level : job.start.levels)
+        if (area <= most_area * double(level.mesh.triangles.size()))
+            coarsest = &level.mesh;
+    return *coarsest;
+}
+
 SideResult build_side(const SideJob& job)
 {
     const ShellOptions& options = job.options;
@@ -139,10 +159,13 @@ SideResult build_side(const SideJob& job)
     job.clock.run(job.prefix + "line stepping", [&] {
         // A narrow band is read by the sparse stepper alone: the other one would take its inner rim
         // for the deepest that lines can go.
-        const auto step = job.sparse ? line_step_sparse : line_step;
         const std::vector<std::uint32_t> only = vertices_to_step(job);
-        lines.lengths = step(job.surface, job.level_set, lines.directions, options.line_step,
-                             job.thickness_grid, job.interrupter, &only);
+        lines.lengths =
+            job.sparse ? line_step_sparse(job.surface, job.level_set, lines.directions,
+                                          options.line_step, job.thickness_grid, job.interrupter,
+                                          &only, &surface_from_afar(job))
+                       : line_step(job.surface, job.level_set, lines.directions, options.line_step,
+                                   job.thickness_grid, job.interrupter, &only);
     });
     job.clock.run(job.prefix + "limits", [&] {
         apply_limits(lines.lengths,

@@ -239,11 +239,11 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
 LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid& narrow_band,
                              const Directions& directions, const LineStepOptions& options,
                              const openvdb::FloatGrid* thickness_grid, Interrupter* interrupter,
-                             const std::vector<std::uint32_t>* only)
+                             const std::vector<std::uint32_t>* only, const TriangleMesh* far)
 {
     const Job job{mesh, narrow_band, directions, options, thickness_grid, interrupter, only};
     return step_all(job, [&](const MarchRules& rules) {
-        const auto deep = std::make_shared<const DeepField>(mesh, narrow_band);
+        const auto deep = std::make_shared<const DeepField>(far ? *far : mesh, narrow_band);
         const SkipAhead skip(*deep, 2 * rules.search_depth);
         // A thread remembers the deep voxels that it has computed, from one block to the next. They
         // are a pure function of the mesh, so this saves time and changes no length.

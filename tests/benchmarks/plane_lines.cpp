@@ -120,8 +120,11 @@ Json lines_of(const Starts& starts, const openvdb::FloatGrid& level_set, bool sp
                                       ? compute_directions(starts.solid, level_set, source)
                                       : directions_along(starts.solid, starts.normals);
     const std::clock_t before = std::clock();
-    const LineLengths lines = (sparse ? line_step_sparse : line_step)(
-        starts.solid, level_set, directions, line_options(wanted), nullptr, nullptr, &starts.added);
+    const LineStepOptions options = line_options(wanted);
+    const LineLengths lines = sparse ? line_step_sparse(starts.solid, level_set, directions,
+                                                        options, nullptr, nullptr, &starts.added)
+                                     : line_step(starts.solid, level_set, directions, options,
+                                                 nullptr, nullptr, &starts.added);
     Json answer;
     answer["seconds"] = seconds_since(before);
     for (const std::uint32_t v : starts.added) {

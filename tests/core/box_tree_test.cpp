@@ -60,7 +60,7 @@ void expect_same_as_all_pairs(const BoxTree& tree, const std::vector<FloatBox>& 
 // Sizes around the leaves', and one that is built on several threads.
 TEST(BoxTree, FindsWhatAllPairsFind)
 {
-    for (const int count : {1, 2, 4, 5, 8, 9, 10, 11, 17, 100, 9001}) {
+    for (const int count : {1, 2, 4, 5, 6, 8, 9, 10, 11, 16, 17, 20, 21, 33, 63, 65, 100, 9001}) {
         const std::vector<FloatBox> boxes = random_boxes(count, 1);
         BoxTree tree;
         tree.build(boxes);
@@ -130,6 +130,50 @@ TEST(BoxTree, FindsBoxesWhereTheyHaveBeenPutOneByOne)
         tree.replace(i, later[i]);
     }
     expect_same_as_all_pairs(tree, boxes);
+}
+
+TEST(BoxTree, FindsBoxesByAllThatTheyHaveBeenWidenedBy)
+{
+    std::vector<FloatBox> boxes = random_boxes(700, 5);
+    const std::vector<FloatBox> more = random_boxes(700, 6);
+    BoxTree tree;
+    tree.build(boxes);
+    tree.index_parents();
+    for (std::size_t i = 0; i < boxes.size(); i += 7) {
+        boxes[i].add(more[i]);
+        tree.widen(i, more[i]);
+    }
+    expect_same_as_all_pairs(tree, boxes);
+}
+
+// Marks of boxes that lie together are passed over together, wherever they stand among the three.
+TEST(BoxTree, LeavesOutBoxesThatCarryAMark)
+{
+    for (const int count : {3, 21, 700}) {
+        const std::vector<FloatBox> boxes = random_boxes(count, 7);
+        std::vector<BoxTree::Marks> marks(boxes.size());
+        for (std::size_t i = 0; i < marks.size(); ++i) {
+            const auto half = std::uint32_t(boxes[i].lo[0] < 0.5F), tenth = std::uint32_t(i % 10);
+            marks[i] = {i % 2 == 0 ? half : tenth + 2, BoxTree::kNoMark,
+                        i % 2 == 0 ? tenth + 2 : half};
+        }
+        BoxTree tree;
+        tree.build(boxes);
+        tree.mark(marks);
+        const BoxTree::Marks unwanted{5, 0, BoxTree::kNoMark};
+        for (const FloatBox& query : boxes) {
+            std::vector<int> found, expected;
+            tree.for_each_overlap_without(unwanted, query, [&](int i) {
+                found.push_back(i);
+                return true;
+            });
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                if (boxes[i].overlaps(query) && !BoxTree::have_common(unwanted, marks[i]))
+                    expected.push_back(int(i));
+            std::sort(found.begin(), found.end());
+            EXPECT_EQ(found, expected);
+        }
+    }
 }
 
 TEST(BoxTree, FindsTheBoxesOnARayAndNoneBehindIt)

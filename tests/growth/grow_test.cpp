@@ -131,7 +131,8 @@ TEST(Grow, ThickestIsAsThickAsThreeTetsFromTheBeginning)
         const double three = fill_of(grown(case_of(mesh), options).shell);
         const GrowOptions thickest = test::by_method(Method::thickest);
         const GrowResult most = grown(case_of(mesh), thickest);
-        EXPECT_GE(fill_of(most.shell), three - 1e-6);
+        // Rounds end at .998, for whoever has come that far.
+        EXPECT_GE(fill_of(most.shell), std::min(three - 1e-6, 0.998));
         expect_sound(most, thickest);
         expect_embedded(most.shell);
     }
@@ -152,17 +153,18 @@ TEST(Grow, FillsAPlateOfNeedles)
     }
 }
 
-/// What comes over coarser surfaces loses most of what it has beside needles.
+/// What comes over coarser surfaces loses most of what it has beside needles: without mended lines
+/// these shells are .82, .59 and .66 full.
 TEST(Grow, BeginsALargePlateOfNeedlesFromMendedLines)
 {
-    const Case plate = case_of(test::needled_plate(25));
+    const Case plate = case_of(test::needled_plate(20));
     for (GrowOptions options : test::ways_to_grow()) {
         options.coarse_from = 100;
         options.schedule.multilevel.coarsest_triangles = 100;
         options.schedule.multilevel.most_coarsest_triangles = 200; // so that this is a large one
         ASSERT_FALSE(coarse_levels(plate.mesh, options).empty());
         const GrowResult full = grown(plate, options);
-        EXPECT_GE(fill_of(full.shell), 0.7);
+        EXPECT_GE(fill_of(full.shell), 0.9);
         expect_sound(full, options);
     }
 }

@@ -113,7 +113,7 @@ TEST_F(LengthenAgainInAPlate, PointsInEachOthersWayComeBackAsIfOneByOne)
         bool moves = false;
         for (double share = 1; share > 0.1 && !moves; share /= 2) {
             one_by_one.b[v] = growth::capped(one_by_one, v, here + share * (before[v] - here));
-            one_by_one.inner_tree.build(growth::inner_boxes(one_by_one));
+            growth::build_inner_tree(one_by_one);
             moves = growth::faces_valid(one_by_one, growth::faces_at(mesh_, v));
             barred += !moves;
         }

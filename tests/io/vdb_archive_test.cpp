@@ -31,7 +31,7 @@ std::string bytes_without_uuid(const fs::path& path)
     return bytes;
 }
 
-FloatGrid::Ptr named(FloatGrid::Ptr grid, const char* name)
+template <class Grid> Grid named(Grid grid, const char* name)
 {
     grid->setName(name);
     return grid;
@@ -80,7 +80,8 @@ openvdb::GridPtrVec grids_to_write()
             named(FloatGrid::create(1.0f), "empty"),
             points.points,
             points.prisms,
-            points.tets};
+            points.tets,
+            named(openvdb::points::PointDataGrid::create(), "no points")};
 }
 
 std::string openvdb_bytes(const openvdb::GridPtrVec& grids, const openvdb::MetaMap& metadata)

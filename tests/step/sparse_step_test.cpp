@@ -66,11 +66,13 @@ TEST(SparseStep, StepsFromTheVerticesAskedForAlone)
         deep.resolution = 96;
         const openvdb::FloatGrid::Ptr field =
             sparse ? stage.band : mesh_to_level_set(stage.mesh, deep);
-        const auto step = sparse ? line_step_sparse : line_step;
-        const LineLengths whole =
-            step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr, nullptr);
-        const LineLengths some =
-            step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr, &only);
+        const auto step = [&](const std::vector<std::uint32_t>* from) {
+            return sparse ? line_step_sparse(stage.mesh, *field, stage.directions, {}, nullptr,
+                                             nullptr, from)
+                          : line_step(stage.mesh, *field, stage.directions, {}, nullptr, nullptr,
+                                      from);
+        };
+        const LineLengths whole = step(nullptr), some = step(&only);
         for (std::uint32_t v = 0; v < stage.mesh.points.size(); ++v) {
             const bool listed = std::find(only.begin(), only.end(), v) != only.end();
             EXPECT_EQ(some.length[v], listed ? whole.length[v] : 0.0);
@@ -96,6 +98,31 @@ Differences differences(const std::vector<double>& a, const std::vector<double>&
         return {};
     std::sort(all.begin(), all.end());
     return {all[all.size() / 2], all.back()};
+}
+
+TEST(SparseStep, CoarserSurfaceIsTheSameFromAfar)
+{
+    // Edges of a fifth of a voxel, and of two fifths: half as many around and along.
+    const SparseStage stage = sparse_stage_of(test::torus(2.0, 0.8, 320, 160), 48);
+    const TriangleMesh far = test::torus(2.0, 0.8, 160, 80);
+    std::vector<std::uint32_t> only;
+    for (std::uint32_t v = 0; v < stage.mesh.points.size(); v += 101)
+        only.push_back(v);
+    const auto step = [&](const TriangleMesh* from_afar) {
+        return line_step_sparse(stage.mesh, *stage.band, stage.directions, {}, nullptr, nullptr,
+                                &only, from_afar);
+    };
+    const std::vector<double> near = step(nullptr).length, there = step(&far).length;
+    std::vector<std::uint8_t> stepped(near.size(), 0);
+    for (const std::uint32_t v : only) {
+        stepped[v] = 1;
+        EXPECT_GT(near[v], 0.5);
+    }
+    // Lengths are whole steps of half a voxel.
+    const Differences off = differences(near, there, stage.voxel, stepped);
+    EXPECT_EQ(off.median, 0.0);
+    EXPECT_LE(off.most, 0.501);
+    EXPECT_NE(near, there);
 }
 
 LineLengths dense_lengths(const SparseStage& stage, int resolution, StopTest test)

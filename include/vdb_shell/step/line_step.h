@@ -105,11 +105,14 @@ LineLengths line_step(const TriangleMesh& mesh, const openvdb::FloatGrid& level_
 /// The same lengths from a narrow band alone (mesh_to_narrow_band of this very mesh): voxels deeper
 /// than the band are computed where a line reads them, each minus its distance to the mesh, to a
 /// hundredth of a voxel; and where nearest points prove that the test holds, lines skip ahead.
-/// Guarantees and exceptions as above. Cost: a few nearest points and stencils for each line.
+/// Guarantees and exceptions as above. Cost: a tree over the triangles, and a few nearest points
+/// and stencils for each line. `far` (may be null, then the mesh): the surface that distances
+/// beyond the band are measured to, for lines of few vertices of a mesh of many triangles.
 LineLengths line_step_sparse(const TriangleMesh& mesh, const openvdb::FloatGrid& narrow_band,
                              const Directions& directions, const LineStepOptions& options,
                              const openvdb::FloatGrid* thickness_grid = nullptr,
                              Interrupter* interrupter = nullptr,
-                             const std::vector<std::uint32_t>* only = nullptr);
+                             const std::vector<std::uint32_t>* only = nullptr,
+                             const TriangleMesh* far = nullptr);
 
 } // namespace vdb_shell
