@@ -211,8 +211,8 @@ Parts float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
 
 /// What OpenVDB writes of points' voxels and attributes (openvdb/points/PointDataGrid.h): a number
 /// of passes, and these: sizes of voxels; attributes' names and types; for each attribute the sizes
-/// of its pages; the voxels; for each attribute its pages. A page is filled from leaf to leaf and
-/// goes over to the next attribute for none, so each pass can be written by itself.
+/// of its pages; the voxels; for each attribute its pages. A page holds values of many leaves and
+/// of one attribute, so each pass can be written by itself.
 class PointBuffers
 {
 public:
@@ -223,9 +223,12 @@ public:
         attributes_ = std::uint32_t(leaves_.front()->attributeSet().size());
     }
 
-    /// Passes for all leaves alike, which OpenVDB's own way of writing does not need.
-    static bool apply_to(const PointDataGrid& grid)
+    /// Whether these are points, and all leaves have the same attributes.
+    static bool apply_to(const GridBase& any)
     {
+        if (!any.isType<PointDataGrid>())
+            return false;
+        const auto& grid = static_cast<const PointDataGrid&>(any);
         const auto first = grid.constTree().cbeginLeaf();
         bool same = bool(first);
         for (auto leaf = first; leaf && same; ++leaf)
@@ -335,9 +338,9 @@ public:
             Stream all(*head.settings);
             grid.writeTopology(all.out);
             bytes.topology = all.bytes.take();
-            const auto* points = dynamic_cast<const PointDataGrid*>(&grid);
-            if (points && PointBuffers::apply_to(*points)) {
-                bytes.buffers = PointBuffers(*points, *all.settings).write();
+            if (PointBuffers::apply_to(grid)) {
+                bytes.buffers =
+                    PointBuffers(static_cast<const PointDataGrid&>(grid), *all.settings).write();
             } else {
                 grid.writeBuffers(all.out);
                 bytes.buffers = all.bytes.take();

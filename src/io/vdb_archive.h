@@ -28,10 +28,10 @@ struct VdbArchive {
 
 /// Writes what openvdb::io::File would write with Blosc and active masks, byte for byte but for the
 /// random UUID, on all threads: OpenVDB compresses leaf by leaf on one, and each leaf twice, the
-/// first time only to learn its size. Keeps compressed grids in memory until those before them are
-/// written, and lets go of a grid as soon as it is. Preconditions: grids are not null, their names
-/// are not empty and differ, and no two share a tree. Throws std::runtime_error with the system's
-/// reason when the file cannot be written.
+/// first time only to learn its size. Keeps two compressed grids in memory, one that is written and
+/// the next one, and lets go of a grid as soon as it is written. Preconditions: grids are not null,
+/// their names are not empty and differ, and no two share a tree. Throws std::runtime_error with
+/// the system's reason when the file cannot be written.
 VdbArchive write_vdb_archive(const std::filesystem::path& path, openvdb::GridPtrVec grids,
                              const openvdb::MetaMap& metadata);
 
