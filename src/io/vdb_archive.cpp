@@ -12,23 +12,21 @@
 
 #include "core/parallel.h"
 #include "core/point_grid_instances.h"
+#include "io/vdb_point_buffers.h"
 #include "vdb_shell/core/digest.h"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/io/GridDescriptor.h>
-#include <openvdb/points/PointDataGrid.h>
 #include <openvdb/tree/LeafManager.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <ostream>
 #include <stdexcept>
-#include <streambuf>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,87 +46,9 @@ using openvdb::points::PointDataGrid;
 using Leaf = FloatTree::LeafNodeType;
 using Leaves = openvdb::tree::LeafManager<const FloatTree>;
 
-/// Bytes of a file in the order in which they stand there.
-using Parts = std::vector<std::string>;
-
-std::int64_t size_of(const Parts& parts)
-{
-    std::int64_t size = 0;
-    for (const std::string& part : parts)
-        size += std::int64_t(part.size());
-    return size;
-}
-
-std::string joined(Parts&& parts)
-{
-    std::string all = parts.empty() ? std::string() : std::move(parts.front());
-    for (std::size_t i = 1; i < parts.size(); ++i)
-        all += parts[i];
-    return all;
-}
-
-void append(Parts&& added, Parts& parts)
-{
-    std::move(added.begin(), added.end(), std::back_inserter(parts));
-}
-
-/// What is written to it, in strings that can be taken: std::ostringstream gives copies only, and
-/// the grids of points of a million triangles have a hundred megabytes each. One string would be
-/// copied each time that it has to grow.
-class Bytes : public std::streambuf
-{
-public:
-    Parts take()
-    {
-        size_ = 0;
-        return std::exchange(parts_, {});
-    }
-
-private:
-    int_type overflow(int_type c) override
-    {
-        if (traits_type::eq_int_type(c, traits_type::eof()))
-            return traits_type::not_eof(c);
-        const char byte = traits_type::to_char_type(c);
-        xsputn(&byte, 1);
-        return c;
-    }
-    std::streamsize xsputn(const char* data, std::streamsize size) override
-    {
-        constexpr std::size_t kPart = std::size_t(1) << 20;
-        const auto count = std::size_t(size);
-        if (parts_.empty() || parts_.back().size() + count > kPart)
-            parts_.emplace_back();
-        parts_.back().append(data, count);
-        size_ += size;
-        return size;
-    }
-    /// Where the next byte goes; nothing can be written over.
-    pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override
-    {
-        return by == 0 && from != std::ios_base::beg ? pos_type(off_type(size_))
-                                                     : pos_type(off_type(-1));
-    }
-
-    Parts parts_;
-    std::streamsize size_ = 0;
-};
-
-/// A stream in memory that OpenVDB finds its settings on.
-struct Stream {
-    explicit Stream(const StreamMetadata& wanted)
-        : settings(std::make_shared<StreamMetadata>(wanted))
-    {
-        openvdb::io::setStreamMetadataPtr(out, settings);
-    }
-    Bytes bytes;
-    std::ostream out{&bytes};
-    StreamMetadata::Ptr settings;
-};
-
 /// A grid as it stands in the file, but for its descriptor.
 struct GridBytes {
-    Parts head, topology, buffers;
+    VdbParts head, topology, buffers;
 };
 
 /// How many bytes of a written leaf precede its compressed values: its mask, the flag that says
@@ -165,7 +85,7 @@ void write_leaf(std::ostream& out, const Leaf& leaf, const StreamMetadata& setti
 std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
                        const StreamMetadata& settings, DelayedLoadMetadata& sizes)
 {
-    Stream stream(settings);
+    VdbStream stream(settings);
     std::vector<std::size_t> starts;
     for (std::size_t i = begin; i < end; ++i) {
         starts.push_back(std::size_t(stream.out.tellp()));
@@ -187,8 +107,8 @@ std::string leaf_bytes(const Leaves& leaves, std::size_t begin, std::size_t end,
 }
 
 /// The buffers of all leaves in parts, in the order of the tree.
-Parts float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
-                    DelayedLoadMetadata& sizes)
+VdbParts float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
+                       DelayedLoadMetadata& sizes)
 {
     const Leaves leaves(grid.constTree());
     const std::size_t count = leaves.leafCount();
@@ -197,7 +117,7 @@ Parts float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
     constexpr std::size_t kLeavesInPart = 256;
     // Each part is compressed into a stream of its own; a leaf's bytes do not depend on the leaves
     // before it.
-    Parts parts((count + kLeavesInPart - 1) / kLeavesInPart);
+    VdbParts parts((count + kLeavesInPart - 1) / kLeavesInPart);
     for_each_index(
         parts.size(),
         [&](std::size_t i) {
@@ -208,91 +128,6 @@ Parts float_buffers(const FloatGrid& grid, const StreamMetadata& settings,
         1);
     return parts;
 }
-
-/// What OpenVDB writes of points' voxels and attributes (openvdb/points/PointDataGrid.h): a number
-/// of passes, and these: sizes of voxels; attributes' names and types; for each attribute the sizes
-/// of its pages; the voxels; for each attribute its pages. A page holds values of many leaves and
-/// of one attribute, so each pass can be written by itself.
-class PointBuffers
-{
-public:
-    PointBuffers(const PointDataGrid& grid, const StreamMetadata& settings)
-        : grid_(grid), settings_(settings)
-    {
-        grid.constTree().getNodes(leaves_);
-        attributes_ = std::uint32_t(leaves_.front()->attributeSet().size());
-    }
-
-    /// Whether these are points, and all leaves have the same attributes.
-    static bool apply_to(const GridBase& any)
-    {
-        if (!any.isType<PointDataGrid>())
-            return false;
-        const auto& grid = static_cast<const PointDataGrid&>(any);
-        const auto first = grid.constTree().cbeginLeaf();
-        bool same = bool(first);
-        for (auto leaf = first; leaf && same; ++leaf)
-            same = leaf->attributeSet().descriptorPtr() == first->attributeSet().descriptorPtr();
-        return same;
-    }
-
-    Parts write() const
-    {
-        std::vector<Parts> parts(2 * attributes_ + 2);
-        // The pages first, which take the longest.
-        for_each_index(
-            parts.size(),
-            [&](std::size_t i) {
-                const std::size_t place = parts.size() - 1 - i;
-                parts[place] = part(std::uint32_t(place));
-            },
-            1);
-        Parts all;
-        for (Parts& part : parts)
-            append(std::move(part), all);
-        return all;
-    }
-
-private:
-    Parts part(std::uint32_t place) const
-    {
-        Stream stream(settings_);
-        const std::uint32_t voxels = 1 + attributes_;
-        if (place == 0) {
-            const auto passes = std::uint16_t(leaves_.front()->buffers());
-            stream.out.write(reinterpret_cast<const char*>(&passes), sizeof passes);
-            add_pass(0, stream);
-            add_pass(1, stream);
-        } else if (place == voxels) {
-            add_pass(attributes_ + 2, stream);
-        } else {
-            add_pages(place < voxels ? place - 1 : place - voxels - 1, place < voxels, stream);
-        }
-        return stream.bytes.take();
-    }
-
-    void add_pass(std::uint32_t pass, Stream& stream) const
-    {
-        stream.settings->setPass(leaves_.front()->buffers() << 16U | pass);
-        grid_.constTree().writeBuffers(stream.out, grid_.saveFloatAsHalf());
-    }
-
-    void add_pages(std::uint32_t attribute, bool sizes, Stream& stream) const
-    {
-        openvdb::compression::PagedOutputStream pages;
-        pages.setOutputStream(stream.out);
-        pages.setSizeOnly(sizes);
-        for (const auto* leaf : leaves_)
-            leaf->attributeSet().getConst(attribute)->writePagedBuffers(pages,
-                                                                        /*outputTransient=*/false);
-        pages.flush();
-    }
-
-    const PointDataGrid& grid_;
-    const StreamMetadata& settings_;
-    std::vector<const PointDataGrid::TreeType::LeafNodeType*> leaves_;
-    std::uint32_t attributes_ = 0;
-};
 
 /// Gives access to the parts of OpenVDB's writer.
 class Archive : public openvdb::io::Archive
@@ -306,7 +141,7 @@ public:
 
     std::string head(const openvdb::MetaMap& metadata, std::size_t grids) const
     {
-        Stream stream{StreamMetadata()};
+        VdbStream stream{StreamMetadata()};
         writeHeader(stream.out, /*seekable=*/true);
         metadata.writeMeta(stream.out);
         const auto count = std::int32_t(grids);
@@ -319,7 +154,7 @@ public:
         StreamMetadata settings;
         settings.setHalfFloat(grid.saveFloatAsHalf());
         settings.gridMetadata() = static_cast<const openvdb::MetaMap&>(grid);
-        Stream head(settings);
+        VdbStream head(settings);
         setGridCompression(head.out, grid);
         GridBytes bytes;
         // The metadata that only the file has are added to a copy, which shares the tree with the
@@ -327,7 +162,7 @@ public:
         const GridBase::Ptr described = openvdb::ConstPtrCast<GridBase>(grid.copyGrid());
         if (grid.isType<FloatGrid>()) {
             // Writing the topology notes the background, which the buffers need.
-            Stream topology(*head.settings);
+            VdbStream topology(*head.settings);
             grid.writeTopology(topology.out);
             bytes.topology = topology.bytes.take();
             DelayedLoadMetadata sizes;
@@ -335,12 +170,12 @@ public:
                 float_buffers(static_cast<const FloatGrid&>(grid), *topology.settings, sizes);
             described->insertMeta(GridBase::META_FILE_DELAYED_LOAD, sizes);
         } else {
-            Stream all(*head.settings);
+            VdbStream all(*head.settings);
             grid.writeTopology(all.out);
             bytes.topology = all.bytes.take();
-            if (PointBuffers::apply_to(grid)) {
+            if (has_alike_leaves(grid)) {
                 bytes.buffers =
-                    PointBuffers(static_cast<const PointDataGrid&>(grid), *all.settings).write();
+                    point_buffers(static_cast<const PointDataGrid&>(grid), *all.settings);
             } else {
                 grid.writeBuffers(all.out);
                 bytes.buffers = all.bytes.take();
@@ -358,9 +193,9 @@ public:
 };
 
 /// The descriptor of a grid that stands at a place of the file.
-Parts descriptor_bytes(std::int64_t place, const GridBase& grid, const GridBytes& bytes)
+VdbParts descriptor_bytes(std::int64_t place, const GridBase& grid, const GridBytes& bytes)
 {
-    Stream stream{StreamMetadata()};
+    VdbStream stream{StreamMetadata()};
     openvdb::io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
     descriptor.writeHeader(stream.out);
     // The grid begins behind its three positions, which are written before it.
@@ -375,7 +210,7 @@ Parts descriptor_bytes(std::int64_t place, const GridBase& grid, const GridBytes
 VdbArchive::Grid write_grid(std::ostream& out, const GridBase& grid, const GridBytes& bytes)
 {
     Digest digest;
-    const auto write = [&](const Parts& parts) {
+    const auto write = [&](const VdbParts& parts) {
         for (const std::string& part : parts) {
             digest.add(part.data(), part.size());
             out.write(part.data(), std::streamsize(part.size()));
