@@ -21,7 +21,6 @@ namespace vdb_shell
 namespace
 {
 
-constexpr int kLeaf = 4; ///< boxes of one at most
 // Below this many boxes a second thread costs more than it saves.
 constexpr int kParallel = 512;
 // Boxes of a subtree whose nodes one thread makes: a tenth of a millisecond's work.
@@ -37,11 +36,6 @@ RawVector<BoxTree::Item> BoxTree::items_for(std::size_t count)
     item_.resize(count);
     leaves_.resize((count + kWide - 1) / kWide);
     return RawVector<Item>(count);
-}
-
-void BoxTree::split_all(RawVector<Item>& items)
-{
-    split(items, 0, static_cast<int>(items.size()));
 }
 
 /// Where a range of more than kLeaf boxes is split: by number alone, so the shape of the tree

@@ -38,7 +38,7 @@ public:
                 items[i] = {{sum[0], sum[1], sum[2]}, static_cast<int>(i)};
             },
             kGrain);
-        split_all(items);
+        split(items, 0, static_cast<int>(count));
         for_each_index(
             leaves_.size(),
             [&](std::size_t leaf) {
@@ -249,11 +249,11 @@ private:
     // The tree is split at medians, twice a node, so its depth stays below 17.
     static constexpr int kStack = 64;
     static constexpr std::size_t kGroup = 16;
+    static constexpr int kLeaf = kWide; ///< boxes of a leaf at most
     // Boxes that one thread takes at a time: some microseconds' work.
     static constexpr std::size_t kGrain = 1024;
 
     RawVector<Item> items_for(std::size_t count);
-    static void split_all(RawVector<Item>& items);
     static int middle_of(int begin, int end);
     class NodeCounts;
     static void split(RawVector<Item>& items, int begin, int end);

@@ -44,6 +44,11 @@ std::vector<int> first_of_each_component(const Connectivity& c)
     return witness;
 }
 
+FloatBox inner_box(const GrowState& s, std::size_t f)
+{
+    return float_box_of(inner_corners(s, static_cast<int>(f)));
+}
+
 double longest_finite(const std::vector<double>& lengths)
 {
     double longest = 0;
@@ -151,14 +156,14 @@ bool bounds_thickness(const std::vector<double>& cap)
     return std::any_of(cap.begin(), cap.end(), [](double c) { return c > 0 && std::isfinite(c); });
 }
 
-FloatBox inner_box(const GrowState& s, std::size_t f)
-{
-    return float_box_of(inner_corners(s, static_cast<int>(f)));
-}
-
 void build_inner_tree(GrowState& s)
 {
     s.inner_tree.build(s.mesh->faces.size(), [&](std::size_t f) { return inner_box(s, f); });
+}
+
+void refit_inner_tree(GrowState& s, const std::vector<std::uint8_t>& changed)
+{
+    s.inner_tree.refit([&](std::size_t f) { return inner_box(s, f); }, changed);
 }
 
 Box box_of_star(const GrowState& s, int v, const Vec3d& x)

@@ -122,10 +122,10 @@ double fill_of(const GrowState& s);
 /// Whether one of these is the user's thickness: neither infinite nor the 0 of a core's vertices.
 bool bounds_thickness(const std::vector<double>& cap);
 
-/// The box of a face's inner triangle as it is.
-FloatBox inner_box(const GrowState& s, std::size_t face);
-/// Over these boxes.
+/// The tree over the inner triangles as they are, anew or in its old shape; the latter where
+/// `changed` says, empty: all.
 void build_inner_tree(GrowState& s);
+void refit_inner_tree(GrowState& s, const std::vector<std::uint8_t>& changed = {});
 /// The box of the inner triangles around v, with b_v = x.
 Box box_of_star(const GrowState& s, int v, const Vec3d& x);
 

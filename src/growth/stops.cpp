@@ -69,7 +69,7 @@ StopReason reason_of_step(const GrowState& s, int v, double step, bool in_crowd,
 std::vector<StopReason> probe_stops(GrowState& s)
 {
     const double step = s.schedule.stops.step * s.diagonal;
-    s.inner_tree.refit([&](std::size_t f) { return inner_box(s, f); });
+    refit_inner_tree(s);
     std::vector<StopReason> stop = plain_stops(s);
     std::vector<std::uint8_t> in_crowd(s.b.size());
     leave_out_crowds(s, in_crowd);

@@ -191,10 +191,7 @@ template <class Moved> std::vector<int> witnesses_of(const GrowState& s, const M
 std::vector<std::uint8_t> violating_faces(GrowState& s, const std::vector<std::uint8_t>& changed,
                                           bool first)
 {
-    if (first)
-        build_inner_tree(s);
-    else
-        s.inner_tree.refit([&](std::size_t f) { return inner_box(s, f); }, changed);
+    first ? build_inner_tree(s) : refit_inner_tree(s, changed);
     Marks bad(changed.size());
     for_each_index(bad.size(), [&](std::size_t i) {
         const int f = static_cast<int>(i);

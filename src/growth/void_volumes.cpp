@@ -60,8 +60,7 @@ std::vector<double> void_volumes(const PrismShell& shell)
 {
     const TriangleMesh inner = inner_surface(shell);
     BoxTree tree;
-    tree.build(inner.triangles.size(),
-               [&](std::size_t t) { return triangle_box(inner.points, inner.triangles[t]); });
+    tree.build(triangle_boxes(inner.points, inner.triangles));
     const double longest = diagonal_of(bounds_of(inner.points));
     std::vector<double> volumes(inner.triangles.size());
     for_each_index(volumes.size(), [&](std::size_t t) {

@@ -46,6 +46,22 @@ using openvdb::points::PointDataGrid;
 using Leaf = FloatTree::LeafNodeType;
 using Leaves = openvdb::tree::LeafManager<const FloatTree>;
 
+std::int64_t size_of(const VdbParts& parts)
+{
+    std::int64_t size = 0;
+    for (const std::string& part : parts)
+        size += std::int64_t(part.size());
+    return size;
+}
+
+std::string joined(VdbParts&& parts)
+{
+    std::string all = parts.empty() ? std::string() : std::move(parts.front());
+    for (std::size_t i = 1; i < parts.size(); ++i)
+        all += parts[i];
+    return all;
+}
+
 /// A grid as it stands in the file, but for its descriptor.
 struct GridBytes {
     VdbParts head, topology, buffers;

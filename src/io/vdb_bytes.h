@@ -4,8 +4,6 @@
 #include <openvdb/io/io.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <iterator>
 #include <memory>
 #include <ostream>
 #include <streambuf>
@@ -18,27 +16,6 @@ namespace vdb_shell
 
 /// Bytes of a file in the order in which they stand there.
 using VdbParts = std::vector<std::string>;
-
-inline std::int64_t size_of(const VdbParts& parts)
-{
-    std::int64_t size = 0;
-    for (const std::string& part : parts)
-        size += std::int64_t(part.size());
-    return size;
-}
-
-inline std::string joined(VdbParts&& parts)
-{
-    std::string all = parts.empty() ? std::string() : std::move(parts.front());
-    for (std::size_t i = 1; i < parts.size(); ++i)
-        all += parts[i];
-    return all;
-}
-
-inline void append(VdbParts&& added, VdbParts& parts)
-{
-    std::move(added.begin(), added.end(), std::back_inserter(parts));
-}
 
 /// What is written to it, in strings that can be taken: std::ostringstream gives copies only, and
 /// the grids of points of a million triangles have a hundred megabytes each. One string would be

@@ -12,6 +12,9 @@
 
 #include <openvdb/points/StreamCompression.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace vdb_shell
 {
 namespace
@@ -43,7 +46,7 @@ public:
             1);
         VdbParts all;
         for (VdbParts& part : parts)
-            append(std::move(part), all);
+            std::move(part.begin(), part.end(), std::back_inserter(all));
         return all;
     }
 

@@ -41,8 +41,7 @@ class Sight
 public:
     explicit Sight(const TriangleMesh& inner) : inner_(inner)
     {
-        tree_.build(inner.triangles.size(),
-                    [&](std::size_t t) { return triangle_box(inner.points, inner.triangles[t]); });
+        tree_.build(triangle_boxes(inner.points, inner.triangles));
     }
     bool blocked(const Vec3s& from, const Vec3s& to) const
     {

@@ -13,6 +13,7 @@
 
 #include "core/parallel.h"
 #include "core/parallel_sort.h"
+#include "core/propose_in_blocks.h"
 #include "mesh/nearest_on_triangle.h"
 #include "mesh/topology.h"
 #include "mesh/triangle_corners.h"
@@ -75,14 +76,19 @@ public:
 
     void run()
     {
-        while (triangles_.size() > limits_.fewest_triangles && round()) {
+        const auto has_more = [&] { return triangles_.size() > limits_.fewest_triangles; };
+        bool more = has_more();
+        while (more) {
+            more = round() && has_more();
+            if (more)
+                around_ = triangles_around_vertices(points_.size(), triangles_);
         }
     }
 
     const std::vector<Vec3I>& triangles() const { return triangles_; }
 
 private:
-    /// Those of the triangles around it.
+    /// Adds the planes of the triangles around a vertex to its quadric.
     void add_planes(std::size_t v)
     {
         for (const std::uint32_t triangle : around_.around(v)) {
@@ -127,7 +133,7 @@ private:
         for_each_range(points_.size(), [&](std::size_t begin, std::size_t end) {
             Scratch scratch;
             for (std::size_t v = begin; v < end; ++v)
-                if (touched_[v] || touched_[best_[v].onto])
+                if (is_touched(static_cast<std::uint32_t>(v)))
                     best_[v] = best_collapse(static_cast<std::uint32_t>(v), scratch);
         });
         std::fill(touched_.begin(), touched_.end(), 0);
@@ -135,47 +141,47 @@ private:
         const std::size_t done =
             collapse_in_order(cheapest(), (triangles_.size() - limits_.fewest_triangles + 1) / 2);
         drop_collapsed();
-        around_ = triangles_around_vertices(points_.size(), triangles_);
         return done > 0;
     }
 
-    /// Does as many of these as are wanted, but for those that touch one done before; how many. Of
-    /// a block, one thread chooses, all list what a collapse would touch and do those that are
-    /// chosen: these have no triangle and no target in common.
+    /// Does as many of these as are wanted, but for those that touch one done before; how many. All
+    /// threads list what the collapses of a block would touch, one chooses, and all do what is
+    /// chosen: that has no triangle and no target in common.
     std::size_t collapse_in_order(const std::vector<std::uint32_t>& order, std::size_t wanted)
     {
         constexpr std::size_t kBlock = 4096;
         std::vector<std::vector<std::uint32_t>> stars(std::min(kBlock, order.size()));
         std::vector<std::uint32_t> chosen;
         std::size_t done = 0;
-        for (std::size_t first = 0; first < order.size() && done < wanted; first += kBlock) {
-            const std::size_t size = std::min(kBlock, order.size() - first);
-            for_each_index(size, [&](std::size_t i) { list_touched(order[first + i], stars[i]); });
-            chosen.clear();
-            for (std::size_t i = 0; i < size && done < wanted; ++i) {
-                const std::uint32_t v = order[first + i];
-                if (stars[i].empty() || touched_[v] || touched_[best_[v].onto])
-                    continue;
-                for (const std::uint32_t w : stars[i])
-                    touched_[w] = 1;
-                chosen.push_back(v);
-                ++done;
-            }
+        const auto do_chosen = [&] {
             for_each_index(chosen.size(), [&](std::size_t i) { collapse(chosen[i]); });
-        }
+            chosen.clear();
+        };
+        propose_in_blocks(
+            order.size(), kBlock, do_chosen,
+            [&](std::size_t i, std::size_t slot) {
+                const std::uint32_t v = order[i];
+                stars[slot].clear();
+                if (done == wanted || is_touched(v))
+                    return;
+                for (const std::uint32_t t : around_.around(v))
+                    for (int k = 0; k < 3; ++k)
+                        stars[slot].push_back(triangles_[t][k]);
+            },
+            [&](std::size_t i, std::size_t slot) {
+                if (done == wanted || is_touched(order[i]))
+                    return;
+                for (const std::uint32_t w : stars[slot])
+                    touched_[w] = 1;
+                chosen.push_back(order[i]);
+                ++done;
+            });
+        do_chosen();
         return done;
     }
 
-    /// What a collapse would touch; nothing where it touches what has been touched already.
-    void list_touched(std::uint32_t v, std::vector<std::uint32_t>& star) const
-    {
-        star.clear();
-        if (touched_[v] || touched_[best_[v].onto])
-            return;
-        for (const std::uint32_t t : around_.around(v))
-            for (int k = 0; k < 3; ++k)
-                star.push_back(triangles_[t][k]);
-    }
+    /// Whether another collapse has touched what that of the vertex needs.
+    bool is_touched(std::uint32_t v) const { return touched_[v] || touched_[best_[v].onto]; }
 
     void drop_collapsed()
     {
@@ -399,7 +405,7 @@ private:
     std::vector<std::vector<std::uint32_t>> samples_of_;
     std::vector<Quadric> quadric_;
     std::vector<Collapse> best_;
-    std::vector<std::uint8_t> touched_; ///< in the round before
+    std::vector<std::uint8_t> touched_; ///< in this round, at its beginning in the one before
     VertexTriangles around_;
 };
 

@@ -118,32 +118,35 @@ TEST(BoxTree, LooksOnlyAtBoxesThatAreSaidToHaveChanged)
 }
 
 // Through the middle of each box, and away from it.
-TEST(BoxTree, FindsBoxesWhereTheyHaveBeenPutOneByOne)
+/// Changes every so-manyth box, in the tree and in the list.
+template <class Change> void expect_same_after_changes(std::size_t step, const Change& change)
 {
     std::vector<FloatBox> boxes = random_boxes(700, 5);
-    const std::vector<FloatBox> later = random_boxes(700, 6);
+    const std::vector<FloatBox> others = random_boxes(700, 6);
     BoxTree tree;
     tree.build(boxes);
     tree.index_parents();
-    for (std::size_t i = 0; i < boxes.size(); i += 3) {
-        boxes[i] = later[i];
-        tree.replace(i, later[i]);
-    }
+    for (std::size_t i = 0; i < boxes.size(); i += step)
+        change(tree, i, boxes[i], others[i]);
     expect_same_as_all_pairs(tree, boxes);
+}
+
+TEST(BoxTree, FindsBoxesWhereTheyHaveBeenPutOneByOne)
+{
+    expect_same_after_changes(
+        3, [](BoxTree& tree, std::size_t i, FloatBox& box, const FloatBox& there) {
+            box = there;
+            tree.replace(i, there);
+        });
 }
 
 TEST(BoxTree, FindsBoxesByAllThatTheyHaveBeenWidenedBy)
 {
-    std::vector<FloatBox> boxes = random_boxes(700, 5);
-    const std::vector<FloatBox> more = random_boxes(700, 6);
-    BoxTree tree;
-    tree.build(boxes);
-    tree.index_parents();
-    for (std::size_t i = 0; i < boxes.size(); i += 7) {
-        boxes[i].add(more[i]);
-        tree.widen(i, more[i]);
-    }
-    expect_same_as_all_pairs(tree, boxes);
+    expect_same_after_changes(
+        7, [](BoxTree& tree, std::size_t i, FloatBox& box, const FloatBox& more) {
+            box.add(more);
+            tree.widen(i, more);
+        });
 }
 
 // Marks of boxes that lie together are passed over together, wherever they stand among the three.
