@@ -15,6 +15,7 @@
 #include "vdb_shell/shell/shared_points.h"
 
 #include "core/bucket_sort.h"
+#include "core/parallel.h"
 #include "core/stage_stop.h"
 #include "shell/tet_faces.h"
 
@@ -110,6 +111,10 @@ class Offenders
 {
 public:
     void add(std::uint32_t owner) { owners_.push_back(owner); }
+    void add(const Offenders& others)
+    {
+        owners_.insert(owners_.end(), others.owners_.begin(), others.owners_.end());
+    }
     Defect<std::uint32_t> listed()
     {
         Defect<std::uint32_t> defect;
@@ -126,6 +131,14 @@ private:
 
 struct Findings {
     Offenders crowded, misoriented, stray, missing;
+
+    void add(const Findings& others)
+    {
+        crowded.add(others.crowded);
+        misoriented.add(others.misoriented);
+        stray.add(others.stray);
+        missing.add(others.missing);
+    }
 };
 
 /// Sides whose smallest corner is one of some points; `last` is the one after them.
@@ -141,25 +154,23 @@ struct SidesFrom {
     }
 };
 
-/// The sides that the surfaces should find a tet at. A triangle with three pinned corners has no
-/// prism: its outer and inner triangle are one, and no tet is expected there.
+/// The sides that the surfaces should find a tet at on triangle t. One with three pinned corners
+/// has no prism: its outer and inner triangle are one, and no tet is expected there.
 void add_surface_sides(const FreeSurfaces& free, const std::vector<std::uint32_t>& index,
-                       SidesFrom& part)
+                       std::uint32_t t, SidesFrom& part)
 {
     const auto outer = [&](std::uint32_t v) { return index[free.outer(v)]; };
     const auto inner = [&](std::uint32_t v) { return index[free.inner(v)]; };
-    for (std::uint32_t t = 0; t < free.triangles->size(); ++t) {
-        const Vec3I& v = (*free.triangles)[t];
-        if (free.pinned(v[0]) && free.pinned(v[1]) && free.pinned(v[2]))
-            continue;
-        // Each side is given as seen from outside of what owns it. The surfaces own what is not
-        // shell, so the outer triangle is turned round and the inner one is not.
-        part.add({outer(v[0]), outer(v[2]), outer(v[1])}, t, true);
-        const Vec3I below(inner(v[0]), inner(v[1]), inner(v[2]));
-        // Where vertices share their inner point, there is no inner triangle.
-        if (below[0] != below[1] && below[1] != below[2] && below[2] != below[0])
-            part.add(below, t, true);
-    }
+    const Vec3I& v = (*free.triangles)[t];
+    if (free.pinned(v[0]) && free.pinned(v[1]) && free.pinned(v[2]))
+        return;
+    // Each side is given as seen from outside of what owns it. The surfaces own what is not shell,
+    // so the outer triangle is turned round and the inner one is not.
+    part.add({outer(v[0]), outer(v[2]), outer(v[1])}, t, true);
+    const Vec3I below(inner(v[0]), inner(v[1]), inner(v[2]));
+    // Where vertices share their inner point, there is no inner triangle.
+    if (below[0] != below[1] && below[1] != below[2] && below[2] != below[0])
+        part.add(below, t, true);
 }
 
 /// Triangles of the free surfaces with the same corners that face each other bound nothing: either
@@ -194,28 +205,105 @@ void judge_face(FaceSide* first, FaceSide* last, bool tapered, Findings& finding
         findings.missing.add(side->owner);
 }
 
-void judge_part(const FreeSurfaces& free, const std::vector<std::uint32_t>& index,
-                const TetMesh& mesh, SidesFrom part, Findings& findings)
+// Tets, or sides of faces, that one thread takes at a time: a millisecond's work.
+constexpr std::size_t kInBlock = 1 << 15;
+
+std::size_t blocks_of(std::size_t count)
 {
-    for (std::uint32_t i = 0; i < mesh.tets.size(); ++i)
-        for (std::size_t corner = 0; corner < 4; ++corner)
-            part.add(tet_face(mesh.tets[i], corner), i, false);
-    add_surface_sides(free, index, part);
+    return (count + kInBlock - 1) / kInBlock;
+}
+
+/// The least and the greatest corner of the tets of each block.
+std::vector<std::array<std::uint32_t, 2>> corners_of_blocks(const TetMesh& mesh)
+{
+    std::vector<std::array<std::uint32_t, 2>> corners(blocks_of(mesh.tets.size()));
+    for_each_index(
+        corners.size(),
+        [&](std::size_t block) {
+            auto& [least, greatest] = corners[block] = {~0U, 0U};
+            const std::size_t end = std::min(mesh.tets.size(), (block + 1) * kInBlock);
+            for (std::size_t i = block * kInBlock; i < end; ++i)
+                for (int k = 0; k < 4; ++k) {
+                    least = std::min(least, mesh.tets[i][k]);
+                    greatest = std::max(greatest, mesh.tets[i][k]);
+                }
+        },
+        1);
+    return corners;
+}
+
+/// What parts of the sides are listed from.
+struct AllSides {
+    const FreeSurfaces& free;
+    const TetMesh& mesh;
+    std::vector<std::uint32_t> index;                        ///< index_points
+    std::vector<std::array<std::uint32_t, 2>> block_corners; ///< corners_of_blocks
+};
+
+/// All sides whose smallest corner is one of points first to last - 1, sorted.
+std::vector<FaceSide> sorted_sides(const AllSides& all, std::uint32_t first, std::uint32_t last)
+{
+    const std::size_t tets = all.mesh.tets.size(), triangles = all.free.triangles->size();
+    std::vector<std::vector<FaceSide>> found(blocks_of(std::max(tets, triangles)));
+    for_each_index(
+        found.size(),
+        [&](std::size_t block) {
+            SidesFrom part{first, last, {}};
+            const std::size_t begin = block * kInBlock, end = begin + kInBlock;
+            // Where near tets have near numbers most blocks have nothing in most parts.
+            const bool any = block < all.block_corners.size() &&
+                             all.block_corners[block][0] < last &&
+                             all.block_corners[block][1] >= first;
+            for (std::size_t i = begin; any && i < std::min(end, tets); ++i)
+                for (std::size_t corner = 0; corner < 4; ++corner)
+                    part.add(tet_face(all.mesh.tets[i], corner), static_cast<std::uint32_t>(i),
+                             false);
+            for (std::size_t t = begin; t < std::min(end, triangles); ++t)
+                add_surface_sides(all.free, all.index, static_cast<std::uint32_t>(t), part);
+            found[block] = std::move(part.sides);
+        },
+        1);
     stop_if_stage_wants();
-    const auto smallest_corner = [&](const FaceSide& side) { return side.corners[0] - part.first; };
-    std::vector<FaceSide> sides = bucket_sort<FaceSide>(
-        std::array{std::move(part.sides)}, part.last - part.first, smallest_corner, std::less<>());
-    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-        while (last < sides.size() && sides[last].corners == sides[first].corners)
-            ++last;
-        judge_face(sides.data() + first, sides.data() + last, free.tapered, findings);
-    }
+    return bucket_sort<FaceSide>(
+        found, last - first, [&](const FaceSide& side) { return side.corners[0] - first; },
+        std::less<>());
+}
+
+void judge_sides(std::vector<FaceSide> sides, bool tapered, Findings& findings)
+{
+    const auto begins_face = [&](std::size_t i) {
+        return i == 0 || sides[i].corners != sides[i - 1].corners;
+    };
+    const auto end_of_face = [&](std::size_t i, std::size_t end) {
+        while (i < end && !begins_face(i))
+            ++i;
+        return i;
+    };
+    // A block has the faces that begin in it.
+    std::vector<Findings> found(blocks_of(sides.size()));
+    std::vector<std::size_t> begins(found.size());
+    for_each_index(
+        found.size(),
+        [&](std::size_t block) { begins[block] = end_of_face(block * kInBlock, sides.size()); }, 1);
+    begins.push_back(sides.size());
+    for_each_index(
+        found.size(),
+        [&](std::size_t block) {
+            for (std::size_t i = begins[block], next = i; i < begins[block + 1]; i = next) {
+                // No farther, for the next block may turn its sides round already.
+                next = end_of_face(i + 1, begins[block + 1]);
+                judge_face(sides.data() + i, sides.data() + next, tapered, found[block]);
+            }
+        },
+        1);
+    for (const Findings& of_block : found)
+        findings.add(of_block);
 }
 
 Conformity judge(const FreeSurfaces& free, const TetMesh& mesh, std::size_t most_sides)
 {
     Findings findings;
-    const std::vector<std::uint32_t> index = index_points(free, mesh);
+    const AllSides all{free, mesh, index_points(free, mesh), corners_of_blocks(mesh)};
     const std::size_t sides = 4 * mesh.tets.size() + 2 * free.triangles->size(),
                       parts = 1 + sides / most_sides,
                       // Places without a point have numbers beyond all points.
@@ -224,10 +312,9 @@ Conformity judge(const FreeSurfaces& free, const TetMesh& mesh, std::size_t most
     for (std::size_t first = 0, last = 0; first < points; first = last) {
         // The last part has all numbers beyond the points too, of which hardly any are used.
         last = first + points_of_part < mesh.points.size() ? first + points_of_part : points;
-        SidesFrom part{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last), {}};
-        // Parts have about as many sides each, and a vector that grows is copied.
-        part.sides.reserve(sides / parts + sides / (8 * parts));
-        judge_part(free, index, mesh, std::move(part), findings);
+        judge_sides(
+            sorted_sides(all, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)),
+            free.tapered, findings);
     }
     return {findings.crowded.listed(), findings.misoriented.listed(), findings.stray.listed(),
             findings.missing.listed()};

@@ -63,16 +63,13 @@ std::vector<Pair> overlapping_pairs(const std::vector<FloatBox>& boxes, const Ke
             BoxTree::Near near;
             const std::size_t end = std::min(groups, (part + 1) * kGroupsInPart);
             for (std::size_t group = part * kGroupsInPart; group < end && !stop.wanted(); ++group)
-                tree.for_each_overlap_of(
-                    group, tree, near, [](int) { return true; },
-                    [&](int i, int j) {
-                        const auto low = static_cast<std::uint32_t>(i),
-                                   high = static_cast<std::uint32_t>(j);
-                        // Each pair is found from both of its boxes, and once is enough. What
-                        // `keep` rejects is dropped here, before it takes memory.
-                        if (low < high && keep(low, high))
-                            parts[part].push_back({low, high});
-                    });
+                tree.for_each_pair_of(group, near, [&](int i, int j) {
+                    const auto low = static_cast<std::uint32_t>(std::min(i, j)),
+                               high = static_cast<std::uint32_t>(std::max(i, j));
+                    // What `keep` rejects is dropped here, before it takes memory.
+                    if (keep(low, high))
+                        parts[part].push_back({low, high});
+                });
         },
         1);
     stop.throw_if_wanted();

@@ -145,7 +145,7 @@ void BoxTree::add_upper_node(std::size_t id, int begin, int end, NodeCounts& cou
     }
     upper_.push_back(id);
     Node& n = nodes_[id];
-    n = {FourBoxes::none(), {}, 0};
+    n = {FourBoxes::none(), {}, 0, end};
     std::size_t next = id + 1;
     for_each_child(begin, end, [&](int from, int to) {
         n.child[n.children++] = static_cast<int>(next);
@@ -162,7 +162,7 @@ int BoxTree::add_nodes(int begin, int end, std::size_t& next)
         return ~(begin / kLeaf);
     const auto id = static_cast<int>(next);
     Node& n = nodes_[next++];
-    n = {FourBoxes::none(), {}, 0};
+    n = {FourBoxes::none(), {}, 0, end};
     for_each_child(begin, end,
                    [&](int from, int to) { n.child[n.children++] = add_nodes(from, to, next); });
     return id;
@@ -264,18 +264,22 @@ void BoxTree::Near::add(const FloatBox& box, int item)
     item_.push_back(item);
 }
 
-bool BoxTree::list_overlaps(const FloatBox& box, Near& near, std::size_t most) const
+bool BoxTree::list_overlaps_from(std::size_t place, const FloatBox& box, Near& near,
+                                 std::size_t most) const
 {
     near.clear();
     const FourBoxes wanted = FourBoxes::same(box);
     bool all = true;
-    descend([&](int, const FourBoxes& boxes) { return boxes.overlaps(wanted); },
-            [&](std::size_t at) {
-                all = near.size() < most;
-                if (all)
-                    near.add(box_at(at), item_[at]);
-                return all;
-            });
+    descend(
+        [&](int four, const FourBoxes& boxes) {
+            return end_of(four) > place ? boxes.overlaps(wanted) : 0U;
+        },
+        [&](std::size_t at) {
+            all = near.size() < most;
+            if (all)
+                near.add(box_at(at), item_[at]);
+            return all;
+        });
     return all;
 }
 

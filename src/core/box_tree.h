@@ -173,13 +173,15 @@ public:
         void clear() { block_.clear(), item_.clear(); }
         std::size_t size() const { return item_.size(); }
         void add(const FloatBox& box, int item);
-        /// Calls visit(item) for each box that overlaps this one, until one returns true; whether
-        /// one did.
-        template <class Visit> bool any_overlap(const FloatBox& box, Visit&& visit) const
+        /// Calls visit(item) for each box that overlaps this one, but for the first `skipped`,
+        /// until one returns true; whether one did.
+        template <class Visit>
+        bool any_overlap(const FloatBox& box, Visit&& visit, std::size_t skipped = 0) const
         {
             const FourBoxes wanted = FourBoxes::same(box);
-            for (std::size_t b = 0; b < block_.size(); ++b)
-                for (unsigned hits = block_[b].overlaps(wanted); hits != 0; hits &= hits - 1)
+            unsigned left = ~0U << skipped % kWide;
+            for (std::size_t b = skipped / kWide; b < block_.size(); ++b, left = ~0U)
+                for (unsigned hits = block_[b].overlaps(wanted) & left; hits != 0; hits &= hits - 1)
                     if (visit(item_[kWide * b + std::size_t(__builtin_ctz(hits))]))
                         return true;
             return false;
@@ -189,9 +191,12 @@ public:
         std::vector<FourBoxes> block_;
         std::vector<int> item_;
     };
-    /// The boxes that overlap this one, for those who go on to look at parts of it. False if there
-    /// are more than `most`, and then not all are listed.
-    bool list_overlaps(const FloatBox& box, Near& near, std::size_t most = SIZE_MAX) const;
+    /// The boxes that overlap this one, for those who go on to look at parts of it, in the order of
+    /// the leaves. False if there are more than `most`, and then not all are listed.
+    bool list_overlaps(const FloatBox& box, Near& near, std::size_t most = SIZE_MAX) const
+    {
+        return list_overlaps_from(0, box, near, most);
+    }
     /// Calls visit(i, j) for every box i of the group with wanted(i) and every box j of `other`
     /// that overlaps it; `other` may be this tree. False, and nothing is called, where more than
     /// `most` boxes overlap the one around the group.
@@ -221,6 +226,35 @@ public:
                 });
         return true;
     }
+    /// Calls visit(i, j) for every box i of the group and every box j that overlaps it and stands
+    /// behind it in the tree: over all groups each pair comes once, for half the work. False, and
+    /// nothing is called, where more than `most` boxes overlap the one around the group, unless
+    /// nearly all of them stand before it.
+    template <class Visit>
+    bool for_each_pair_of(std::size_t group, Near& near, Visit&& visit,
+                          std::size_t most = SIZE_MAX) const
+    {
+        const std::size_t begin = group * kGroup, end = std::min(item_.size(), begin + kGroup);
+        FloatBox all = box_at(begin);
+        for (std::size_t i = begin + 1; i < end; ++i)
+            all.add(box_at(i));
+        // Most groups of a good surface have fewer from here on; of the others all are counted, for
+        // the last ones of a crowd have few behind them.
+        const std::size_t few = most / 16;
+        if (!list_overlaps_from(begin, all, near, most) ||
+            (near.size() > few && !overlap_at_most(all, most)))
+            return false;
+        for (std::size_t i = begin; i < end; ++i)
+            near.any_overlap(
+                box_at(i),
+                [&](int j) {
+                    visit(item_[i], j);
+                    return false;
+                },
+                // The group itself is listed first.
+                i - begin + 1);
+        return true;
+    }
     /// Calls visit(i) for the boxes of a group.
     template <class Visit> void for_each_of(std::size_t group, Visit&& visit) const
     {
@@ -234,6 +268,7 @@ private:
         FourBoxes box;
         std::array<int, kWide> child;
         unsigned children;
+        int end; ///< the place behind its last box
     };
     /// The node over a range of boxes, and all below it, which stand behind it.
     struct Subtree {
@@ -276,6 +311,20 @@ private:
     {
         leaves_[place / kWide].set(place % kWide, box);
     }
+    /// The place behind the last box of a node or leaf; of the last leaf a place that is not used.
+    std::size_t end_of(int four) const
+    {
+        return four >= 0 ? std::size_t(nodes_[std::size_t(four)].end) : kWide * (leaf_of(four) + 1);
+    }
+    bool overlap_at_most(const FloatBox& box, std::size_t most) const
+    {
+        std::size_t met = 0;
+        for_each_overlap_while(box, [&](int) { return ++met <= most; });
+        return met <= most;
+    }
+    /// list_overlaps of the boxes from a place on with which a leaf begins.
+    bool list_overlaps_from(std::size_t place, const FloatBox& box, Near& near,
+                            std::size_t most) const;
     FloatBox around_leaf(std::size_t leaf) const;
     static FloatBox around(const Node& node);
     /// Where a walk begins: nothing where there are no boxes.

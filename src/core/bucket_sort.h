@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/key_ranges.h"
 #include "core/parallel.h"
 
 #include <algorithm>
@@ -23,15 +24,24 @@ std::vector<Item> bucket_sort(const Parts& parts, std::size_t keys, const Key& k
 {
     // By key first the numbers, then the starts, then the ends.
     std::vector<std::size_t> ends(keys + 1, 0);
+    std::size_t count = 0;
     for (const std::vector<Item>& part : parts)
-        for (const Item& item : part)
-            ++ends[std::size_t(key(item)) + 1];
+        count += part.size();
+    /// Calls take(key, item) for all items, in their order for each key.
+    const auto for_each_item = [&](const auto& take) {
+        for_each_key_range(keys, count, [&](std::size_t first, std::size_t last) {
+            for (const std::vector<Item>& part : parts)
+                for (const Item& item : part)
+                    // Keys before the first wrap around.
+                    if (const auto k = std::size_t(key(item)); k - first < last - first)
+                        take(k, item);
+        });
+    };
+    for_each_item([&](std::size_t k, const Item&) { ++ends[k + 1]; });
     for (std::size_t k = 0; k < keys; ++k)
         ends[k + 1] += ends[k];
-    std::vector<Item> items(ends.back());
-    for (const std::vector<Item>& part : parts)
-        for (const Item& item : part)
-            items[ends[std::size_t(key(item))]++] = item;
+    std::vector<Item> items(count);
+    for_each_item([&](std::size_t k, const Item& item) { items[ends[k]++] = item; });
     for_each_index(keys, [&](std::size_t k) {
         const auto begin = items.begin() + std::ptrdiff_t(k == 0 ? 0 : ends[k - 1]);
         const auto end = items.begin() + std::ptrdiff_t(ends[k]);

@@ -186,18 +186,14 @@ private:
     bool look_at_group(const BoxTree& tree, std::size_t group, BoxTree::Near& near,
                        std::vector<Pair>& pairs) const
     {
-        return tree.for_each_overlap_of(
-            group, tree, near, [](int) { return true; },
-            [&](int i, int j) {
-                // Each pair is found from both of its boxes, and once is enough. What `keep`
-                // rejects is dropped here, before it takes memory.
-                keep_if_larger(asked_[std::size_t(i)], asked_[std::size_t(j)], pairs);
-            },
+        return tree.for_each_pair_of(
+            group, near,
+            [&](int i, int j) { keep_pair(asked_[std::size_t(i)], asked_[std::size_t(j)], pairs); },
             kMostNearGroup);
     }
 
     /// The pairs of triangles of groups that were not looked at: with the other triangles, of which
-    /// they missed the larger ones, and among themselves. Lets go of the tree of all.
+    /// they missed those behind them in the tree, and among themselves. Lets go of the tree of all.
     void look_at_crowded(BoxTree tree, const std::vector<char>& crowded)
     {
         if (std::find(crowded.begin(), crowded.end(), 1) == crowded.end())
@@ -220,7 +216,7 @@ private:
             tree.for_each_overlap_while(box_of(s), [&](int place) {
                 if (crowded[std::size_t(place)])
                     return ++met <= kMostNearGroup;
-                keep_if_larger(s, asked_[std::size_t(place)], found[p]);
+                keep_pair(s, asked_[std::size_t(place)], found[p]);
                 return !stop_.wanted();
             });
             many[p] = met > kMostNearGroup;
@@ -253,16 +249,18 @@ private:
             const std::uint32_t s = asked_[places[p]];
             found[p].clear();
             tree.for_each_overlap_while(box_of(s), [&](int other) {
-                keep_if_larger(s, others[std::size_t(other)], found[p]);
+                keep_pair(s, others[std::size_t(other)], found[p]);
                 return !stop_.wanted();
             });
         });
     }
 
-    void keep_if_larger(std::uint32_t s, std::uint32_t t, std::vector<Pair>& pairs) const
+    /// What `keep` rejects is dropped here, before it takes memory.
+    void keep_pair(std::uint32_t s, std::uint32_t t, std::vector<Pair>& pairs) const
     {
-        if (s < t && !meet_in_a_crowd(s, t) && keep_(s, t))
-            pairs.push_back({s, t});
+        const auto [low, high] = std::minmax(s, t);
+        if (!meet_in_a_crowd(low, high) && keep_(low, high))
+            pairs.push_back({low, high});
     }
 
     void take(std::vector<std::vector<Pair>>& found)

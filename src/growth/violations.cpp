@@ -94,8 +94,9 @@ public:
         }
     }
 
-    /// Marks the faces of one range of groups of the inner tree that touch others.
-    void mark_groups(std::size_t begin, std::size_t end) const
+    /// Marks the faces of one range of groups of the inner tree that touch others. `all`: most
+    /// faces are tested, so that each pair is better looked for from one of its faces alone.
+    void mark_groups(std::size_t begin, std::size_t end, bool all) const
     {
         BoxTree::Near near;
         // Pairs come face by face, so the plane of the first one is computed once for all of its
@@ -107,16 +108,26 @@ public:
             return *triangle;
         };
         const auto tested = [&](int f) { return tested_[f] != 0; };
+        const auto mark_pair = [&](int f, int g) {
+            // Only if it could mark one of them.
+            if ((bad_[f] && bad_[g]) || share_embedded_fan(f, g) || !of(f).meets_inner(g))
+                return;
+            mark(bad_[f]);
+            mark(bad_[g]);
+        };
         for (std::size_t group = begin; group < end; ++group) {
-            s_.inner_tree.for_each_overlap_of(
-                group, s_.inner_tree, near, tested, [&](int f, int g) {
-                    // Each pair once where both are tested, and only if it could mark one of them.
-                    if (f == g || (tested(g) && g < f) || (bad_[f] && bad_[g]) ||
-                        share_embedded_fan(f, g) || !of(f).meets_inner(g))
-                        return;
-                    mark(bad_[f]);
-                    mark(bad_[g]);
+            if (all)
+                s_.inner_tree.for_each_pair_of(group, near, [&](int f, int g) {
+                    if (tested(f) || tested(g))
+                        mark_pair(f, g);
                 });
+            else
+                s_.inner_tree.for_each_overlap_of(group, s_.inner_tree, near, tested,
+                                                  [&](int f, int g) {
+                                                      // Each pair once where both are tested.
+                                                      if (f != g && (!tested(g) || f < g))
+                                                          mark_pair(f, g);
+                                                  });
             s_.inner_tree.for_each_overlap_of(group, s_.outer_tree, near, tested,
                                               [&](int f, int g) {
                                                   if (!bad_[f] && of(f).meets_outer(g))
@@ -150,9 +161,13 @@ void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed,
     const ContactSearch search(s, tested, changed, bad);
     if (s.mesh->has_crowds)
         return search.mark_in_crowds();
+    const auto asked = static_cast<std::size_t>(std::count(tested.begin(), tested.end(), 1));
     for_each_range(
         s.inner_tree.groups(),
-        [&](std::size_t begin, std::size_t end) { search.mark_groups(begin, end); }, 4);
+        [&](std::size_t begin, std::size_t end) {
+            search.mark_groups(begin, end, 2 * asked > tested.size());
+        },
+        4);
 }
 
 /// By face, whether one of these witnesses may have come to lie in its prism.

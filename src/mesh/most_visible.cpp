@@ -132,11 +132,18 @@ std::vector<Vec3d> star_normals(const TriangleMesh& mesh, const VertexTriangles:
 namespace
 {
 
-/// The triangles at a vertex that have an area, as what they look like from it.
-std::vector<exact::Side> sides_at(const TriangleMesh& mesh, const VertexTriangles::Range& around,
-                                  std::uint32_t vertex)
-{
+/// A star's triangles as what they look like from its vertex, and their inward unit normals. Kept
+/// from vertex to vertex: most need no more memory than the one before.
+struct SeenStar {
     std::vector<exact::Side> sides;
+    std::vector<Vec3d> normals;
+};
+
+/// The triangles at a vertex that have an area.
+void list_sides(const TriangleMesh& mesh, const VertexTriangles::Range& around,
+                std::uint32_t vertex, std::vector<exact::Side>& sides)
+{
+    sides.clear();
     for (const std::uint32_t t : around) {
         const Vec3I& c = mesh.triangles[t];
         const int k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;
@@ -147,7 +154,6 @@ std::vector<exact::Side> sides_at(const TriangleMesh& mesh, const VertexTriangle
             !exact::collinear(mesh.points[vertex], p, q))
             sides.push_back({p, q});
     }
-    return sides;
 }
 
 Vec3d inward(const Vec3d& apex, const exact::Side& side)
@@ -165,18 +171,20 @@ bool surely_sees(const Vec3d& apex, const std::vector<exact::Side>& sides, const
 
 /// Two directions are tried in doubles: the mean of the normals, which is enough nearly
 /// everywhere, and the best one. Exact numbers decide where neither is sure.
-bool is_blind(const TriangleMesh& mesh, const VertexTriangles::Range& around, std::uint32_t vertex)
+bool is_blind(const TriangleMesh& mesh, const VertexTriangles::Range& around, std::uint32_t vertex,
+              SeenStar& star)
 {
-    const std::vector<exact::Side> sides = sides_at(mesh, around, vertex);
+    list_sides(mesh, around, vertex, star.sides);
     const Vec3d apex(mesh.points[vertex]);
-    std::vector<Vec3d> normals;
+    star.normals.clear();
     Vec3d mean(0.0);
-    for (const exact::Side& side : sides) {
-        normals.push_back(unit_vector(inward(apex, side)));
-        mean += normals.back();
+    for (const exact::Side& side : star.sides) {
+        star.normals.push_back(unit_vector(inward(apex, side)));
+        mean += star.normals.back();
     }
-    return !surely_sees(apex, sides, mean) && !surely_sees(apex, sides, most_visible(normals)) &&
-           !exact::a_direction_sees(mesh.points[vertex], sides);
+    return !surely_sees(apex, star.sides, mean) &&
+           !surely_sees(apex, star.sides, most_visible(star.normals)) &&
+           !exact::a_direction_sees(mesh.points[vertex], star.sides);
 }
 
 } // namespace
@@ -185,8 +193,10 @@ std::vector<std::uint32_t> blind_vertices(const TriangleMesh& mesh)
 {
     const VertexTriangles stars = triangles_around_vertices(mesh.points.size(), mesh.triangles);
     std::vector<char> blind(mesh.points.size());
-    for_each_index(blind.size(), [&](std::size_t v) {
-        blind[v] = is_blind(mesh, stars.around(v), static_cast<std::uint32_t>(v));
+    for_each_range(blind.size(), [&](std::size_t begin, std::size_t end) {
+        SeenStar star;
+        for (std::size_t v = begin; v < end; ++v)
+            blind[v] = is_blind(mesh, stars.around(v), static_cast<std::uint32_t>(v), star);
     });
     std::vector<std::uint32_t> list;
     for (std::uint32_t v = 0; v < blind.size(); ++v)

@@ -8,6 +8,7 @@
 
 #include "mesh/topology.h"
 
+#include "core/key_ranges.h"
 #include "core/parallel.h"
 #include "core/stage_stop.h"
 
@@ -25,18 +26,28 @@ VertexTriangles triangles_around_vertices(std::size_t vertex_count,
                                           const std::vector<openvdb::Vec3I>& triangles)
 {
     VertexTriangles result;
-    result.offset.assign(vertex_count + 1, 0);
-    for (const openvdb::Vec3I& t : triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            ++result.offset[t[corner] + 1];
-    for (std::size_t v = 0; v < vertex_count; ++v)
-        result.offset[v + 1] += result.offset[v];
-    result.triangle.resize(triangles.size() * 3);
-    // Triangles come in ascending order, so each vertex gets its list in ascending order.
-    std::vector<std::uint32_t> next(result.offset.begin(), result.offset.end() - 1);
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-        for (int corner = 0; corner < 3; ++corner)
-            result.triangle[next[triangles[t][corner]]++] = static_cast<std::uint32_t>(t);
+    std::vector<std::uint32_t>& offset = result.offset;
+    offset.assign(vertex_count + 1, 0);
+    const std::size_t corners = triangles.size() * 3;
+    for_each_key_range(vertex_count, corners, [&](std::size_t first, std::size_t last) {
+        for (const openvdb::Vec3I& t : triangles)
+            for (int corner = 0; corner < 3; ++corner)
+                // Vertices before the first wrap around.
+                if (t[corner] - first < last - first)
+                    ++offset[t[corner] + 1];
+    });
+    // Where each list begins, which filling it moves to its end: where the next one begins.
+    std::uint32_t begin = 0;
+    for (std::size_t v = 1; v <= vertex_count; ++v)
+        begin += std::exchange(offset[v], begin);
+    result.triangle.resize(corners);
+    for_each_key_range(vertex_count, corners, [&](std::size_t first, std::size_t last) {
+        // Triangles come in ascending order, so each vertex gets its list in ascending order.
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            for (int corner = 0; corner < 3; ++corner)
+                if (const std::uint32_t v = triangles[t][corner]; v - first < last - first)
+                    result.triangle[offset[v + 1]++] = static_cast<std::uint32_t>(t);
+    });
     return result;
 }
 

@@ -15,7 +15,8 @@ namespace vdb_shell
 /// Triangles around each vertex in ascending order: those of vertex v stand at [offset[v],
 /// offset[v+1]).
 struct VertexTriangles {
-    std::vector<std::uint32_t> offset, triangle;
+    std::vector<std::uint32_t> offset;
+    RawVector<std::uint32_t> triangle;
 
     struct Range {
         const std::uint32_t *first, *last;
@@ -34,7 +35,7 @@ VertexTriangles triangles_around_vertices(std::size_t vertex_count,
 /// The vertices around each one, in the order in which its triangles turn round it.
 struct Rims {
     VertexTriangles around;
-    std::vector<std::uint32_t> rim;   ///< in the places of around.triangle
+    RawVector<std::uint32_t> rim;     ///< in the places of around.triangle
     std::vector<std::uint8_t> closed; ///< by vertex: its triangles form one closed fan, else no rim
 
     VertexTriangles::Range of(std::size_t vertex) const

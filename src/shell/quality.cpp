@@ -11,10 +11,12 @@
 #include "vdb_shell/shell/quality.h"
 
 #include "core/parallel.h"
+#include "core/raw_vector.h"
 #include "shell/tet_faces.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -98,15 +100,6 @@ EdgeRange edge_range(const Corners& p)
     return {std::sqrt(squared.shortest), std::sqrt(squared.longest)};
 }
 
-/// A spread is of finite values.
-Spread spread_of_finite(std::vector<double> values)
-{
-    values.erase(std::remove_if(values.begin(), values.end(),
-                                [](double value) { return !std::isfinite(value); }),
-                 values.end());
-    return spread_of(std::move(values));
-}
-
 double height_ratio(const Corners& p, const std::array<Vec3d, 4>& normal, double longest_edge)
 {
     double largest_double_area = 0;
@@ -122,37 +115,45 @@ double height_ratio(const Corners& p, const std::array<Vec3d, 4>& normal, double
     return smallest_height / (longest_edge * kRegular);
 }
 
+/// Leaves the values in another order.
+Spread spread_between(double* begin, double* end)
+{
+    if (begin == end)
+        return {};
+    Spread spread;
+    spread.min = spread.max = *begin;
+    for (const double* value = begin; value != end; ++value) {
+        spread.mean += *value;
+        spread.min = std::min(spread.min, *value);
+        spread.max = std::max(spread.max, *value);
+    }
+    spread.mean /= static_cast<double>(end - begin);
+    // Nearest rank: the result is always one of the values, so nothing is interpolated and rounding
+    // cannot differ between machines.
+    const auto place = [&](double share) {
+        return begin + static_cast<std::ptrdiff_t>(
+                           std::floor(share * static_cast<double>(end - begin - 1) + 0.5));
+    };
+    // The median first: what stands before it or behind it then is all that the others are sought
+    // in.
+    double *const p1 = place(0.01), *const p5 = place(0.05), *const median = place(0.5),
+                  *const p95 = place(0.95);
+    std::nth_element(begin, median, end);
+    spread.median = *median;
+    std::nth_element(begin, p5, median);
+    spread.p5 = *p5;
+    std::nth_element(begin, p1, p5);
+    spread.p1 = *p1;
+    std::nth_element(median, p95, end);
+    spread.p95 = *p95;
+    return spread;
+}
+
 } // namespace
 
 Spread spread_of(std::vector<double> values)
 {
-    if (values.empty())
-        return {};
-    Spread spread;
-    for (const double value : values)
-        spread.mean += value;
-    spread.mean /= static_cast<double>(values.size());
-    // Nearest rank: the result is always one of the values, so nothing is interpolated and rounding
-    // cannot differ between machines.
-    const auto last = static_cast<double>(values.size() - 1);
-    auto from = values.begin();
-    // Shares have to come in ascending order: after each call no value before `from` is larger than
-    // any behind it, so the next call partitions the remaining part only, and all six together take
-    // linear time on average.
-    auto at = [&](double share) {
-        const auto place =
-            values.begin() + static_cast<std::ptrdiff_t>(std::floor(share * last + 0.5));
-        std::nth_element(from, place, values.end());
-        from = place;
-        return *place;
-    };
-    spread.min = at(0.0);
-    spread.p1 = at(0.01);
-    spread.p5 = at(0.05);
-    spread.median = at(0.5);
-    spread.p95 = at(0.95);
-    spread.max = at(1.0);
-    return spread;
+    return spread_between(values.data(), values.data() + values.size());
 }
 
 double mean_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
@@ -193,26 +194,52 @@ TetShape shape_of(const TetMesh& mesh, std::size_t t)
 
 QualityReport measure_quality(const TetMesh& mesh)
 {
-    const std::size_t count = mesh.tets.size();
-    std::vector<TetShape> shape(count);
-    for_each_index(count, [&](std::size_t i) { shape[i] = shape_of(mesh, i); });
-    const auto all = [&](double TetShape::*figure) {
-        std::vector<double> values(count);
-        std::transform(shape.begin(), shape.end(), values.begin(),
-                       [figure](const TetShape& s) { return s.*figure; });
-        return values;
+    struct Figure {
+        double TetShape::*of_tet;
+        Spread QualityReport::*spread;
+        RawVector<double> values; ///< by tet
     };
+    std::array<Figure, 6> figures{
+        {{&TetShape::mean_ratio, &QualityReport::mean_ratio, {}},
+         {&TetShape::min_dihedral_radians, &QualityReport::min_dihedral_radians, {}},
+         {&TetShape::max_dihedral_radians, &QualityReport::max_dihedral_radians, {}},
+         {&TetShape::aspect, &QualityReport::aspect, {}},
+         {&TetShape::amips, &QualityReport::amips, {}},
+         {&TetShape::edge_ratio, &QualityReport::edge_ratio, {}}}};
+    const std::size_t count = mesh.tets.size();
+    for (Figure& figure : figures)
+        figure.values.resize(count);
+    std::atomic<std::size_t> slivers{0}, sofa_bad{0};
+    for_each_range(
+        count,
+        [&](std::size_t begin, std::size_t end) {
+            std::size_t slivers_here = 0, sofa_bad_here = 0;
+            for (std::size_t i = begin; i < end; ++i) {
+                const TetShape shape = shape_of(mesh, i);
+                for (Figure& figure : figures)
+                    figure.values[i] = shape.*figure.of_tet;
+                slivers_here += shape.min_dihedral_radians < kSliverRadians;
+                sofa_bad_here += shape.sofa_bad();
+            }
+            slivers += slivers_here;
+            sofa_bad += sofa_bad_here;
+        },
+        1024);
     QualityReport report;
-    report.mean_ratio = spread_of(all(&TetShape::mean_ratio));
-    report.min_dihedral_radians = spread_of(all(&TetShape::min_dihedral_radians));
-    report.max_dihedral_radians = spread_of(all(&TetShape::max_dihedral_radians));
-    report.aspect = spread_of(all(&TetShape::aspect));
-    report.amips = spread_of_finite(all(&TetShape::amips));
-    report.edge_ratio = spread_of_finite(all(&TetShape::edge_ratio));
-    for (const TetShape& s : shape) {
-        report.slivers += s.min_dihedral_radians < kSliverRadians;
-        report.sofa_bad += s.sofa_bad();
-    }
+    for_each_index(
+        figures.size(),
+        [&](std::size_t f) {
+            // A spread is of finite values.
+            double *const begin = figures[f].values.data(), *const end = std::remove_if(
+                                                                begin, begin + count,
+                                                                [](double value) {
+                                                                    return !std::isfinite(value);
+                                                                });
+            report.*figures[f].spread = spread_between(begin, end);
+        },
+        1);
+    report.slivers = slivers;
+    report.sofa_bad = sofa_bad;
     return report;
 }
 

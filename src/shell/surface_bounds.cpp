@@ -7,6 +7,8 @@
 
 #include "vdb_shell/shell/surface_bounds.h"
 
+#include "core/parallel.h"
+#include "core/raw_vector.h"
 #include "mesh/topology.h"
 
 #include <algorithm>
@@ -82,37 +84,61 @@ double least_edge_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c)
 std::vector<EdgeAngle> edge_angles(const TriangleMesh& surface, Side side)
 {
     const EdgeUses uses = sorted_edge_uses(surface.triangles);
+    const auto begins_edge = [&](std::size_t i) {
+        return i == 0 || uses[i].edge != uses[i - 1].edge;
+    };
+    // Edges of two triangles stand at the place of their first use, with others between them.
+    constexpr double kNone = -1;
+    RawVector<double> radians(uses.size());
+    for_each_index(
+        uses.size(),
+        [&](std::size_t i) {
+            const bool of_two = begins_edge(i) && i + 1 < uses.size() && !begins_edge(i + 1) &&
+                                (i + 2 == uses.size() || begins_edge(i + 2));
+            radians[i] =
+                of_two ? angle_on_side(angle_inside(surface, uses[i], uses[i + 1]), side) : kNone;
+        },
+        1024);
     std::vector<EdgeAngle> angles;
-    for (std::size_t i = 0, next = 0; i < uses.size(); i = next) {
-        for (next = i; next < uses.size() && uses[next].edge == uses[i].edge;)
-            ++next;
-        if (next == i + 2)
-            angles.push_back(
-                {uses[i].edge, angle_on_side(angle_inside(surface, uses[i], uses[i + 1]), side)});
-    }
+    angles.reserve(uses.size() / 2);
+    for (std::size_t i = 0; i < uses.size(); ++i)
+        if (radians[i] != kNone)
+            angles.push_back({uses[i].edge, radians[i]});
     return angles;
 }
 
 SurfaceBounds measure_surface_bounds(const TriangleMesh& surface, Side side)
 {
     SurfaceBounds bounds;
-    std::vector<double> amips, ratio, dihedral;
-    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-        const Vec3d a = corner(surface, t, 0), b = corner(surface, t, 1), c = corner(surface, t, 2);
-        amips.push_back(least_amips(a, b, c));
-        ratio.push_back(least_edge_ratio(a, b, c));
-        bounds.sofa_bad += ratio.back() > kSofaEdgeRatio;
+    const std::size_t count = surface.triangles.size();
+    std::vector<double> amips(count), ratio(count);
+    for_each_index(
+        count,
+        [&](std::size_t i) {
+            const auto t = static_cast<std::uint32_t>(i);
+            const Vec3d a = corner(surface, t, 0), b = corner(surface, t, 1),
+                        c = corner(surface, t, 2);
+            amips[i] = least_amips(a, b, c);
+            ratio[i] = least_edge_ratio(a, b, c);
+        },
+        1024);
+    for (const double of_triangle : ratio)
+        bounds.sofa_bad += of_triangle > kSofaEdgeRatio;
+    std::vector<double> dihedral;
+    {
+        const std::vector<EdgeAngle> angles = edge_angles(surface, side);
+        dihedral.reserve(angles.size());
+        for (const EdgeAngle& at : angles)
+            dihedral.push_back(std::min(at.radians / 2, kRegularDihedral));
     }
-    for (const EdgeAngle& at : edge_angles(surface, side))
-        dihedral.push_back(std::min(at.radians / 2, kRegularDihedral));
     // A triangle whose area is lost to the rounding of doubles has no figure that could be shown.
     const auto finite = [](std::vector<double> values) {
         values.erase(std::remove(values.begin(), values.end(), kInfinity), values.end());
         return spread_of(std::move(values));
     };
-    bounds.amips = finite(std::move(amips));
-    bounds.edge_ratio = finite(std::move(ratio));
-    bounds.min_dihedral_radians = spread_of(std::move(dihedral));
+    run_together([&] { bounds.amips = finite(std::move(amips)); },
+                 [&] { bounds.edge_ratio = finite(std::move(ratio)); },
+                 [&] { bounds.min_dihedral_radians = spread_of(std::move(dihedral)); });
     return bounds;
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace
@@ -87,6 +88,32 @@ TEST(BoxTree, AGroupFindsWhatItsBoxesFindOneByOne)
             else
                 EXPECT_TRUE(found[i].empty()) << i;
         }
+    }
+}
+
+TEST(BoxTree, FindsEachPairOnceFromItsGroups)
+{
+    for (const int count : {1, 4, 16, 17, 65, 1000}) {
+        const std::vector<FloatBox> boxes = random_boxes(count, 4);
+        BoxTree tree;
+        tree.build(boxes);
+        BoxTree::Near near;
+        std::vector<std::array<int, 2>> found, wanted;
+        std::size_t refused = 0;
+        for (std::size_t group = 0; group < tree.groups(); ++group) {
+            EXPECT_TRUE(tree.for_each_pair_of(group, near, [&](int i, int j) {
+                found.push_back({std::min(i, j), std::max(i, j)});
+            }));
+            refused += !tree.for_each_pair_of(
+                group, near, [](int, int) { FAIL() << "no pair"; }, 0);
+        }
+        EXPECT_EQ(refused, tree.groups()) << "each holds itself at least";
+        for (int i = 0; i < count; ++i)
+            for (int j = i + 1; j < count; ++j)
+                if (boxes[std::size_t(i)].overlaps(boxes[std::size_t(j)]))
+                    wanted.push_back({i, j});
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, wanted) << count;
     }
 }
 

@@ -63,6 +63,17 @@ TEST(BucketSort, Sorts)
     }
 }
 
+// So many that several threads take a range of keys each.
+TEST(BucketSort, SortsOnSeveralThreads)
+{
+    for (const std::uint32_t keys : {1U, 3U, 1000U, 70000U}) {
+        std::vector<Item> items = mixed_items(50000, keys);
+        const std::vector<Item> found = sorted_by_key({items}, keys);
+        std::sort(items.begin(), items.end());
+        EXPECT_EQ(found, items) << keys;
+    }
+}
+
 TEST(BucketSort, DoesNotDependOnTheParts)
 {
     const std::vector<Item> items = mixed_items(1000, 37);
