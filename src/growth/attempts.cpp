@@ -34,7 +34,8 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
     }
     // What is mended leaves its line.
     if (options.top_down && options.free_moves)
-        attempts.push_back({GrowFrom::lines, LineStart::mended, next});
+        for (const LineStart other : {LineStart::planar, LineStart::mended})
+            attempts.push_back({GrowFrom::lines, other, next});
     if (thickest && !on_levels)
         attempts.push_back({GrowFrom::lines, first, next});
     if (options.top_down && prism_test_of(options) == PrismTest::twelve_tets)

@@ -60,24 +60,26 @@ Directions own_lines(const TriangleMesh& mesh, const GrowState& s, Directions li
     return pillars_to(mesh, shell_of(mesh, s).inner, std::move(lines)).lines;
 }
 
-/// Puts a start from mended lines in place of one from levels if it is the fuller one: beside
-/// needles a prolonged shell loses most of what it has. Which start rounds get farther from is
-/// another question, which attempts answer where they can be afforded.
-void take_mended_if_fuller(GrowState& s, const Ordered& given, const GrowOptions& options,
-                           const StageProgress& progress, Started& started)
+/// Puts a start from mended or planar lines in place of one from levels if it is the fuller one:
+/// beside needles a prolonged shell loses most of what it has. Which start rounds get farther from
+/// is another question, which attempts answer where they can be afforded.
+void take_lines_if_fuller(GrowState& s, const Ordered& given, const GrowOptions& options,
+                          const StageProgress& progress, Started& started)
 {
-    const double fill = fill_of(s);
-    if (fill >= options.schedule.lines.nearly_full || !s.bounded || bounds_thickness(s.cap) ||
+    const double enough = std::min(s.schedule.lines.nearly_full, s.schedule.barrier.enough_fill);
+    if (fill_of(s) >= enough || !s.bounded || bounds_thickness(s.cap) ||
         !too_large_for_attempts(given.mesh.triangles.size(), options))
         return;
-    GrowState other = make_state(*s.mesh, given.mesh.points, s.cap, s.schedule);
-    Directions lines = prepare_directions(given.mesh, given.directions, options, true);
-    start_from_lines(other, lines, given.stepped, LineStart::mended, options, progress);
-    if (fill_of(other) <= fill)
-        return;
-    s = std::move(other);
-    started.lines = own_lines(given.mesh, s, std::move(lines));
-    started.predicted_gain.clear();
+    const Directions lines = prepare_directions(given.mesh, given.directions, options, true);
+    for (const LineStart start : {LineStart::planar, LineStart::mended}) {
+        GrowState other = make_state(*s.mesh, given.mesh.points, s.cap, s.schedule);
+        start_from_lines(other, lines, given.stepped, start, options, progress);
+        if (fill_of(other) <= fill_of(s))
+            continue;
+        s = std::move(other);
+        started.lines = own_lines(given.mesh, s, lines);
+        started.predicted_gain.clear();
+    }
 }
 
 Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
@@ -94,7 +96,7 @@ Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
         started.predicted_gain =
             start_from_levels(s, given.mesh, started.lines, given.stepped, given.start.levels,
                               given.order, options, progress, report);
-        take_mended_if_fuller(s, given, options, progress, started);
+        take_lines_if_fuller(s, given, options, progress, started);
     } else if (attempt.from == GrowFrom::shell) {
         s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
         const Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
@@ -102,7 +104,7 @@ Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
         started.lines = own_lines(given.mesh, s, pillars.lines);
     } else {
         start_from_lines(s, started.lines, given.stepped, attempt.start, options, progress);
-        if (attempt.start == LineStart::mended)
+        if (leaves_lines(attempt.start))
             started.lines = own_lines(given.mesh, s, std::move(started.lines));
     }
     return started;
@@ -229,8 +231,10 @@ GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
     for (std::size_t i = 1; i < attempts.size() && most < enough_for(attempts.front()); ++i) {
         GrowResult other = grow_once(given, connectivity, cap, attempts[i], split, progress);
         const double fill = fill_of(other.shell);
-        // A pin costs more than the volume around it: prisms, and all that needs their pillars.
+        // A pin costs more than the volume around it: prisms, and all that needs their pillars. So
+        // does the shape that the user asks for.
         if (fill <= most || pins_of(other.shell) > pins_of(fullest.shell) ||
+            other.report.tets_below_quality > fullest.report.tets_below_quality ||
             any_of(turned_components(connectivity, other.shell)))
             continue;
         most = fill;

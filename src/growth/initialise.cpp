@@ -13,6 +13,7 @@
 #include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
 #include "growth/place_pillars.h"
+#include "growth/planar_quads.h"
 #include "growth/ray_hit.h"
 #include "growth/violations.h"
 
@@ -149,10 +150,13 @@ void start_from_lines(GrowState& s, const Directions& directions,
                       const std::vector<double>& stepped, LineStart start,
                       const GrowOptions& options, const StageProgress& progress)
 {
-    if (start == LineStart::mended) {
+    if (leaves_lines(start)) {
         // Its pins are few and have room around them, so that growth can release most.
         s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
-        mend_prolonged(s, directions, first_lengths(s, directions, stepped), progress);
+        const Directions lines = start == LineStart::planar
+                                     ? with_planar_quads(s, directions, half_rays(s, directions))
+                                     : directions;
+        mend_prolonged(s, lines, first_lengths(s, lines, stepped), progress);
         return;
     }
     const std::vector<double> thin = thin_heights(s);

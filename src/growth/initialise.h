@@ -36,12 +36,20 @@ enum class LineStart {
             ///< begin with room on all sides
     mended, ///< long ones, mended as prolonged ones are (mend_prolonged.h): inner points leave
             ///< their lines, which beside needles is the only way not to lose most of a pillar
+    planar, ///< the same along lines that make the quads of prisms planar (planar_quads.h), which
+            ///< beside needles leaves little to mend
     thin,   ///< short ones
 };
 
+/// Whether pillars do not end on the lines that they were begun along.
+inline bool leaves_lines(LineStart start)
+{
+    return start == LineStart::mended || start == LineStart::planar;
+}
+
 /// A valid start along lines; in place of a shrunk one a thin one where that pins fewer vertices.
-/// `stepped` has the lengths of line stepping. A mended start is made under the test that the shell
-/// is to pass in the end, the others under the twelve-tet test.
+/// `stepped` has the lengths of line stepping. Mended and planar starts are made under the test
+/// that the shell is to pass in the end, the others under the twelve-tet test.
 void start_from_lines(GrowState& s, const Directions& directions,
                       const std::vector<double>& stepped, LineStart start,
                       const GrowOptions& options, const StageProgress& progress);

@@ -165,8 +165,8 @@ LevelShell grow_on_level(const TriangleMesh& mesh, const std::vector<double>& ca
     return {std::move(s.b), fill};
 }
 
-/// Grows on the coarsest level: from lines, and once more from mended ones where that leads into a
-/// corner, as it does beside needles.
+/// Grows on the coarsest level: from lines, and again from mended and planar ones where that leads
+/// into a corner, as it does beside needles.
 std::vector<Vec3d> grow_coarsest(const TriangleMesh& mesh, const std::vector<double>& cap,
                                  const std::vector<double>& stepped, const LevelJob& job)
 {
@@ -177,12 +177,16 @@ std::vector<Vec3d> grow_coarsest(const TriangleMesh& mesh, const std::vector<dou
                                                   job.progress);
                              });
     };
+    const GrowthSchedule& schedule = job.options.schedule;
+    const double enough = std::min(schedule.lines.nearly_full, schedule.barrier.enough_fill);
     LevelShell fullest = grown_from(LineStart::shrunk);
-    if (fullest.fill < job.options.schedule.lines.nearly_full && !bounds_thickness(cap)) {
-        LevelShell mended = grown_from(LineStart::mended);
+    for (const LineStart start : {LineStart::planar, LineStart::mended}) {
+        if (fullest.fill >= enough || bounds_thickness(cap))
+            break;
+        LevelShell other = grown_from(start);
         // More than the whole is what a surface encloses that has turned inside out.
-        if (mended.fill > fullest.fill && mended.fill <= 1)
-            fullest = std::move(mended);
+        if (other.fill > fullest.fill && other.fill <= 1)
+            fullest = std::move(other);
     }
     return std::move(fullest.inner);
 }

@@ -138,24 +138,27 @@ TEST(Grow, ThickestIsAsThickAsThreeTetsFromTheBeginning)
     }
 }
 
-/// Shortened until they are valid, pillars beside needles lose most of their length: without the
-/// other ways these shells are .79, .51 and .75 full.
-TEST(Grow, FillsAPlateOfNeedles)
+/// Shortened until they are valid, pillars beside needles lose most of their length, and mended
+/// ones much of it, how much is luck: without planar quads these shells are .92 to .39 full by
+/// default.
+TEST(Grow, FillsPlatesOfNeedles)
 {
-    const Case plate = case_of(test::needled_plate(25));
     const std::vector<GrowOptions> ways = test::ways_to_grow();
-    const std::array<double, 3> at_least{0.9, 0.97, 0.99};
-    for (std::size_t i = 0; i < at_least.size(); ++i) {
-        const GrowResult full = grown(plate, ways[i]);
-        EXPECT_GE(fill_of(full.shell), at_least[i]);
-        expect_sound(full, ways[i]);
-        expect_embedded(full.shell);
+    const std::array<double, 3> at_least{0.98, 0.97, 0.98};
+    for (const int points : {19, 25, 31}) {
+        const Case plate = case_of(test::needled_plate(points));
+        for (std::size_t i = 0; i < at_least.size(); ++i) {
+            const GrowResult full = grown(plate, ways[i]);
+            EXPECT_GE(fill_of(full.shell), at_least[i]) << points << ", " << i;
+            expect_sound(full, ways[i]);
+            expect_embedded(full.shell);
+        }
     }
 }
 
-/// What comes over coarser surfaces loses most of what it has beside needles: without mended lines
-/// these shells are .82, .59 and .66 full.
-TEST(Grow, BeginsALargePlateOfNeedlesFromMendedLines)
+/// What comes over coarser surfaces loses most of what it has beside needles: without lines of its
+/// own these shells are .82, .59 and .66 full.
+TEST(Grow, BeginsALargePlateOfNeedlesFromLines)
 {
     const Case plate = case_of(test::needled_plate(20));
     for (GrowOptions options : test::ways_to_grow()) {

@@ -36,6 +36,25 @@ struct InitialSchedule {
     double shrink_factor = 0.65;
 };
 
+/// Initialise: directions that make the quads of prisms planar, for a start from these. What they
+/// are chosen by is squares of numbers without a unit: how bent each quad is, 1 where a tet of its
+/// prism would be flat, and what follows.
+struct PlanarSchedule {
+    /// Weight of how far the inner triangle is from where it would be parallel, over its depth.
+    double parallel_weight = 10;
+    /// Weight of how far the pillar is from where it was, over its depth: little, so that one is
+    /// the best where many are as good.
+    double staying_weight = 1e-3;
+    /// Count. Rounds of Newton's method with a linear problem each, and steps of conjugate
+    /// gradients in one: on plates of needles three rounds are enough, on other parts up to ten.
+    int most_rounds = 20, most_steps = 300;
+    /// Share of the sum of squares that a round has to win for another to follow.
+    double least_gain = 1e-3;
+    /// Cosine, and share of the visibility before: directions below the smaller of the two are left
+    /// as they were.
+    double least_visibility = 0.05, kept_visibility_share = 0.5;
+};
+
 /// Initialise: pillars lengthened along their lines.
 struct LineSchedule {
     /// Shares of the solid. Below the first the start is thin and lines go first, since free moves
@@ -269,6 +288,7 @@ struct StopSchedule {
 
 struct GrowthSchedule {
     InitialSchedule initial;
+    PlanarSchedule planar;
     LineSchedule lines;
     PinSchedule pins;
     MultilevelSchedule multilevel;
