@@ -9,17 +9,24 @@
 #include "vdb_shell/shell/core_tets.h"
 
 #include "vdb_shell/write/text_out.h"
+#include "write/tet_boundary.h"
 #include "write/tet_formats.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
 
 namespace vdb_shell
 {
 namespace
 {
 
-void write_corners(TextOut& text, const openvdb::Vec4I& tet, std::uint32_t base)
+/// Of a tet or a triangle.
+template <typename Corners>
+void write_corners(TextOut& text, const Corners& corners, std::uint32_t base)
 {
-    for (int corner = 0; corner < 4; ++corner)
-        text << ' ' << tet[corner] + base;
+    for (int corner = 0; corner < int(Corners::size); ++corner)
+        text << ' ' << corners[corner] + base;
 }
 
 openvdb::Vec3d placed(const Placement& placement, const openvdb::Vec3s& point)
@@ -41,16 +48,132 @@ void write_gmsh_data(TextOut& text, const char* section, const char* name,
     text << "$End" << section << '\n';
 }
 
-/// One entity, a volume, with the box that format 4.1 asks for. Scaling by a power of two and
+/// Tets of one layer of the shell, or those of the core: they stand together.
+struct Volume {
+    std::size_t first, last;
+    std::string name;
+};
+
+std::vector<Volume> volumes_of(const TetMesh& tets)
+{
+    std::vector<Volume> volumes;
+    const std::vector<std::uint8_t>& layer = tets.prism_layer;
+    const bool several = std::any_of(layer.begin(), layer.end(),
+                                     [](std::uint8_t one) { return one > 0 && one != kCoreLayer; });
+    for (std::size_t first = 0, last = 0; first < layer.size(); first = last) {
+        while (last < layer.size() && layer[last] == layer[first])
+            ++last;
+        volumes.push_back({first, last,
+                           layer[first] == kCoreLayer ? "core"
+                           : several                  ? "layer_" + std::to_string(layer[first])
+                                                      : "shell"});
+    }
+    return volumes;
+}
+
+/// By TetBoundary, from 1 on: which of them there are triangles of.
+std::array<std::vector<std::size_t>, 1 + kTetBoundaries>
+places_by_boundary(const std::vector<BoundaryTriangle>& boundary)
+{
+    std::array<std::vector<std::size_t>, 1 + kTetBoundaries> places;
+    for (std::size_t i = 0; i < boundary.size(); ++i)
+        places[std::size_t(boundary[i].boundary)].push_back(i);
+    return places;
+}
+
+/// What a .msh is made of. Surfaces are numbered as boundaries are, volumes from 1.
+struct GmshParts {
+    std::vector<Volume> volumes;
+    std::vector<BoundaryTriangle> boundary;
+    std::array<std::vector<std::size_t>, 1 + kTetBoundaries> surfaces; ///< places in `boundary`
+
+    std::size_t surface_count() const
+    {
+        return std::size_t(std::count_if(surfaces.begin(), surfaces.end(),
+                                         [](const auto& places) { return !places.empty(); }));
+    }
+    /// visit(number, places) for those that there are.
+    template <class Visit> void for_each_surface(const Visit& visit) const
+    {
+        for (std::size_t k = 1; k < surfaces.size(); ++k)
+            if (!surfaces[k].empty())
+                visit(k, surfaces[k]);
+    }
+};
+
+/// Dimension, number and name of what solvers choose parts of the mesh by.
+void write_gmsh_names(TextOut& text, const GmshParts& parts)
+{
+    text << "$PhysicalNames\n" << parts.surface_count() + parts.volumes.size() << '\n';
+    parts.for_each_surface([&](std::size_t k, const auto&) {
+        text << "2 " << k << " \"" << name_of(TetBoundary(k)) << "\"\n";
+    });
+    for (std::size_t k = 0; k < parts.volumes.size(); ++k)
+        text << "3 " << k + 1 << " \"" << parts.volumes[k].name << "\"\n";
+    text << "$EndPhysicalNames\n";
+}
+
+/// Surfaces and volumes, each with the box of the whole, which format 4.1 asks for, and with the
+/// physical group of its own number; none has parts that bound it. Scaling by a power of two and
 /// adding in double is what placed() does to the points, so the box holds them.
-void write_gmsh_entities(TextOut& text, const TetMesh& tets, const Placement& placement)
+void write_gmsh_entities(TextOut& text, const TetMesh& tets, const GmshParts& parts,
+                         const Placement& placement)
 {
     const Bounds bounds = tets.points.empty() ? Bounds{} : bounds_of(tets.points);
-    text << "$Entities\n0 0 0 1\n1";
-    for (const openvdb::Vec3d& corner : {bounds.low, bounds.high})
-        for (int axis = 0; axis < 3; ++axis)
-            text << ' ' << placement.origin[axis] + placement.unit * corner[axis];
-    text << " 0 0\n$EndEntities\n";
+    const auto write = [&](std::size_t number) {
+        text << number;
+        for (const openvdb::Vec3d& corner : {bounds.low, bounds.high})
+            for (int axis = 0; axis < 3; ++axis)
+                text << ' ' << placement.origin[axis] + placement.unit * corner[axis];
+        text << " 1 " << number << " 0\n";
+    };
+    text << "$Entities\n0 0 " << parts.surface_count() << ' ' << parts.volumes.size() << '\n';
+    parts.for_each_surface([&](std::size_t k, const auto&) { write(k); });
+    for (std::size_t k = 0; k < parts.volumes.size(); ++k)
+        write(k + 1);
+    text << "$EndEntities\n";
+}
+
+/// Tets first, so that a tet's tag is its number and the data of elements, which some readers take
+/// in the order of the elements, begin with theirs.
+void write_gmsh_elements(TextOut& text, const TetMesh& tets, const GmshParts& parts)
+{
+    constexpr int kTriangle = 2, kFourNodeTet = 4;
+    const std::size_t count = tets.tets.size() + parts.boundary.size();
+    text << "$Elements\n"
+         << parts.surface_count() + parts.volumes.size() << ' ' << count << " 1 " << count << '\n';
+    for (std::size_t k = 0; k < parts.volumes.size(); ++k) {
+        const Volume& volume = parts.volumes[k];
+        text << "3 " << k + 1 << ' ' << kFourNodeTet << ' ' << volume.last - volume.first << '\n';
+        for (std::size_t t = volume.first; t < volume.last; ++t) {
+            text << t + 1;
+            write_corners(text, tets.tets[t], 1);
+            text << '\n';
+        }
+    }
+    std::size_t tag = tets.tets.size();
+    parts.for_each_surface([&](std::size_t k, const std::vector<std::size_t>& places) {
+        text << "2 " << k << ' ' << kTriangle << ' ' << places.size() << '\n';
+        for (const std::size_t place : places) {
+            text << ++tag;
+            write_corners(text, parts.boundary[place].corners, 1);
+            text << '\n';
+        }
+    });
+    text << "$EndElements\n";
+}
+
+/// By element, what its tet has: a triangle has that of the tet whose face it is.
+template <typename Number>
+std::vector<std::int32_t> by_element(const std::vector<Number>& by_tet, const GmshParts& parts)
+{
+    std::vector<std::int32_t> values = signed_numbers(by_tet);
+    values.reserve(values.size() + parts.boundary.size());
+    parts.for_each_surface([&](std::size_t, const std::vector<std::size_t>& places) {
+        for (const std::size_t place : places)
+            values.push_back(values[parts.boundary[place].tet]);
+    });
+    return values;
 }
 
 } // namespace
@@ -94,6 +217,13 @@ void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placem
     const std::vector<std::int32_t> layer = signed_numbers(tets.layer);
     for (std::size_t i = 0; i < tets.points.size(); ++i)
         text << placed(placement, tets.points[i]) << ' ' << layer[i] << '\n';
+    const std::vector<BoundaryTriangle> boundary = boundary_of(tets);
+    text << "Triangles\n" << boundary.size() << '\n';
+    for (const BoundaryTriangle& triangle : boundary) {
+        for (int corner = 0; corner < 3; ++corner)
+            text << triangle.corners[corner] + 1u << ' ';
+        text << int(triangle.boundary) << '\n';
+    }
     text << "Tetrahedra\n" << tets.tets.size() << '\n';
     for (std::size_t t = 0; t < tets.tets.size(); ++t) {
         for (int corner = 0; corner < 4; ++corner)
@@ -108,10 +238,13 @@ void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placem
 void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placement)
 {
     TextOut text(out);
-    const std::size_t points = tets.points.size(), count = tets.tets.size();
+    const std::size_t points = tets.points.size();
+    GmshParts parts{volumes_of(tets), boundary_of(tets), {}};
+    parts.surfaces = places_by_boundary(parts.boundary);
     // Version, text, and bytes of a size_t as a binary file would have them.
     text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
-    write_gmsh_entities(text, tets, placement);
+    write_gmsh_names(text, parts);
+    write_gmsh_entities(text, tets, parts, placement);
     // One block, its tags from 1 on without a gap; then the block: of dimension 3, entity 1,
     // without parameters.
     text << "$Nodes\n1 " << points << " 1 " << points << "\n3 1 0 " << points << '\n';
@@ -120,20 +253,13 @@ void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placeme
     // Format 4.1 lists all tags of a block first and then all coordinates.
     for (const openvdb::Vec3s& point : tets.points)
         text << placed(placement, point) << '\n';
-    constexpr int kFourNodeTet = 4;
-    text << "$EndNodes\n$Elements\n1 " << count << " 1 " << count << "\n3 1 " << kFourNodeTet << ' '
-         << count << '\n';
-    for (std::size_t t = 0; t < count; ++t) {
-        text << t + 1;
-        write_corners(text, tets.tets[t], 1);
-        text << '\n';
-    }
-    text << "$EndElements\n";
+    text << "$EndNodes\n";
+    write_gmsh_elements(text, tets, parts);
     write_gmsh_data(text, "NodeData", "source_vertex", signed_numbers(tets.source_vertex));
     write_gmsh_data(text, "NodeData", "layer", signed_numbers(tets.layer));
-    write_gmsh_data(text, "ElementData", "prism", signed_numbers(tets.prism));
+    write_gmsh_data(text, "ElementData", "prism", by_element(tets.prism, parts));
     if (has_layers(tets))
-        write_gmsh_data(text, "ElementData", "layer", signed_numbers(tets.prism_layer));
+        write_gmsh_data(text, "ElementData", "layer", by_element(tets.prism_layer, parts));
 }
 
 } // namespace vdb_shell

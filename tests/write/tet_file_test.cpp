@@ -3,14 +3,19 @@
 #include "vdb_shell/write/tet_file.h"
 
 #include "support/files.h"
+#include "support/filled.h"
 #include "support/shapes.h"
+#include "vdb_shell/layers/cut_layers.h"
 #include "write/hand_made.h"
+#include "write/tet_boundary.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <clocale>
 #include <cstring>
 #include <locale>
+#include <map>
 #include <sstream>
 
 namespace vdb_shell
@@ -127,6 +132,20 @@ TEST(TetFile, MeditHoldsTheExactNumbers)
         EXPECT_EQ(layer, tets.layer[i]);
     }
     EXPECT_TRUE(same_bits(points, tets.points));
+    words = after(text, "Triangles");
+    words >> count;
+    std::vector<BoundaryTriangle> triangles = boundary_of(tets);
+    ASSERT_EQ(count, triangles.size());
+    for (const BoundaryTriangle& triangle : triangles) {
+        for (int k = 0; k < 3; ++k) {
+            std::uint32_t corner = 0;
+            words >> corner;
+            EXPECT_EQ(corner, triangle.corners[k] + 1);
+        }
+        int reference = 0;
+        words >> reference;
+        EXPECT_EQ(reference, int(triangle.boundary));
+    }
     words = after(text, "Tetrahedra");
     words >> count;
     ASSERT_EQ(count, tets.tets.size());
@@ -157,6 +176,71 @@ TEST(TetFile, GmshHoldsTheExactNumbers)
     for (int i = 0; i < 8; ++i)
         words >> ignored;
     EXPECT_TRUE(same_bits(tets_from(words, tets.tets.size(), 1, 1, 0), tets.tets));
+}
+
+/// Of a .msh: by physical name how many elements its group has.
+std::map<std::string, std::size_t> elements_by_name(const std::string& text)
+{
+    std::map<std::array<int, 2>, std::string> name_of;
+    std::istringstream names = after(text, "$PhysicalNames");
+    std::size_t count = 0;
+    names >> count;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<int, 2> group{};
+        std::string name;
+        names >> group[0] >> group[1] >> name;
+        name_of[group] = name;
+    }
+    std::map<std::string, std::size_t> elements;
+    std::istringstream words = after(text, "$Elements");
+    std::size_t blocks = 0, all = 0, least = 0, most = 0, next = 1;
+    words >> blocks >> all >> least >> most;
+    for (std::size_t block = 0; block < blocks; ++block) {
+        std::array<int, 2> entity{};
+        int kind = 0;
+        std::size_t size = 0;
+        words >> entity[0] >> entity[1] >> kind >> size;
+        EXPECT_EQ(kind, entity[0] == 2 ? 2 : 4) << "triangles are kind 2, tets kind 4";
+        // Entities have the physical group of their number.
+        elements[name_of.at(entity)] += size;
+        std::string line;
+        std::getline(words, line);
+        for (std::size_t i = 0; i < size; ++i, ++next) {
+            std::getline(words, line);
+            EXPECT_EQ(line.rfind(std::to_string(next) + " ", 0), 0u) << line;
+        }
+    }
+    EXPECT_EQ(next, all + 1);
+    EXPECT_EQ(most, all);
+    // Readers take the data in the order of the elements.
+    std::istringstream data = after(text, "$ElementData\n1\n\"prism\"\n1\n0\n3\n0\n1");
+    std::size_t values = 0;
+    data >> values;
+    EXPECT_EQ(values, all);
+    return elements;
+}
+
+TEST(TetFile, GmshNamesWhatSolversPutConditionsOn)
+{
+    using Counts = std::map<std::string, std::size_t>;
+    const TemporaryFolder folder;
+    const auto written = [&](const TetMesh& tets) {
+        write_tets(folder / "a.msh", tets);
+        return elements_by_name(test::read_bytes(folder / "a.msh"));
+    };
+    const ShellStack ball = test::hollow_ball();
+    const TetMesh shell = make_tets(ball);
+    const std::size_t n = ball.triangles().size();
+    EXPECT_EQ(written(shell), (Counts{{"\"shell\"", 3 * n}, {"\"outer\"", n}, {"\"inner\"", n}}));
+    const CoreTets core = test::cone_core(ball, shell, {0, 0, 0});
+    EXPECT_EQ(written(joined_tets(shell, core)),
+              (Counts{{"\"shell\"", 3 * n}, {"\"core\"", n}, {"\"outer\"", n}, {"\"inner\"", n}}));
+    LayerOptions two;
+    two.layers = 2;
+    EXPECT_EQ(
+        written(make_tets(cut_layers(ball, two, PrismTest::twelve_tets).stack)),
+        (Counts{
+            {"\"layer_0\"", 3 * n}, {"\"layer_1\"", 3 * n}, {"\"outer\"", n}, {"\"inner\"", n}}));
 }
 
 /// The bytes of a base-64 array of the .vtu, without its length.
