@@ -38,13 +38,6 @@ bool operator<(const Side& x, const Side& y)
            std::tie(y.corners, y.outer, y.owner, y.local);
 }
 
-std::array<std::uint32_t, 3> ascending(const Vec3I& face)
-{
-    std::array<std::uint32_t, 3> corners{face[0], face[1], face[2]};
-    std::sort(corners.begin(), corners.end());
-    return corners;
-}
-
 /// The outer triangles by points; outer vertices that no tet has are added to the points.
 void append_outer(const ShellStack& stack, const TetMesh& tets, FreeFaces& free)
 {
@@ -79,9 +72,9 @@ std::vector<Side> sorted_sides(const FreeFaces& free, const TetMesh& tets)
     sides.reserve(4 * tets.tets.size() + free.faces.size());
     for (std::uint32_t i = 0; i < tets.tets.size(); ++i)
         for (std::uint8_t corner = 0; corner < 4; ++corner)
-            sides.push_back({ascending(tet_face(tets.tets[i], corner)), false, i, corner});
+            sides.push_back({ascending_corners(tet_face(tets.tets[i], corner)), false, i, corner});
     for (std::uint32_t t = 0; t < free.faces.size(); ++t)
-        sides.push_back({ascending(free.faces[t]), true, t, 0});
+        sides.push_back({ascending_corners(free.faces[t]), true, t, 0});
     const auto smallest_corner = [](const Side& side) { return side.corners[0]; };
     return bucket_sort<Side>(std::array{std::move(sides)}, free.points.size(), smallest_corner,
                              std::less<>());

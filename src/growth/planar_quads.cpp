@@ -55,18 +55,6 @@ public:
             add_face(f, depth);
     }
 
-    double bend(const Quad& quad) const
-    {
-        return quad.scale * pillar_[quad.p].cross(pillar_[quad.q]).dot(quad.edge);
-    }
-    double most_bent() const
-    {
-        double most = 0;
-        for (const Quad& quad : quads_)
-            most = std::max(most, std::abs(bend(quad)));
-        return most;
-    }
-
     void solve()
     {
         double energy = energy_now();
@@ -115,6 +103,11 @@ private:
     }
 
     bool is_free(int v) const { return given_.visibility[v] > 0; }
+    /// 1 where a tet of the prism is flat.
+    double bend(const Quad& quad) const
+    {
+        return quad.scale * pillar_[quad.p].cross(pillar_[quad.q]).dot(quad.edge);
+    }
 
     double energy_now() const
     {
@@ -209,12 +202,6 @@ Directions with_planar_quads(const GrowState& s, const Directions& directions,
     PlanarQuads quads(s, directions, length);
     quads.solve();
     return quads.directions();
-}
-
-double most_bent_quad(const GrowState& s, const Directions& directions,
-                      const std::vector<double>& length)
-{
-    return PlanarQuads(s, directions, length).most_bent();
 }
 
 } // namespace vdb_shell::growth

@@ -15,8 +15,4 @@ namespace vdb_shell::growth
 Directions with_planar_quads(const GrowState& s, const Directions& directions,
                              const std::vector<double>& length);
 
-/// The most bent quad, 1 where a tet of its prism would be flat: for tests.
-double most_bent_quad(const GrowState& s, const Directions& directions,
-                      const std::vector<double>& length);
-
 } // namespace vdb_shell::growth

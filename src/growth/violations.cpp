@@ -94,9 +94,9 @@ public:
         }
     }
 
-    /// Marks the faces of one range of groups of the inner tree that touch others. `all`: most
+    /// Marks the faces of one range of groups of the inner tree that touch others. `most`: most
     /// faces are tested, so that each pair is better looked for from one of its faces alone.
-    void mark_groups(std::size_t begin, std::size_t end, bool all) const
+    void mark_groups(std::size_t begin, std::size_t end, bool most) const
     {
         BoxTree::Near near;
         // Pairs come face by face, so the plane of the first one is computed once for all of its
@@ -116,7 +116,7 @@ public:
             mark(bad_[g]);
         };
         for (std::size_t group = begin; group < end; ++group) {
-            if (all)
+            if (most)
                 s_.inner_tree.for_each_pair_of(group, near, [&](int f, int g) {
                     if (tested(f) || tested(g))
                         mark_pair(f, g);
@@ -162,12 +162,10 @@ void mark_contacts(const GrowState& s, const std::vector<std::uint8_t>& changed,
     if (s.mesh->has_crowds)
         return search.mark_in_crowds();
     const auto asked = static_cast<std::size_t>(std::count(tested.begin(), tested.end(), 1));
+    const bool most = 2 * asked > tested.size();
     for_each_range(
         s.inner_tree.groups(),
-        [&](std::size_t begin, std::size_t end) {
-            search.mark_groups(begin, end, 2 * asked > tested.size());
-        },
-        4);
+        [&](std::size_t begin, std::size_t end) { search.mark_groups(begin, end, most); }, 4);
 }
 
 /// By face, whether one of these witnesses may have come to lie in its prism.

@@ -3,8 +3,10 @@
 
 #include "vdb_shell/shell/tessellate.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace vdb_shell
 {
@@ -16,6 +18,14 @@ inline openvdb::Vec3I tet_face(const openvdb::Vec4I& tet, std::size_t opposite)
 {
     const auto& face = kTetFaces[opposite];
     return {tet[face[0]], tet[face[1]], tet[face[2]]};
+}
+
+/// By which the sides of a face are known for the same.
+inline std::array<std::uint32_t, 3> ascending_corners(const openvdb::Vec3I& face)
+{
+    std::array<std::uint32_t, 3> corners{face[0], face[1], face[2]};
+    std::sort(corners.begin(), corners.end());
+    return corners;
 }
 
 inline std::array<openvdb::Vec3s, 4> corners_of(const TetMesh& mesh, std::size_t tet)

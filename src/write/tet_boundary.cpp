@@ -29,10 +29,7 @@ struct Side {
 
 Side side_of(const TetMesh& tets, std::uint32_t tet, std::uint8_t opposite)
 {
-    const openvdb::Vec3I face = tet_face(tets.tets[tet], opposite);
-    Side side{{face[0], face[1], face[2]}, tet, opposite};
-    std::sort(side.corners.begin(), side.corners.end());
-    return side;
+    return {ascending_corners(tet_face(tets.tets[tet], opposite)), tet, opposite};
 }
 
 /// All sides of all tets; those of a face stand together, in the order of their tets.
@@ -73,17 +70,11 @@ TetBoundary boundary_at(const TetMesh& tets, const Side& side)
 
 } // namespace
 
-const char* name_of(TetBoundary boundary)
+const NameTable<TetBoundary>& names(TetBoundary)
 {
-    switch (boundary) {
-    case TetBoundary::outer:
-        return "outer";
-    case TetBoundary::inner:
-        return "inner";
-    case TetBoundary::hole:
-        break;
-    }
-    return "hole";
+    static const NameTable<TetBoundary> table{
+        {"outer", TetBoundary::outer}, {"inner", TetBoundary::inner}, {"hole", TetBoundary::hole}};
+    return table;
 }
 
 std::vector<BoundaryTriangle> boundary_of(const TetMesh& tets)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "vdb_shell/options/name_table.h"
 #include "vdb_shell/shell/tessellate.h"
 
 #include <cstdint>
@@ -15,9 +16,8 @@ enum class TetBoundary : std::uint8_t {
     inner = 2, ///< where the shell ends further in, at a core as at a void
     hole = 3,  ///< of a core's tets, the holes in it
 };
-inline constexpr std::uint8_t kTetBoundaries = 3;
 /// For files.
-const char* name_of(TetBoundary boundary);
+const NameTable<TetBoundary>& names(TetBoundary);
 
 struct BoundaryTriangle {
     openvdb::Vec3I corners; ///< points of the tets, counter-clockwise seen from outside of the tet

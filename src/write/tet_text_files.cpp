@@ -13,8 +13,8 @@
 #include "write/tet_formats.h"
 
 #include <algorithm>
-#include <array>
 #include <string>
+#include <utility>
 
 namespace vdb_shell
 {
@@ -71,43 +71,44 @@ std::vector<Volume> volumes_of(const TetMesh& tets)
     return volumes;
 }
 
-/// By TetBoundary, from 1 on: which of them there are triangles of.
-std::array<std::vector<std::size_t>, 1 + kTetBoundaries>
-places_by_boundary(const std::vector<BoundaryTriangle>& boundary)
+/// The triangles of one kind of boundary; files number it as TetBoundary does.
+struct Surface {
+    TetBoundary boundary;
+    std::vector<std::size_t> places; ///< among all triangles
+
+    int number() const { return int(boundary); }
+};
+
+/// Those that there are.
+std::vector<Surface> surfaces_of(const std::vector<BoundaryTriangle>& boundary)
 {
-    std::array<std::vector<std::size_t>, 1 + kTetBoundaries> places;
-    for (std::size_t i = 0; i < boundary.size(); ++i)
-        places[std::size_t(boundary[i].boundary)].push_back(i);
-    return places;
+    std::vector<Surface> surfaces;
+    for (const auto& [name, kind] : names(TetBoundary{})) {
+        Surface surface{kind, {}};
+        for (std::size_t i = 0; i < boundary.size(); ++i)
+            if (boundary[i].boundary == kind)
+                surface.places.push_back(i);
+        if (!surface.places.empty())
+            surfaces.push_back(std::move(surface));
+    }
+    return surfaces;
 }
 
-/// What a .msh is made of. Surfaces are numbered as boundaries are, volumes from 1.
+/// What a .msh is made of. Volumes are numbered from 1.
 struct GmshParts {
+    const std::vector<BoundaryTriangle>& boundary;
+    std::vector<Surface> surfaces;
     std::vector<Volume> volumes;
-    std::vector<BoundaryTriangle> boundary;
-    std::array<std::vector<std::size_t>, 1 + kTetBoundaries> surfaces; ///< places in `boundary`
 
-    std::size_t surface_count() const
-    {
-        return std::size_t(std::count_if(surfaces.begin(), surfaces.end(),
-                                         [](const auto& places) { return !places.empty(); }));
-    }
-    /// visit(number, places) for those that there are.
-    template <class Visit> void for_each_surface(const Visit& visit) const
-    {
-        for (std::size_t k = 1; k < surfaces.size(); ++k)
-            if (!surfaces[k].empty())
-                visit(k, surfaces[k]);
-    }
+    std::size_t count() const { return surfaces.size() + volumes.size(); }
 };
 
 /// Dimension, number and name of what solvers choose parts of the mesh by.
 void write_gmsh_names(TextOut& text, const GmshParts& parts)
 {
-    text << "$PhysicalNames\n" << parts.surface_count() + parts.volumes.size() << '\n';
-    parts.for_each_surface([&](std::size_t k, const auto&) {
-        text << "2 " << k << " \"" << name_of(TetBoundary(k)) << "\"\n";
-    });
+    text << "$PhysicalNames\n" << parts.count() << '\n';
+    for (const Surface& surface : parts.surfaces)
+        text << "2 " << surface.number() << " \"" << name_in_table(surface.boundary) << "\"\n";
     for (std::size_t k = 0; k < parts.volumes.size(); ++k)
         text << "3 " << k + 1 << " \"" << parts.volumes[k].name << "\"\n";
     text << "$EndPhysicalNames\n";
@@ -127,8 +128,9 @@ void write_gmsh_entities(TextOut& text, const TetMesh& tets, const GmshParts& pa
                 text << ' ' << placement.origin[axis] + placement.unit * corner[axis];
         text << " 1 " << number << " 0\n";
     };
-    text << "$Entities\n0 0 " << parts.surface_count() << ' ' << parts.volumes.size() << '\n';
-    parts.for_each_surface([&](std::size_t k, const auto&) { write(k); });
+    text << "$Entities\n0 0 " << parts.surfaces.size() << ' ' << parts.volumes.size() << '\n';
+    for (const Surface& surface : parts.surfaces)
+        write(std::size_t(surface.number()));
     for (std::size_t k = 0; k < parts.volumes.size(); ++k)
         write(k + 1);
     text << "$EndEntities\n";
@@ -140,8 +142,7 @@ void write_gmsh_elements(TextOut& text, const TetMesh& tets, const GmshParts& pa
 {
     constexpr int kTriangle = 2, kFourNodeTet = 4;
     const std::size_t count = tets.tets.size() + parts.boundary.size();
-    text << "$Elements\n"
-         << parts.surface_count() + parts.volumes.size() << ' ' << count << " 1 " << count << '\n';
+    text << "$Elements\n" << parts.count() << ' ' << count << " 1 " << count << '\n';
     for (std::size_t k = 0; k < parts.volumes.size(); ++k) {
         const Volume& volume = parts.volumes[k];
         text << "3 " << k + 1 << ' ' << kFourNodeTet << ' ' << volume.last - volume.first << '\n';
@@ -152,14 +153,15 @@ void write_gmsh_elements(TextOut& text, const TetMesh& tets, const GmshParts& pa
         }
     }
     std::size_t tag = tets.tets.size();
-    parts.for_each_surface([&](std::size_t k, const std::vector<std::size_t>& places) {
-        text << "2 " << k << ' ' << kTriangle << ' ' << places.size() << '\n';
-        for (const std::size_t place : places) {
+    for (const Surface& surface : parts.surfaces) {
+        text << "2 " << surface.number() << ' ' << kTriangle << ' ' << surface.places.size()
+             << '\n';
+        for (const std::size_t place : surface.places) {
             text << ++tag;
             write_corners(text, parts.boundary[place].corners, 1);
             text << '\n';
         }
-    });
+    }
     text << "$EndElements\n";
 }
 
@@ -169,10 +171,9 @@ std::vector<std::int32_t> by_element(const std::vector<Number>& by_tet, const Gm
 {
     std::vector<std::int32_t> values = signed_numbers(by_tet);
     values.reserve(values.size() + parts.boundary.size());
-    parts.for_each_surface([&](std::size_t, const std::vector<std::size_t>& places) {
-        for (const std::size_t place : places)
+    for (const Surface& surface : parts.surfaces)
+        for (const std::size_t place : surface.places)
             values.push_back(values[parts.boundary[place].tet]);
-    });
     return values;
 }
 
@@ -239,8 +240,8 @@ void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placeme
 {
     TextOut text(out);
     const std::size_t points = tets.points.size();
-    GmshParts parts{volumes_of(tets), boundary_of(tets), {}};
-    parts.surfaces = places_by_boundary(parts.boundary);
+    const std::vector<BoundaryTriangle> boundary = boundary_of(tets);
+    const GmshParts parts{boundary, surfaces_of(boundary), volumes_of(tets)};
     // Version, text, and bytes of a size_t as a binary file would have them.
     text << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
     write_gmsh_names(text, parts);

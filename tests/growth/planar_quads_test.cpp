@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,6 +38,27 @@ struct Start {
     {
     }
 };
+
+/// The most bent quad below the surface's edges, 1 where a tet of its prism is flat: six volumes of
+/// the tet of its four corners, over twice the area of the face times the pillars' mean depth.
+double most_bent_quad(const GrowState& s, const Directions& directions,
+                      const std::vector<double>& length)
+{
+    const auto depth = [&](int v) { return length[v] * std::max(directions.visibility[v], 0.1); };
+    double most = 0;
+    for (const openvdb::Vec3I& face : s.mesh->faces) {
+        const double twice_area =
+            (s.a[face[1]] - s.a[face[0]]).cross(s.a[face[2]] - s.a[face[0]]).length();
+        for (int k = 0; k < 3; ++k) {
+            const auto p = int(face[k]), q = int(face[(k + 1) % 3]);
+            const Vec3d first = length[p] * directions.inward[p],
+                        second = length[q] * directions.inward[q];
+            most = std::max(most, std::abs(first.cross(second).dot(s.a[q] - s.a[p])) /
+                                      (twice_area * std::sqrt(depth(p) * depth(q))));
+        }
+    }
+    return most;
+}
 
 // Fans of needles over a whole plate, and a band of short edges around it.
 TEST(PlanarQuads, AreFoundOnAPlateOfNeedles)
