@@ -59,23 +59,18 @@ fs::path first_vdb(const Outputs& outputs)
     return {};
 }
 
-/// The files that one output is made of. Of TetGen's two either name gives both, and both names
-/// together give them once.
+/// The files that one output is made of. Of TetGen's either name gives all, and both names together
+/// give them once.
 std::vector<fs::path> files_of(const fs::path& path, const Outputs& outputs)
 {
     if (kind_of(path) == Kind::vdb && outputs.vdb.points == PointPlacement::beside)
         return {path, points_file_of(path)};
-    const std::string extension = lower_case_extension(path);
-    if (extension != ".ele" && extension != ".node")
-        return {path};
-    // In small letters, as write_tets has them: a plan that has "A.ELE" would not see "A.ele".
-    const fs::path ele = fs::path(path).replace_extension(".ele"),
-                   node = fs::path(path).replace_extension(".node");
-    if (extension == ".node")
-        return {node, ele};
-    // Where both are named, the other name writes the two, and this one nothing.
-    const bool both = std::count(outputs.paths.begin(), outputs.paths.end(), node) > 0;
-    return both ? std::vector<fs::path>{} : std::vector<fs::path>{ele, node};
+    std::vector<fs::path> files = tet_files_of(path);
+    // Where both are named, the other name writes all, and this one nothing.
+    if (lower_case_extension(path) == ".ele" &&
+        std::count(outputs.paths.begin(), outputs.paths.end(), files.front()) > 0)
+        return {};
+    return files;
 }
 
 /// The shell and what fills it, as one mesh of tets; flags of the core's are all set, as a core is
@@ -156,7 +151,7 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
     // Joined once for all formats of tets, and not at all without one: it is a copy of all tets.
     const Solid solid = wants_flags(outputs) ? solid_of(file, certified) : Solid{};
     for (const fs::path& path : outputs.paths) {
-        // The .ele of a call that names the .node too, which writes both.
+        // The .ele of a call that names the .node too, which writes all.
         if (files_of(path, outputs).empty())
             continue;
         switch (kind_of(path)) {
@@ -168,7 +163,8 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             break;
         case Kind::tets:
             write_tets(path, solid.tets, solid.certified, file.placement,
-                       {feet_of_tet_points(file.stack, solid.tets, file.core_feet),
+                       {pillar_values(file.stack, file.tets, solid.tets.points.size()),
+                        feet_of_tet_points(file.stack, solid.tets, file.core_feet),
                         vectors_of_tet_points(file.tets, file.rest),
                         vectors_of_tet_points(file.tets, file.rest.velocity), file.input},
                        &files);

@@ -29,7 +29,8 @@ OptionSections describe(RepairArguments& a)
     OptionSections sections{
         {"",
          {preset_option(a.preset), output, no_clobber_option(a.no_clobber),
-          input_format_option(a.format), option("", a.json, "--json", "Print one JSON object")}},
+          input_format_option(a.format), option("", a.json, "--json", "Print one JSON object"),
+          option("", a.quiet, "--quiet", "Print no figures").with_names({"-q"})}},
         {"read", describe(a.read)},
         {"repair", describe(a.repair)}};
     for (OptionSection& section : sections)
@@ -79,8 +80,10 @@ int run_repair(const RepairArguments& arguments, Context& context)
     write_mesh(arguments.output, result.mesh, placement, &files);
     files.commit();
     const std::string name = arguments.mesh.filename().string();
-    context.out << (arguments.json ? repair_json(result.report) + '\n'
-                                   : name + ":\n" + repair_text(result.report));
+    if (arguments.json)
+        context.out << repair_json(result.report) << '\n';
+    else if (!arguments.quiet)
+        context.out << name << ":\n" << repair_text(result.report);
     try {
         // The test that `build` makes of its input, so success here means that a shell can be
         // tried.

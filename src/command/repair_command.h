@@ -21,7 +21,7 @@ struct RepairArguments {
     ReadOptions read;
     RepairOptions repair;
     bool no_clobber = false;
-    bool json = false;
+    bool json = false, quiet = false;
 };
 
 BoundOptions add_repair_command(CLI::App& app, RepairArguments& arguments);

@@ -44,17 +44,15 @@ template <typename Corner> Vec3s mean_of(int count, const Corner& corner)
 }
 
 /// Layers on one side of the skin share their reasons (require_consistent checks that), so the last
-/// layer speaks for all below the skin and the first for all above.
+/// layer speaks for all below the skin (stop_reason_of) and the first for all above.
 void add_stop_reasons(PointGridBuilder& builder, const ShellStack& stack, const ShellPoints& points)
 {
-    const auto add = [&](const char* name, const PrismShell& layer) {
-        builder.add<std::int32_t>(name,
-                                  [&](std::size_t i) { return layer.stop[points.vertex[i]]; });
-    };
-    add("stop_reason", stack.layers.back());
+    builder.add<std::int32_t>(
+        "stop_reason", [&](std::size_t i) { return stop_reason_of(stack, points.vertex[i]); });
     // Only then are there two reasons for a vertex; other files go without the column.
     if (on_both_sides(stack))
-        add(kOuterStop, stack.layers.front());
+        builder.add<std::int32_t>(
+            kOuterStop, [&](std::size_t i) { return stack.layers.front().stop[points.vertex[i]]; });
 }
 
 /// Positions, and what is drawn or shaded with: the other end of the pillar, normal, thickness.
@@ -164,6 +162,11 @@ float thickness_of(const ShellStack& stack, std::size_t vertex)
     return float(pillar_length(stack, vertex));
 }
 
+StopReason stop_reason_of(const ShellStack& stack, std::size_t vertex)
+{
+    return stack.layers.back().stop[vertex];
+}
+
 bool pinned_throughout(const ShellStack& stack, std::size_t vertex)
 {
     return std::all_of(stack.layers.begin(), stack.layers.end(),
@@ -249,6 +252,16 @@ std::vector<std::vector<Vec3s>> vectors_by_surface(const ShellPoints& points,
     for (const std::vector<std::uint32_t>& ids : points.id)
         surfaces.push_back(column<Vec3s>(ids.size(), [&](std::size_t v) { return by_id[ids[v]]; }));
     return surfaces;
+}
+
+PillarValues pillar_values(const ShellStack& stack, const TetMesh& tets, std::size_t points)
+{
+    PillarValues values{std::vector<float>(points), std::vector<std::int32_t>(points)};
+    for_each_index(tets.points.size(), [&](std::size_t p) {
+        values.thickness[p] = thickness_of(stack, tets.source_vertex[p]);
+        values.stop_reason[p] = std::int32_t(stop_reason_of(stack, tets.source_vertex[p]));
+    });
+    return values;
 }
 
 std::vector<Vec3s> vectors_of_tet_points(const TetMesh& tets, const PointVectors& vectors)

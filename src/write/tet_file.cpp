@@ -2,8 +2,8 @@
 
 // Chooses the writer of a file of tets by its extension and makes the file appear whole or not at
 // all. The formats themselves are in vtu_file.cpp and tet_text_files.cpp. TetGen's format is the
-// exception with two files, of which each is useless without the other; either extension writes
-// both. Known extensions stand in one list, which the command shows and this file tests.
+// exception with three files, of which none is of use without the points; either extension writes
+// all. Known extensions stand in one list, which the command shows and this file tests.
 
 #include "vdb_shell/write/tet_file.h"
 
@@ -24,13 +24,13 @@ namespace fs = std::filesystem;
 void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& placement,
                   OutputSet* with)
 {
-    fs::path node = path, ele = path;
-    node.replace_extension(".node");
-    ele.replace_extension(".ele");
+    const std::vector<fs::path> files = tet_files_of(path);
     write_together(with, [&](OutputSet& set) {
-        // In one set, so that a reader never finds the one file with the other of an earlier run.
-        set.write_stream(ele, [&](std::ostream& out) { write_tetgen_ele(out, tets); });
-        set.write_stream(node, [&](std::ostream& out) { write_tetgen_node(out, tets, placement); });
+        // In one set, so that a reader never finds one of them with another of an earlier run.
+        set.write_stream(files[0],
+                         [&](std::ostream& out) { write_tetgen_node(out, tets, placement); });
+        set.write_stream(files[1], [&](std::ostream& out) { write_tetgen_ele(out, tets); });
+        set.write_stream(files[2], [&](std::ostream& out) { write_tetgen_face(out, tets); });
     });
 }
 
@@ -51,6 +51,17 @@ const std::vector<std::string>& tet_file_extensions()
     return extensions;
 }
 
+std::vector<fs::path> tet_files_of(const fs::path& path)
+{
+    const std::string extension = lower_case_extension(path);
+    if (extension != ".node" && extension != ".ele")
+        return {path};
+    std::vector<fs::path> files;
+    for (const char* one : {".node", ".ele", ".face"})
+        files.push_back(fs::path(path).replace_extension(one));
+    return files;
+}
+
 void write_tets(const fs::path& path, const TetMesh& tets,
                 const std::vector<std::uint8_t>& certified, const Placement& placement,
                 const PointExtras& extras, OutputSet* with)
@@ -66,6 +77,8 @@ void write_tets(const fs::path& path, const TetMesh& tets,
             throw InvalidOption(path.string() + ": " + std::to_string(count) + what +
                                 std::to_string(tets.points.size()) + " points");
     };
+    require_one_a_point(extras.pillars.thickness.size(), " thicknesses for ");
+    require_one_a_point(extras.pillars.stop_reason.size(), " stop reasons for ");
     require_one_a_point(extras.feet.size(), " feet on cores for ");
     require_one_a_point(extras.rest.size(), " places at rest for ");
     require_one_a_point(extras.velocity.size(), " velocities for ");

@@ -25,6 +25,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
                const Placement& placement, const PointExtras& extras);
 void write_tetgen_node(std::ostream& out, const TetMesh& tets, const Placement& placement);
 void write_tetgen_ele(std::ostream& out, const TetMesh& tets);
+void write_tetgen_face(std::ostream& out, const TetMesh& tets);
 void write_medit(std::ostream& out, const TetMesh& tets, const Placement& placement);
 void write_gmsh(std::ostream& out, const TetMesh& tets, const Placement& placement);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Tets as text: TetGen's .node and .ele, Medit's .mesh, Gmsh's .msh (format 4.1). Digits are the
-// shortest that give the same double again and independent of the locale (TextOut), so the float32
-// that were certified survive the text. Points keep their order; indices begin at 0 for TetGen and
-// at 1 for Medit and Gmsh. What stands where is in docs/file_format.md.
+// Tets as text: TetGen's .node, .ele and .face, Medit's .mesh, Gmsh's .msh (format 4.1). Digits are
+// the shortest that give the same double again and independent of the locale (TextOut), so the
+// float32 that were certified survive the text. Points keep their order; indices begin at 0 for
+// TetGen and at 1 for Medit and Gmsh. What stands where is in docs/file_format.md.
 
 #include "vdb_shell/mesh/triangle_mesh.h"
 #include "vdb_shell/shell/core_tets.h"
@@ -207,6 +207,18 @@ void write_tetgen_ele(std::ostream& out, const TetMesh& tets)
         if (layers)
             text << ' ' << layer[t];
         text << '\n';
+    }
+}
+
+void write_tetgen_face(std::ostream& out, const TetMesh& tets)
+{
+    TextOut text(out);
+    const std::vector<BoundaryTriangle> boundary = boundary_of(tets);
+    text << "# index a b c boundary\n" << boundary.size() << " 1\n";
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        text << i;
+        write_corners(text, boundary[i].corners, 0);
+        text << ' ' << int(boundary[i].boundary) << '\n';
     }
 }
 

@@ -7,7 +7,9 @@
 // What the arrays hold is in docs/file_format.md.
 
 #include "core/byte_order.h"
+#include "core/parallel.h"
 #include "vdb_shell/shell/core_tets.h"
+#include "vdb_shell/shell/quality.h"
 #include "vdb_shell/write/text_out.h"
 #include "write/base64.h"
 #include "write/tet_formats.h"
@@ -121,6 +123,29 @@ void write_feet(TextOut& text, const std::vector<CoreFoot>& feet, const Placemen
     write_array(text, "Float32", "core_distance", 1, distance);
 }
 
+void write_pillars(TextOut& text, const PillarValues& pillars, const Placement& placement)
+{
+    if (!pillars.thickness.empty()) {
+        std::vector<float> thickness = pillars.thickness;
+        for (float& length : thickness)
+            length *= float(placement.unit);
+        write_array(text, "Float32", "thickness", 1, thickness);
+    }
+    if (!pillars.stop_reason.empty())
+        write_array(text, "Int32", "stop_reason", 1, pillars.stop_reason);
+}
+
+/// By tet, the shape that the report's quality.mean_ratio is about.
+std::vector<float> mean_ratios(const TetMesh& tets)
+{
+    std::vector<float> ratios(tets.tets.size());
+    for_each_index(ratios.size(), [&](std::size_t t) {
+        const auto corner = [&](int k) { return openvdb::Vec3d(tets.points[tets.tets[t][k]]); };
+        ratios[t] = float(mean_ratio(corner(0), corner(1), corner(2), corner(3)));
+    });
+    return ratios;
+}
+
 /// Arrays of the whole file, as long as they are.
 void write_input(TextOut& text, const InputPoints& input, const Placement& placement)
 {
@@ -156,6 +181,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
          << tets.tets.size() << "\">\n<PointData>\n";
     write_numbers(text, tets, "UInt32", "source_vertex", tets.source_vertex);
     write_numbers(text, tets, "UInt8", "layer", tets.layer);
+    write_pillars(text, extras.pillars, placement);
     write_feet(text, extras.feet, placement);
     if (!extras.rest.empty())
         write_places(text, "rest", extras.rest, placement);
@@ -165,6 +191,7 @@ void write_vtu(std::ostream& out, const TetMesh& tets, const std::vector<std::ui
     write_numbers(text, tets, "UInt32", "prism", tets.prism);
     if (has_layers(tets))
         write_numbers(text, tets, "UInt8", "layer", tets.prism_layer);
+    write_array(text, "Float32", "mean_ratio", 1, mean_ratios(tets));
     if (!certified.empty())
         write_array(text, "UInt8", "certified", 1, certified);
     text << "</CellData>\n<Points>\n";

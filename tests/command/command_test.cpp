@@ -32,7 +32,7 @@ TEST_F(Command, BuildsEveryFormatAndTheFigures)
         run("build " + sphere + kCoarse + outputs + " --report " + file("s.json"));
     ASSERT_EQ(result.status, ExitCode::success) << result.err;
     for (const char* name :
-         {"s.vdb", "s.vtu", "s.node", "s.ele", "s.mesh", "s.msh", "inner.ply", "s.png"})
+         {"s.vdb", "s.vtu", "s.node", "s.ele", "s.face", "s.mesh", "s.msh", "inner.ply", "s.png"})
         EXPECT_GT(std::filesystem::file_size(folder / name), 0u) << name;
     const auto report = nlohmann::json::parse(read_bytes(folder / "s.json"));
     EXPECT_EQ(report.at("source"), "sphere.obj");
@@ -199,6 +199,9 @@ TEST_F(Command, RepairWritesTheMendedSurface)
     const TriangleMesh closed = read_mesh(folder / "closed.obj").mesh;
     EXPECT_EQ(closed.triangles.size(), hollow.triangles.size() + 1);
     EXPECT_EQ(closed.points, hollow.points);
+    EXPECT_NE(result.out, "");
+    EXPECT_EQ(run("repair -q " + open + " -o " + file("again.obj")).out, "");
+    EXPECT_EQ(read_bytes(folder / "again.obj"), read_bytes(folder / "closed.obj"));
     EXPECT_EQ(run("inspect " + file("closed.obj")).status, ExitCode::success);
     // A single triangle is a sheet: it is written, but nothing closes it.
     TriangleMesh sheet;

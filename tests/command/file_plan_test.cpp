@@ -89,10 +89,11 @@ TEST_F(FilePlans, APointsFileOfAnotherNameIsAnInputToo)
     EXPECT_EQ(run("check " + file("b.vdb")).status, ExitCode::success);
 }
 
-TEST_F(FilePlans, BothFilesOfTetGenAreWrittenOnce)
+TEST_F(FilePlans, AllFilesOfTetGenAreWrittenOnce)
 {
     EXPECT_EQ(run(build + out("t.node") + out("t.ele")).status, ExitCode::success);
-    EXPECT_TRUE(fs::exists(folder / "t.node") && fs::exists(folder / "t.ele"));
+    for (const char* name : {"t.node", "t.ele", "t.face"})
+        EXPECT_TRUE(fs::exists(folder / name)) << name;
 }
 
 TEST_F(FilePlans, ExtensionsAreTheSameInCapitals)

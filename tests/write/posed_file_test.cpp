@@ -115,11 +115,11 @@ TEST(PosedFile, TetsOfVtuHaveTheirRest)
     const test::TemporaryFolder folder;
     const ShellFile file = posed_sample();
     write_tets(folder / "p.vtu", file.tets, {}, {},
-               {{}, vectors_of_tet_points(file.tets, file.rest), {}});
+               {{}, {}, vectors_of_tet_points(file.tets, file.rest), {}});
     EXPECT_NE(test::read_bytes(folder / "p.vtu").find("Name=\"rest\""), std::string::npos);
-    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {}, {Vec3s(0)}}),
+    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {}, {}, {Vec3s(0)}}),
                  InvalidOption);
-    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {Vec3s(0)}, {}}),
+    EXPECT_THROW(write_tets(folder / "q.vtu", file.tets, {}, {}, {{}, {}, {Vec3s(0)}, {}}),
                  InvalidOption);
 }
 

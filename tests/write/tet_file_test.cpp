@@ -13,6 +13,7 @@
 
 #include <array>
 #include <clocale>
+#include <cmath>
 #include <cstring>
 #include <locale>
 #include <map>
@@ -111,6 +112,29 @@ TEST(TetFile, TetGenHoldsTheExactNumbers)
         words >> count >> dimension >> attributes;
         EXPECT_EQ(count, tets.tets.size());
         EXPECT_TRUE(same_bits(tets_from(words, count, 0, 1, 1), tets.tets));
+    }
+}
+
+TEST(TetFile, TetGenHasTheBoundaryAndWhatItsTrianglesAre)
+{
+    const TemporaryFolder folder;
+    const TetMesh tets = awkward_tets();
+    write_tets(folder / "a.ele", tets);
+    std::istringstream words = after(test::read_bytes(folder / "a.face"), "# index a b c boundary");
+    std::size_t count = 0, markers = 0;
+    words >> count >> markers;
+    const std::vector<BoundaryTriangle> boundary = boundary_of(tets);
+    ASSERT_EQ(count, boundary.size());
+    EXPECT_EQ(markers, 1u);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::size_t index = 0;
+        openvdb::Vec3I corners;
+        int marker = 0;
+        words >> index >> corners[0] >> corners[1] >> corners[2] >> marker;
+        ASSERT_TRUE(bool(words));
+        EXPECT_EQ(index, i);
+        EXPECT_EQ(corners, boundary[i].corners);
+        EXPECT_EQ(marker, int(boundary[i].boundary));
     }
 }
 
@@ -314,6 +338,57 @@ TEST(TetFile, VtuHoldsTheFlagsOfCertifiedTets)
     EXPECT_THROW(write_tets(folder / "a.vtu", tets, certified), InvalidOption);
 }
 
+TEST(TetFile, VtuHasTheMeanRatioOfEachTet)
+{
+    const TemporaryFolder folder;
+    // Regular; the half of a cube's corner; the first one turned over.
+    TetMesh tets;
+    tets.points = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1},
+                   {0, 0, 0}, {1, 0, 0},   {0, 1, 0},   {0, 0, 1}};
+    tets.tets = {{0, 2, 1, 3}, {4, 5, 6, 7}, {0, 1, 2, 3}};
+    tets.source_vertex = {0, 1, 2, 3, 4, 5, 6, 7};
+    tets.layer.assign(8, 0);
+    tets.prism = {0, 1, 2};
+    tets.prism_layer = {0, 0, 0};
+    write_tets(folder / "a.vtu", tets);
+    const auto ratio =
+        values_of<float>(vtu_array(test::read_bytes(folder / "a.vtu"), "mean_ratio"));
+    ASSERT_EQ(ratio.size(), 3u);
+    const float sign = ratio[0] > 0 ? 1.0f : -1.0f;
+    EXPECT_NEAR(sign * ratio[0], 1, 1e-6);
+    EXPECT_EQ(ratio[2], -ratio[0]);
+    // 12 (1/2)^(2/3) over squares of edges that sum up to 9.
+    EXPECT_NEAR(ratio[1], 12 * std::cbrt(0.25) / 9, 1e-6);
+}
+
+TEST(TetFile, VtuHasThicknessAndStopReasonOfThePillarsInTheUnitOfThePoints)
+{
+    const TemporaryFolder folder;
+    const test::HandMade made = test::hand_made_shell(test::icosphere(1, 1), 0.25, {4});
+    ShellStack stack = one_layer(made.shell, made.split);
+    stack.layers.back().stop[4] = StopReason::pinned;
+    stack.layers.back().stop[7] = StopReason::inner_contact;
+    Placement placement;
+    placement.unit = 4;
+    PointExtras extras;
+    extras.pillars = pillar_values(stack, made.tets, made.tets.points.size());
+    write_tets(folder / "a.vtu", made.tets, {}, placement, extras);
+    const std::string text = test::read_bytes(folder / "a.vtu");
+    const auto thickness = values_of<float>(vtu_array(text, "thickness"));
+    const auto stop = values_of<std::int32_t>(vtu_array(text, "stop_reason"));
+    ASSERT_EQ(thickness.size(), made.tets.points.size());
+    ASSERT_EQ(stop.size(), made.tets.points.size());
+    for (std::size_t p = 0; p < thickness.size(); ++p) {
+        const std::uint32_t v = made.tets.source_vertex[p];
+        const double length =
+            (openvdb::Vec3d(stack.surface(1)[v]) - openvdb::Vec3d(stack.surface(0)[v])).length();
+        EXPECT_NEAR(thickness[p], 4 * length, 1e-6);
+        EXPECT_EQ(stop[p], int(stack.layers.back().stop[v]));
+    }
+    extras.pillars.thickness.pop_back();
+    EXPECT_THROW(write_tets(folder / "b.vtu", made.tets, {}, {}, extras), InvalidOption);
+}
+
 TEST(TetFile, VtuHasPlacesAtRestAndVelocitiesInTheCoordinatesOfThePoints)
 {
     const TemporaryFolder folder;
@@ -382,7 +457,7 @@ TEST(TetFile, RefusesUnknownExtensionsAndMissingFolders)
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(TetFile, TetGenFilesAreWrittenBothOrNone)
+TEST(TetFile, TetGenFilesAreWrittenAllOrNone)
 {
     const TemporaryFolder folder;
     test::write_bytes(folder / "a.ele", "old");
@@ -394,6 +469,7 @@ TEST(TetFile, TetGenFilesAreWrittenBothOrNone)
     fs::create_directory(folder / "a.ele");
     EXPECT_THROW(write_tets(folder / "a.node", awkward_tets()), WriteError);
     EXPECT_FALSE(fs::exists(folder / "a.node"));
+    EXPECT_FALSE(fs::exists(folder / "a.face"));
 }
 
 } // namespace

@@ -67,6 +67,14 @@ vectors_by_surface(const ShellPoints& points, const std::vector<openvdb::Vec3s>&
 /// By point of joined_tets(tets, core); empty where there are none.
 std::vector<openvdb::Vec3s> vectors_of_tet_points(const TetMesh& tets, const PointVectors& vectors);
 
+/// Of the pillar that a point of the tets belongs to.
+struct PillarValues {
+    std::vector<float> thickness;          ///< thickness_of
+    std::vector<std::int32_t> stop_reason; ///< stop_reason_of
+};
+/// By point of joined_tets(tets, core) of `points` points; a core's own points have 0 of both.
+PillarValues pillar_values(const ShellStack& stack, const TetMesh& tets, std::size_t points);
+
 /// By id: the foot of the pillar whose innermost point it is; other points have none.
 std::vector<CoreFoot> feet_by_id(const ShellPoints& points, const std::vector<CoreFoot>& feet);
 /// The way back. Throws ReadError, its message opened by `name`, for values that no foot has.
@@ -77,6 +85,8 @@ std::vector<CoreFoot> feet_by_vertex(const ShellPoints& points, const std::vecto
 const openvdb::Vec3s& opposite_of(const ShellStack& stack, std::size_t surface, std::size_t vertex);
 /// Of the whole pillar, from the outermost surface to the innermost.
 float thickness_of(const ShellStack& stack, std::size_t vertex);
+/// Why the pillar ends below the skin; above it where no layer lies below.
+StopReason stop_reason_of(const ShellStack& stack, std::size_t vertex);
 /// Whether the pillar has no length in any layer.
 bool pinned_throughout(const ShellStack& stack, std::size_t vertex);
 /// Whether there are layers above the skin and below it.
