@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fill of parts whose flat walls are cut into needles, by builds of two versions, for docs/measurements/tried.md.
 
-    needles.py BEFORE COMMAND PREFIX=FOLDER ... [--most-triangles 5000] [--flags "--for speed"]
+    needles.py BEFORE COMMAND PREFIX=FOLDER ... [--triangles 0 5000] [--flags "--for speed"]
 
-Of the parts of docs/measurements/machined.md, which have their halves and names from there, those of at most so many triangles
+Of the parts of docs/measurements/machined.md, which have their halves and names from there, those of so many triangles (least and most)
 that the page says are less than .99 full by default; and plates of needles, made here. Prints a table.
 """
 import argparse
@@ -22,9 +22,10 @@ PAGE = pathlib.Path(__file__).parent.parent / "measurements/machined.md"
 ROW = re.compile(r"\| (\w+) \| (?:tuning|judging) \| ([\d,]+) \| [\d.]+ \| ([\d.]+)")
 
 
-def wanted_names(most_triangles):
+def wanted_names(least_triangles, most_triangles):
     rows = [ROW.match(line) for line in PAGE.read_text().splitlines()]
-    return {row[1] for row in rows if row and int(row[2].replace(",", "")) <= most_triangles and float(row[3]) < 0.99}
+    return {row[1] for row in rows
+            if row and least_triangles <= int(row[2].replace(",", "")) <= most_triangles and float(row[3]) < 0.99}
 
 
 def write_plate(path, points_per_corner, half=50, radius=3, thickness=3):
@@ -59,12 +60,12 @@ def main():
     parser.add_argument("before")
     parser.add_argument("command")
     parser.add_argument("folders", nargs="*", type=lambda word: tuple(word.split("=", 1)))
-    parser.add_argument("--most-triangles", type=int, default=5000)
+    parser.add_argument("--triangles", type=int, nargs=2, default=[0, 5000], metavar=("LEAST", "MOST"))
     parser.add_argument("--flags", default="")
     a = parser.parse_args()
-    names, rows, fills = wanted_names(a.most_triangles), [], {}
+    names, rows, fills = wanted_names(*a.triangles), [], {}
     with tempfile.TemporaryDirectory() as folder:
-        chosen = [*plates(folder), *(part for part in parts(a.folders) if part[0] in names)]
+        chosen = [*(plates(folder) if a.triangles[0] == 0 else []), *(part for part in parts(a.folders) if part[0] in names)]
         for name, path in chosen:
             two = [build(command, path, [*a.flags.split(), "--samples", "0"], figures) for command in (a.before, a.command)]
             if any(one["exit"] != 0 for one in two):

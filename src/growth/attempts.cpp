@@ -15,6 +15,28 @@ bool too_large_for_attempts(std::size_t triangles, const GrowOptions& options)
     return double(triangles) > options.schedule.multilevel.most_coarsest_triangles;
 }
 
+namespace
+{
+
+/// What is begun from anything but the first start.
+GrowOptions for_other_starts(GrowOptions options)
+{
+    if (options.method == Method::thickest) {
+        // What has had twelve tets first is tried with three from the beginning.
+        options.method = Method::certified;
+        options.prism_test = PrismTest::chosen_tets;
+    }
+    return options;
+}
+
+/// Only then may inner points leave their lines, as they do in all other ways.
+bool may_leave_lines(const GrowOptions& options)
+{
+    return options.top_down && options.free_moves;
+}
+
+} // namespace
+
 std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
                                  const GrowOptions& options)
 {
@@ -26,14 +48,8 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
     std::vector<Attempt> attempts{{on_levels ? GrowFrom::levels : GrowFrom::lines, first, options}};
     if (on_levels && too_large_for_attempts(triangles, options))
         return attempts;
-    GrowOptions next = options;
-    if (thickest) {
-        // What has had twelve tets first is tried with three from the beginning.
-        next.method = Method::certified;
-        next.prism_test = PrismTest::chosen_tets;
-    }
-    // What is mended leaves its line.
-    if (options.top_down && options.free_moves)
+    const GrowOptions next = for_other_starts(options);
+    if (may_leave_lines(options))
         for (const LineStart other : {LineStart::planar, LineStart::mended})
             attempts.push_back({GrowFrom::lines, other, next});
     if (thickest && !on_levels)
@@ -50,6 +66,27 @@ double enough_for(const Attempt& attempt)
     const double full =
         attempt.from == GrowFrom::levels ? attempt.options.schedule.lines.nearly_full : kNearlyFull;
     return std::min(full, attempt.options.schedule.barrier.enough_fill);
+}
+
+Restarts restarts_of(const Attempt& first, std::size_t triangles)
+{
+    const GrowthSchedule& schedule = first.options.schedule;
+    Restarts restarts{{GrowFrom::shell, {}, for_other_starts(first.options)},
+                      schedule.restarts.most,
+                      schedule.restarts.least_gain_of_void,
+                      enough_for(first)};
+    if (first.from == GrowFrom::shell || !may_leave_lines(first.options))
+        restarts.most = 0;
+    if (first.from != GrowFrom::levels)
+        return restarts;
+    const bool large = too_large_for_attempts(triangles, first.options);
+    restarts.enough =
+        std::min(large ? schedule.restarts.large_enough : schedule.multilevel.wanted_fill,
+                 schedule.barrier.enough_fill);
+    // What has had one round cannot afford as many as these take.
+    if (double(triangles) >= schedule.multilevel.one_round_triangles)
+        restarts.most = 0;
+    return restarts;
 }
 
 } // namespace vdb_shell::growth

@@ -30,4 +30,16 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
 /// Share of the solid from which no way after this one is tried.
 double enough_for(const Attempt& attempt);
 
+/// Growth from the shell that it has come to: a barrier that weighs as much as at first parts inner
+/// vertices that have jammed, and rounds win some of what they had left. Nothing is lost by that,
+/// for the fuller shell is kept.
+struct Restarts {
+    Attempt attempt; ///< from the fullest shell
+    int most;        ///< how often, as long as each wins a share of what is empty
+    double least_gain_of_void;
+    double enough; ///< share of the solid from which there is none
+};
+/// After that attempt and the others.
+Restarts restarts_of(const Attempt& first, std::size_t triangles);
+
 } // namespace vdb_shell::growth

@@ -216,31 +216,53 @@ bool any_of(const std::vector<std::uint8_t>& components)
     return std::find(components.begin(), components.end(), 1) != components.end();
 }
 
-/// The shell of the first attempt, and where that is not full enough the fullest of all.
+struct Fullest {
+    GrowResult result;
+    double fill;
+};
+
+/// A pin costs more than the volume around it: prisms, and all that needs their pillars. So does
+/// the shape that the user asks for.
+void take_if_better(const Connectivity& connectivity, GrowResult other, Fullest& fullest)
+{
+    const double fill = fill_of(other.shell);
+    if (fill > fullest.fill && pins_of(other.shell) <= pins_of(fullest.result.shell) &&
+        other.report.tets_below_quality <= fullest.result.report.tets_below_quality &&
+        !any_of(turned_components(connectivity, other.shell)))
+        fullest = {std::move(other), fill};
+}
+
+/// The shell of the first attempt, and where that is not full enough the fullest of all; then what
+/// growth comes to from that, again and again.
 GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
                         const std::vector<double>& cap, const GrowOptions& options,
                         const SplitOptions& split, const StageProgress& progress)
 {
-    const std::vector<Attempt> attempts =
-        attempts_of(given.start, given.mesh.triangles.size(), options);
-    GrowResult fullest = grow_once(given, connectivity, cap, attempts.front(), split, progress);
+    const std::size_t triangles = given.mesh.triangles.size();
+    const std::vector<Attempt> attempts = attempts_of(given.start, triangles, options);
+    const auto grown = [&](const Ordered& from, const Attempt& attempt) {
+        return grow_once(from, connectivity, cap, attempt, split, progress);
+    };
+    Fullest fullest{grown(given, attempts.front()), 0};
     // Such a bound leaves a void by itself.
     if (bounds_thickness(cap))
-        return fullest;
-    double most = fill_of(fullest.shell);
-    for (std::size_t i = 1; i < attempts.size() && most < enough_for(attempts.front()); ++i) {
-        GrowResult other = grow_once(given, connectivity, cap, attempts[i], split, progress);
-        const double fill = fill_of(other.shell);
-        // A pin costs more than the volume around it: prisms, and all that needs their pillars. So
-        // does the shape that the user asks for.
-        if (fill <= most || pins_of(other.shell) > pins_of(fullest.shell) ||
-            other.report.tets_below_quality > fullest.report.tets_below_quality ||
-            any_of(turned_components(connectivity, other.shell)))
-            continue;
-        most = fill;
-        fullest = std::move(other);
+        return std::move(fullest.result);
+    fullest.fill = fill_of(fullest.result.shell);
+    const double enough = enough_for(attempts.front());
+    for (std::size_t i = 1; i < attempts.size() && fullest.fill < enough; ++i)
+        take_if_better(connectivity, grown(given, attempts[i]), fullest);
+
+    const Restarts restarts = restarts_of(attempts.front(), triangles);
+    double wanted = 0;
+    for (int i = 0; i < restarts.most && fullest.fill < restarts.enough && fullest.fill >= wanted;
+         ++i) {
+        const std::vector<Vec3s> inner = fullest.result.shell.inner;
+        wanted = fullest.fill + restarts.least_gain_of_void * (1 - fullest.fill);
+        const Ordered from{given.mesh, given.directions, given.stepped,
+                           inner,      given.start,      given.order};
+        take_if_better(connectivity, grown(from, restarts.attempt), fullest);
     }
-    return fullest;
+    return std::move(fullest.result);
 }
 
 /// The shell, in the order that the mesh is given in.

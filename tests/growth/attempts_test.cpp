@@ -80,6 +80,31 @@ TEST(Attempts, NoneFollowsWhereEnoughIsFull)
     half.schedule.barrier.enough_fill = 0.5;
     for (const Attempt& attempt : attempts_of({}, kFew, half))
         EXPECT_EQ(enough_for(attempt), 0.5);
+    for (const GrowFrom from : {GrowFrom::lines, GrowFrom::levels})
+        EXPECT_EQ(restarts_of({from, LineStart::shrunk, half}, kFew).enough, 0.5);
+}
+
+TEST(Restarts, GoOnFromTheShellUnderTheTestThatIsAskedFor)
+{
+    for (const GrowOptions& options : test::ways_to_grow()) {
+        const Restarts restarts = restarts_of({GrowFrom::lines, LineStart::shrunk, options}, kFew);
+        EXPECT_GT(restarts.most, 0);
+        EXPECT_EQ(restarts.attempt.from, GrowFrom::shell);
+        EXPECT_EQ(prism_test_of(restarts.attempt.options), prism_test_of(options));
+    }
+}
+
+TEST(Restarts, AreNoneWithoutFreeMovesNorFromAShellNorWhereTheyTakeTooLong)
+{
+    GrowOptions still, thin;
+    still.free_moves = false;
+    thin.top_down = false;
+    const GrowOptions any;
+    EXPECT_EQ(restarts_of({GrowFrom::lines, LineStart::shrunk, still}, kFew).most, 0);
+    EXPECT_EQ(restarts_of({GrowFrom::lines, LineStart::thin, thin}, kFew).most, 0);
+    EXPECT_EQ(restarts_of({GrowFrom::shell, LineStart::shrunk, any}, kFew).most, 0);
+    EXPECT_EQ(restarts_of({GrowFrom::levels, LineStart::shrunk, any}, kMany).most, 0);
+    EXPECT_GT(restarts_of({GrowFrom::levels, LineStart::shrunk, any}, kFew).most, 0);
 }
 
 } // namespace

@@ -156,6 +156,24 @@ TEST(Grow, FillsPlatesOfNeedles)
     }
 }
 
+/// Without planar quads rounds on such plates end in a jam.
+TEST(Grow, GoesOnFromAJammedShell)
+{
+    GrowOptions options;
+    options.schedule.planar.most_rounds = 0;
+    for (const int points : {20, 28}) {
+        const Case plate = case_of(test::needled_plate(points));
+        options.schedule.restarts.most = 0;
+        const GrowResult jammed = grown(plate, options);
+        ASSERT_LT(fill_of(jammed.shell), 0.99);
+        options.schedule.restarts.most = 3;
+        const GrowResult on = grown(plate, options);
+        EXPECT_GT(fill_of(on.shell), fill_of(jammed.shell) + 1e-3);
+        expect_sound(on, options);
+        expect_embedded(on.shell);
+    }
+}
+
 /// What comes over coarser surfaces loses most of what it has beside needles: without lines of its
 /// own these shells are .82, .59 and .66 full.
 TEST(Grow, BeginsALargePlateOfNeedlesFromLines)

@@ -129,7 +129,9 @@ struct GrowResult {
 /// "Growth"). Begins on coarse_levels of the mesh. A surface of up to 12,000 triangles
 /// (MultilevelSchedule::most_coarsest_triangles) whose thickness nothing bounds, and that is less
 /// than .99 full then (after coarser ones .9; enough_fill where that is less), is grown from other
-/// starts too, and the fullest shell is taken that has no more pins.
+/// starts too, and the fullest shell is taken that has no more pins. From that growth goes on anew
+/// as long as it wins, until the shell is .99 full; after coarser surfaces .9855, with more than
+/// 12,000 triangles .97, with 50,000 or more never.
 /// `stepped` gives the first lengths to try (line stepping) where they exceed half the ray to the
 /// other side; they bound nothing. `cap` bounds
 /// |inner - outer| per vertex exactly (the user's thickness; infinite where there is none).

@@ -55,6 +55,19 @@ struct PlanarSchedule {
     double least_visibility = 0.05, kept_visibility_share = 0.5;
 };
 
+/// All phases again, from the fullest shell that they have come to.
+struct RestartSchedule {
+    /// Share of what is still empty that one has to win for another to follow.
+    double least_gain_of_void = 0.05;
+    /// Count. Restarts at most: parts with text on plates of needles have come to seven.
+    int most = 12;
+    /// Share of the solid that is enough on a surface of more than most_coarsest_triangles, where
+    /// one takes about as long as all before; from one_round_triangles on there is none
+    /// (MultilevelSchedule). Scans are fuller than that
+    /// (docs/measurements/scans.md).
+    double large_enough = 0.97;
+};
+
 /// Initialise: pillars lengthened along their lines.
 struct LineSchedule {
     /// Shares of the solid. Below the first the start is thin and lines go first, since free moves
@@ -289,6 +302,7 @@ struct StopSchedule {
 struct GrowthSchedule {
     InitialSchedule initial;
     PlanarSchedule planar;
+    RestartSchedule restarts;
     LineSchedule lines;
     PinSchedule pins;
     MultilevelSchedule multilevel;
