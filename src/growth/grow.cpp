@@ -232,6 +232,17 @@ void take_if_better(const Connectivity& connectivity, GrowResult other, Fullest&
         fullest = {std::move(other), fill};
 }
 
+/// Of a shell that was grown on from another: what led to that one counts too.
+GrowReport reports_of_both(const GrowReport& before, GrowReport report)
+{
+    report.rounds += before.rounds;
+    report.flips += before.flips;
+    report.released += before.released;
+    report.fill_after_lines = before.fill_after_lines;
+    report.quality_rounds += before.quality_rounds;
+    return report;
+}
+
 /// The shell of the first attempt, and where that is not full enough the fullest of all; then what
 /// growth comes to from that, again and again.
 GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
@@ -260,7 +271,9 @@ GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
         wanted = fullest.fill + restarts.least_gain_of_void * (1 - fullest.fill);
         const Ordered from{given.mesh, given.directions, given.stepped,
                            inner,      given.start,      given.order};
-        take_if_better(connectivity, grown(from, restarts.attempt), fullest);
+        GrowResult next = grown(from, restarts.attempt);
+        next.report = reports_of_both(fullest.result.report, next.report);
+        take_if_better(connectivity, std::move(next), fullest);
     }
     return std::move(fullest.result);
 }

@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 
-NAMES = ["s.vdb", "s.points.vdb", "s.vtu", "s.node", "s.ele", "s.mesh", "s.png", "i.obj", "s.bgeo", "s.usda", "s.json"]
+NAMES = ["s.vdb", "s.points.vdb", "s.vtu", "s.node", "s.ele", "s.face", "s.mesh", "s.png", "i.obj", "s.bgeo", "s.usda", "s.json"]
 WRITE_ERROR, OUT_OF_MEMORY, READ_ERROR = 5, 9, 3
 
 
@@ -55,7 +55,7 @@ class Folder:
 
 
 def command_line(command, mesh, folder):
-    out = [word for name in NAMES if name not in ("s.points.vdb", "s.ele", "s.json") for word in ("-o", str(folder.path / name))]
+    out = [word for name in NAMES if name not in ("s.points.vdb", "s.ele", "s.face", "s.json") for word in ("-o", str(folder.path / name))]
     return [command, "build", str(mesh), "--resolution", "16", "--samples", "0", "-q", "--points", "beside", *out,
             "--report", str(folder.path / "s.json")]
 

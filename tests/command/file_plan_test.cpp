@@ -102,7 +102,7 @@ TEST_F(FilePlans, ExtensionsAreTheSameInCapitals)
     EXPECT_TRUE(fs::exists(folder / "t.node") && fs::exists(folder / "t.ele"));
     // The files that are written are those that were planned.
     expect_refusal(build + "--no-clobber" + out("t.ELE"), ExitCode::write_error,
-                   {"t.ele", "exists"});
+                   {"t.node", "exists"});
     const std::string level_set = "build " + file("S.VDB") + kCoarse + "-q ";
     EXPECT_EQ(run(level_set + out("u.vtu")).status, ExitCode::success);
     EXPECT_EQ(run("build " + file("S.VDB") + ":surface" + kCoarse + "-q " + out("v.vtu")).status,
