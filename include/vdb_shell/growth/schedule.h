@@ -59,7 +59,7 @@ struct PlanarSchedule {
 struct RestartSchedule {
     /// Share of what is still empty that one has to win for another to follow.
     double least_gain_of_void = 0.05;
-    /// Count. Restarts at most: parts with text on plates of needles have come to seven.
+    /// Count. Restarts at most: machined parts have come to eight (docs/measurements/tried.md).
     int most = 12;
     /// Share of the solid that is enough on a surface of more than most_coarsest_triangles, where
     /// one takes about as long as all before; from one_round_triangles on there is none
