@@ -78,10 +78,15 @@ std::vector<fs::path> files_of(const fs::path& path, const Outputs& outputs)
 struct Solid {
     TetMesh tets;
     std::vector<std::uint8_t> certified;
+    PointExtras extras;
 };
 Solid solid_of(const ShellFile& file, std::vector<std::uint8_t> certified)
 {
-    Solid solid{joined_tets(file.tets, file.core), std::move(certified)};
+    Solid solid{joined_tets(file.tets, file.core), std::move(certified), {}};
+    solid.extras = {pillar_values(file.stack, file.tets, solid.tets.points.size()),
+                    feet_of_tet_points(file.stack, solid.tets, file.core_feet),
+                    vectors_of_tet_points(file.tets, file.rest),
+                    vectors_of_tet_points(file.tets, file.rest.velocity), file.input};
     // No flags at all stay none: an empty list says that nobody looked, and not that all are bad.
     if (!solid.certified.empty())
         solid.certified.resize(solid.tets.tets.size(), 1);
@@ -162,12 +167,7 @@ void write_outputs(const Outputs& outputs, const ShellFile& file,
             houdini::write_shell_geometry(path, file, &files);
             break;
         case Kind::tets:
-            write_tets(path, solid.tets, solid.certified, file.placement,
-                       {pillar_values(file.stack, file.tets, solid.tets.points.size()),
-                        feet_of_tet_points(file.stack, solid.tets, file.core_feet),
-                        vectors_of_tet_points(file.tets, file.rest),
-                        vectors_of_tet_points(file.tets, file.rest.velocity), file.input},
-                       &files);
+            write_tets(path, solid.tets, solid.certified, file.placement, solid.extras, &files);
             break;
         case Kind::surface:
             write_mesh(path, surface_of(file.stack, outputs.surface_file.surface), file.placement,

@@ -10,11 +10,6 @@
 namespace vdb_shell::growth
 {
 
-bool too_large_for_attempts(std::size_t triangles, const GrowOptions& options)
-{
-    return double(triangles) > options.schedule.multilevel.most_coarsest_triangles;
-}
-
 namespace
 {
 
@@ -36,6 +31,11 @@ bool may_leave_lines(const GrowOptions& options)
 }
 
 } // namespace
+
+bool too_large_for_attempts(std::size_t triangles, const GrowOptions& options)
+{
+    return double(triangles) > options.schedule.multilevel.most_coarsest_triangles;
+}
 
 std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
                                  const GrowOptions& options)
@@ -73,7 +73,6 @@ Restarts restarts_of(const Attempt& first, std::size_t triangles)
     const GrowthSchedule& schedule = first.options.schedule;
     Restarts restarts{{GrowFrom::shell, {}, for_other_starts(first.options)},
                       schedule.restarts.most,
-                      schedule.restarts.least_gain_of_void,
                       enough_for(first)};
     if (first.from == GrowFrom::shell || !may_leave_lines(first.options))
         restarts.most = 0;

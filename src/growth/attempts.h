@@ -35,9 +35,8 @@ double enough_for(const Attempt& attempt);
 /// for the fuller shell is kept.
 struct Restarts {
     Attempt attempt; ///< from the fullest shell
-    int most;        ///< how often, as long as each wins a share of what is empty
-    double least_gain_of_void;
-    double enough; ///< share of the solid from which there is none
+    int most;        ///< how often, as long as each wins RestartSchedule::least_gain_of_void
+    double enough;   ///< share of the solid from which there is none
 };
 /// After that attempt and the others.
 Restarts restarts_of(const Attempt& first, std::size_t triangles);

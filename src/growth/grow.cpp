@@ -268,7 +268,7 @@ GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
     for (int i = 0; i < restarts.most && fullest.fill < restarts.enough && fullest.fill >= wanted;
          ++i) {
         const std::vector<Vec3s> inner = fullest.result.shell.inner;
-        wanted = fullest.fill + restarts.least_gain_of_void * (1 - fullest.fill);
+        wanted = fullest.fill + options.schedule.restarts.least_gain_of_void * (1 - fullest.fill);
         const Ordered from{given.mesh, given.directions, given.stepped,
                            inner,      given.start,      given.order};
         GrowResult next = grown(from, restarts.attempt);

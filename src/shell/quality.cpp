@@ -30,6 +30,14 @@ using Corners = std::array<Vec3d, 4>;
 
 constexpr std::size_t kEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
+Corners corners_in_double(const TetMesh& mesh, std::size_t t)
+{
+    Corners p;
+    for (int corner = 0; corner < 4; ++corner)
+        p[static_cast<std::size_t>(corner)] = Vec3d(mesh.points[mesh.tets[t][corner]]);
+    return p;
+}
+
 double six_volumes(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d)
 {
     return (b - a).cross(c - a).dot(d - a);
@@ -169,6 +177,12 @@ double mean_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d
     return std::copysign(12 * root * root, half_six_volumes) / squared_edges;
 }
 
+double mean_ratio(const TetMesh& mesh, std::size_t t)
+{
+    const Corners p = corners_in_double(mesh, t);
+    return mean_ratio(p[0], p[1], p[2], p[3]);
+}
+
 TetShape shape_of(const std::array<Vec3d, 4>& p)
 {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -186,10 +200,7 @@ TetShape shape_of(const std::array<Vec3d, 4>& p)
 
 TetShape shape_of(const TetMesh& mesh, std::size_t t)
 {
-    Corners p;
-    for (int corner = 0; corner < 4; ++corner)
-        p[static_cast<std::size_t>(corner)] = Vec3d(mesh.points[mesh.tets[t][corner]]);
-    return shape_of(p);
+    return shape_of(corners_in_double(mesh, t));
 }
 
 QualityReport measure_quality(const TetMesh& mesh)

@@ -21,10 +21,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-void write_tetgen(const fs::path& path, const TetMesh& tets, const Placement& placement,
-                  OutputSet* with)
+/// `files`: tet_files_of.
+void write_tetgen(const std::vector<fs::path>& files, const TetMesh& tets,
+                  const Placement& placement, OutputSet* with)
 {
-    const std::vector<fs::path> files = tet_files_of(path);
     write_together(with, [&](OutputSet& set) {
         // In one set, so that a reader never finds one of them with another of an earlier run.
         set.write_stream(files[0],
@@ -83,8 +83,8 @@ void write_tets(const fs::path& path, const TetMesh& tets,
     require_one_a_point(extras.rest.size(), " places at rest for ");
     require_one_a_point(extras.velocity.size(), " velocities for ");
     const std::string extension = lower_case_extension(path);
-    if (extension == ".node" || extension == ".ele")
-        return write_tetgen(path, tets, placement, with);
+    if (const std::vector<fs::path> files = tet_files_of(path); files.size() > 1)
+        return write_tetgen(files, tets, placement, with);
     if (extension == ".vtu")
         return write_stream_atomically(
             path, [&](std::ostream& out) { write_vtu(out, tets, certified, placement, extras); },

@@ -139,10 +139,7 @@ void write_pillars(TextOut& text, const PillarValues& pillars, const Placement& 
 std::vector<float> mean_ratios(const TetMesh& tets)
 {
     std::vector<float> ratios(tets.tets.size());
-    for_each_index(ratios.size(), [&](std::size_t t) {
-        const auto corner = [&](int k) { return openvdb::Vec3d(tets.points[tets.tets[t][k]]); };
-        ratios[t] = float(mean_ratio(corner(0), corner(1), corner(2), corner(3)));
-    });
+    for_each_index(ratios.size(), [&](std::size_t t) { ratios[t] = float(mean_ratio(tets, t)); });
     return ratios;
 }
 

@@ -63,8 +63,7 @@ struct RestartSchedule {
     int most = 12;
     /// Share of the solid that is enough on a surface of more than most_coarsest_triangles, where
     /// one takes about as long as all before; from one_round_triangles on there is none
-    /// (MultilevelSchedule). Scans are fuller than that
-    /// (docs/measurements/scans.md).
+    /// (MultilevelSchedule). Scans are fuller than that (docs/measurements/scans.md).
     double large_enough = 0.97;
 };
 

@@ -58,6 +58,8 @@ TetShape shape_of(const TetMesh& tets, std::size_t t);
 /// Mean ratio of one tet, signed by its orientation (in double; exact signs are count_tet_signs').
 double mean_ratio(const openvdb::Vec3d& a, const openvdb::Vec3d& b, const openvdb::Vec3d& c,
                   const openvdb::Vec3d& d);
+/// Of tet t.
+double mean_ratio(const TetMesh& tets, std::size_t t);
 
 QualityReport measure_quality(const TetMesh& tets);
 

@@ -16,7 +16,8 @@ namespace vdb_shell
 {
 class OutputSet;
 
-/// The files that write_tets writes for this name: one, or TetGen's three.
+/// The files that write_tets writes for this name: one, or TetGen's .node, .ele and .face, in that
+/// order.
 std::vector<std::filesystem::path> tet_files_of(const std::filesystem::path& path);
 
 /// Extensions that write_tets knows: ".vtu", ".node", ".ele", ".mesh", ".msh".
