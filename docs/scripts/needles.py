@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fill of parts whose flat walls are cut into needles, by builds of two versions, for docs/measurements/tried.md.
 
-    needles.py BEFORE COMMAND PREFIX=FOLDER ... [--triangles 0 5000] [--flags "--for speed"]
+    needles.py BEFORE COMMAND PREFIX=FOLDER ... [--triangles 0 5000] [--flags "--for speed"] [--now=--retriangulate]
 
 Of the parts of docs/measurements/machined.md, which have their halves and names from there, those of so many triangles (least and most)
-that the page says are less than .99 full by default; and plates of needles, made here. Prints a table.
+that the page says are less than .99 full by default; and plates of needles, made here. Prints a table. --now has what the second
+command is given besides; with it the table has the seconds of both as well.
 """
 import argparse
 import math
@@ -62,21 +63,26 @@ def main():
     parser.add_argument("folders", nargs="*", type=lambda word: tuple(word.split("=", 1)))
     parser.add_argument("--triangles", type=int, nargs=2, default=[0, 5000], metavar=("LEAST", "MOST"))
     parser.add_argument("--flags", default="")
+    parser.add_argument("--now", default="")
     a = parser.parse_args()
-    names, rows, fills = wanted_names(*a.triangles), [], {}
+    flags = [*a.flags.split(), "--samples", "0"]
+    names, rows, means = wanted_names(*a.triangles), [], {}
     with tempfile.TemporaryDirectory() as folder:
         chosen = [*(plates(folder) if a.triangles[0] == 0 else []), *(part for part in parts(a.folders) if part[0] in names)]
         for name, path in chosen:
-            two = [build(command, path, [*a.flags.split(), "--samples", "0"], figures) for command in (a.before, a.command)]
+            two = [build(a.before, path, flags, figures), build(a.command, path, [*flags, *a.now.split()], figures)]
             if any(one["exit"] != 0 for one in two):
                 continue
             half = "made here" if path.parent == pathlib.Path(folder) else half_of(name)
             rows.append([name, half, f"{two[0]['triangles']:,}", *(f"{one['fill']:.4f}" for one in two),
-                         str(two[1]["pins"] - two[1]["demanded"])])
-            fills.setdefault(half, []).append([one["fill"] for one in two])
-    for half, pairs in fills.items():
-        rows.append([f"mean of {half} ({len(pairs)})", half, "", *(f"{statistics.mean(of):.4f}" for of in zip(*pairs)), ""])
-    print("\n".join(table(["part", "half", "triangles", "before", "now", "pins beyond demanded"], rows)))
+                         str(two[1]["pins"] - two[1]["demanded"]), *(f"{one['seconds']:.1f}" for one in two if a.now)])
+            means.setdefault(half, []).append([one[key] for key in ("fill", "seconds") for one in two])
+    for half, of in means.items():
+        fill_before, fill_now, *seconds = map(statistics.mean, zip(*of))
+        rows.append([f"mean of {half} ({len(of)})", half, "", f"{fill_before:.4f}", f"{fill_now:.4f}", "",
+                     *(f"{mean:.1f}" for mean in seconds if a.now)])
+    head = ["part", "half", "triangles", "before", "now", "pins beyond demanded"]
+    print("\n".join(table(head + ["s before", "s now"] * bool(a.now), rows)))
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@
 #include "vdb_shell/report/report.h"
 #include "vdb_shell/resample/decimate.h"
 #include "vdb_shell/resample/remesh.h"
+#include "vdb_shell/resample/retriangulate.h"
 #include "vdb_shell/resample/subdivide.h"
 #include "vdb_shell/shell/shell_stack.h"
 #include "vdb_shell/shell/sides.h"
@@ -55,6 +56,7 @@ struct ShellOptions {
     WrapOptions wrap;
     ContourOptions contour; ///< for build_shell_from_level_set alone
     CheckOptions check;
+    RetriangulateOptions retriangulate;
     DecimateOptions decimate;
     RemeshOptions remesh;
     SubdivideOptions subdivide;
@@ -121,15 +123,15 @@ struct ShellResult {
     ShellReport report;
 };
 
-/// The whole job on a mesh in memory: wrap, repair or mend when asked, check, decimate, remesh and
-/// subdivide when asked, level set, smooth, directions, line stepping, limits, growth (Method::raw:
-/// prisms straight from the lengths), scale, layers, taper when asked, tets, certificate, overlaps
-/// (where it does not certify the whole), figures. For an outward shell the stages from directions
-/// to scale run on the reversed surface (shell/sides.h), for both sides once for each. `name` is
-/// what messages and the report call the mesh. `thickness_grid` as in line_step. `cores` are closed
-/// surfaces inside, which the shell ends on or before; those of a run with cores are a grown shell
-/// inside an embedded surface (else InvalidOption). Throws what the stages throw. Same result for
-/// any number of threads (costs in the report aside).
+/// The whole job on a mesh in memory: wrap, repair or mend when asked, check, retriangulate,
+/// decimate, remesh and subdivide when asked, level set, smooth, directions, line stepping, limits,
+/// growth (Method::raw: prisms straight from the lengths), scale, layers, taper when asked, tets,
+/// certificate, overlaps (where it does not certify the whole), figures. For an outward shell the
+/// stages from directions to scale run on the reversed surface (shell/sides.h), for both sides once
+/// for each. `name` is what messages and the report call the mesh. `thickness_grid` as in
+/// line_step. `cores` are closed surfaces inside, which the shell ends on or before; those of a run
+/// with cores are a grown shell inside an embedded surface (else InvalidOption). Throws what the
+/// stages throw. Same result for any number of threads (costs in the report aside).
 ShellResult build_shell(const TriangleMesh& mesh, const ShellOptions& options,
                         const std::string& name = "mesh",
                         const openvdb::FloatGrid* thickness_grid = nullptr,

@@ -142,7 +142,8 @@ std::vector<std::string> not_counted(const BuildArguments& a, const TriangleMesh
         double(needles) > kMostNeedles * double(mesh.triangles.size()))
         names.push_back(
             "growth beside " + std::to_string(needles) +
-            " needles, 100 times as long as they are high (--remesh-to N cuts them up)");
+            " needles, 100 times as long as they are high (--retriangulate turns their edges "
+            "where the surface is flat, --remesh-to N cuts them up)");
     return names;
 }
 

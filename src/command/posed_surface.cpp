@@ -52,7 +52,7 @@ struct Wanted {
                         std::to_string(wanted.vertices) + " and " +
                         std::to_string(wanted.triangles.size()) +
                         ", and its points have no ids; --rest-mesh gives the same surface at rest "
-                        "where the shell's was repaired, wrapped or remeshed");
+                        "where the shell's was repaired, wrapped, remeshed or retriangulated");
 }
 
 using DirectedEdge = std::pair<std::uint32_t, std::uint32_t>;

@@ -28,13 +28,14 @@ struct StageShare {
 
 /// In the order of the pipeline. Means of nine surfaces of 12 to 40,000 triangles that were written
 /// as .vdb; growth took 23 to 75 per cent of the time (docs/frames.md).
-constexpr std::array<StageShare, 28> kStages{{{"read", 0.0},
+constexpr std::array<StageShare, 29> kStages{{{"read", 0.0},
                                               {"inspect", 0.02},
                                               {"filling holes", 0.02},
                                               {"mending", 0.03},
                                               {"wrap", 0.03},
                                               {"contour", 0.03},
                                               {"surface distance", 0.04},
+                                              {"retriangulate", 0.04},
                                               {"decimate", 0.04},
                                               {"simplify", 0.04},
                                               {"remesh", 0.04},

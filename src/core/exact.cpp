@@ -306,6 +306,13 @@ bool tets_overlap(const Tet& first, const Tet& second)
     return true;
 }
 
+int turn_along(int axis, const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c)
+{
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto seen = [&](const openvdb::Vec3s& p) { return Point2(p[u], p[v]); };
+    return static_cast<int>(CGAL::orientation(seen(a), seen(b), seen(c)));
+}
+
 bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& p,
                  const openvdb::Vec3s& q)
 {

@@ -51,6 +51,10 @@ using Tet = std::array<openvdb::Vec3s, 4>;
 /// or touch from outside, do not. Precondition: neither tet is flat.
 bool tets_overlap(const Tet& first, const Tet& second);
 
+/// Which way three points turn, seen along that axis (0 to 2): 1 as the other two axes do, in their
+/// cyclic order; -1 the other way; 0 on one line.
+int turn_along(int axis, const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& c);
+
 /// Of four points in one plane: whether p and q are not strictly on opposite sides of the line a b.
 bool on_one_side(const openvdb::Vec3s& a, const openvdb::Vec3s& b, const openvdb::Vec3s& p,
                  const openvdb::Vec3s& q);

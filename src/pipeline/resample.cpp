@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: the surface of a result, before or after its shell was built. Leaves: the surface
-// decimated, remeshed and subdivided as the options say, or refined in rounds together with its
-// shell. A round cuts the triangles whose cutting is predicted to gain most, and growth goes on
-// from the shell there is. The best round is kept and not the last, as a round may lose fill. The
-// report's check is made anew for the surface that results, because coordinates have been rounded.
+// retriangulated, decimated, remeshed and subdivided as the options say, or refined in rounds
+// together with its shell. A round cuts the triangles whose cutting is predicted to gain most, and
+// growth goes on from the shell there is. The best round is kept and not the last, as a round may
+// lose fill. The report's check is made anew for the surface that results, because coordinates have
+// been rounded.
 
 #include "pipeline/resample.h"
 
@@ -149,6 +150,16 @@ void require_embedded(const ShellResult& result, const std::string& stage)
                             " pairs of triangles cross or touch");
 }
 
+void retriangulate_surface(ShellResult& result, const ShellOptions& options,
+                           Interrupter* interrupter)
+{
+    require_embedded(result, "retriangulation");
+    RetriangulateResult turned = retriangulate(result.surface, options.retriangulate, interrupter);
+    result.surface = std::move(turned.mesh);
+    result.report.retriangulate = turned.report;
+    result.report.mesh = check_mesh(result.surface, interrupter);
+}
+
 void decimate_surface(ShellResult& result, const ShellOptions& options, Interrupter* interrupter)
 {
     require_embedded(result, "decimation");
@@ -174,6 +185,8 @@ void remesh_surface(ShellResult& result, const ShellOptions& options, Interrupte
 void resample_surface(ShellResult& result, const ShellOptions& options, StageClock& clock,
                       Interrupter* interrupter)
 {
+    if (options.retriangulate.wanted)
+        clock.run("retriangulate", [&] { retriangulate_surface(result, options, interrupter); });
     if (options.decimate.triangles)
         clock.run("decimate", [&] { decimate_surface(result, options, interrupter); });
     if (options.remesh.wanted())

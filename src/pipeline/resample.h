@@ -8,7 +8,7 @@
 namespace vdb_shell
 {
 
-/// Decimates, remeshes and subdivides the surface as the options ask for, and looks at it anew.
+/// Retriangulates, decimates, remeshes and subdivides the surface as the options ask for, and looks at it anew.
 void resample_surface(ShellResult& result, const ShellOptions& options, StageClock& clock,
                       Interrupter* interrupter);
 

@@ -108,6 +108,7 @@ OptionSections describe(ShellOptions& o)
             {"wrap", describe(o.wrap)},
             {"contour", describe(o.contour)},
             {"check", describe(o.check)},
+            {"retriangulate", describe(o.retriangulate)},
             {"decimate", describe(o.decimate)},
             {"remesh", describe(o.remesh)},
             {"subdivide", describe(o.subdivide)},

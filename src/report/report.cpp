@@ -237,7 +237,7 @@ ordered_json costs_json(const std::vector<StageCost>& stages)
 
 /// Of the whole report: raised when a key comes, goes or changes its meaning
 /// (docs/schema/report.schema.json).
-constexpr int kSchema = 5;
+constexpr int kSchema = 6;
 
 /// What was read and what became of it before lines were stepped.
 void add_surface(ordered_json& json, const ShellReport& report)
@@ -253,6 +253,8 @@ void add_surface(ordered_json& json, const ShellReport& report)
     json["wrap"] = report.wrap ? wrap_json(*report.wrap) : ordered_json();
     json["contour"] = report.contour ? contour_json(*report.contour) : ordered_json();
     json["mesh"] = mesh_json(report);
+    json["retriangulate"] =
+        report.retriangulate ? retriangulate_json(*report.retriangulate) : ordered_json();
     json["decimate"] = report.decimate ? decimate_json(*report.decimate) : ordered_json();
     json["remesh"] = report.remesh ? remesh_json(*report.remesh) : ordered_json();
     // The number of triangles before; null says that nothing was subdivided, as 0 would look like a

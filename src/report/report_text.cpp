@@ -293,10 +293,10 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
              volume_shares(report));
     if (needles_hold_back(report))
-        line(
-            out, "  void",
-            "needles hold pillars back; --thickest fills more, --remesh-to N cuts the surface into "
-            "nearly equilateral triangles first");
+        line(out, "  void",
+             "needles hold pillars back; --retriangulate cuts flat parts into better triangles "
+             "first, "
+             "--remesh-to N the whole surface; --thickest fills more");
     if (report.wanted)
         for (const WantedBound& bound : report.wanted->bounds)
             line(out, "wanted", wanted_text(bound));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Takes: the reports of decimation, remeshing and refinement. Gives: their part of the report, as
-// JSON and in lines for a person. Angles in degrees, as everywhere in reports.
+// Takes: the reports of retriangulation, decimation, remeshing and refinement. Gives: their part of
+// the report, as JSON and in lines for a person. Angles in degrees, as everywhere in reports.
 
 #include "report/resample_report.h"
 
@@ -46,12 +46,32 @@ std::string farthest_text(const DistanceFigures& there, const DistanceFigures& b
            number(back.max);
 }
 
+/// What remeshing and retriangulation say alike.
+void angles_line(std::ostringstream& out, const TriangleFigures& before,
+                 const TriangleFigures& after)
+{
+    line(out, "  angles",
+         "smallest " + angles_text(after) + " (before " + angles_text(before) + ")");
+}
+
 } // namespace
 
 /// Distances are sampled, so their number says how far mean and maximum can be trusted.
 ordered_json distance_json(const DistanceFigures& distance)
 {
     return {{"mean", distance.mean}, {"max", distance.max}, {"samples", distance.samples}};
+}
+
+ordered_json retriangulate_json(const RetriangulateReport& retriangulate)
+{
+    return {{"flat_triangles", retriangulate.flat_triangles},
+            {"flat_parts", retriangulate.flat_parts},
+            {"flips", retriangulate.flips},
+            {"kept_parts", retriangulate.kept_parts},
+            {"tolerance", retriangulate.tolerance},
+            {"farthest", retriangulate.farthest},
+            {"before", figures_json(retriangulate.shape_before)},
+            {"after", figures_json(retriangulate.shape)}};
 }
 
 ordered_json decimate_json(const DecimateReport& decimate)
@@ -86,6 +106,21 @@ ordered_json remesh_json(const RemeshReport& remesh)
             {"kept_input", remesh.kept_input}};
 }
 
+void retriangulate_lines(std::ostringstream& out, const RetriangulateReport& retriangulate)
+{
+    std::string text = number(retriangulate.flips, 12) + " edges turned inside " +
+                       number(retriangulate.flat_parts, 12) + " of them, of " +
+                       number(retriangulate.flat_triangles, 12) + " triangles; surfaces at most " +
+                       number(retriangulate.farthest) + " apart, tolerance " +
+                       number(retriangulate.tolerance);
+    // Said only where it happened.
+    if (retriangulate.kept_parts > 0)
+        text += "; " + number(retriangulate.kept_parts, 12) +
+                " left as they were, for they would have touched others";
+    line(out, "flat parts", text);
+    angles_line(out, retriangulate.shape_before, retriangulate.shape);
+}
+
 void decimate_line(std::ostringstream& out, const DecimateReport& decimate)
 {
     std::string text =
@@ -112,9 +147,7 @@ void remesh_lines(std::ostringstream& out, const RemeshReport& remesh)
              ", " + percent(remesh.edges_in_range) + " from 4/5 to 4/3 of it; " +
              number(remesh.feature_edges, 12) + " feature edges, " + number(remesh.corners, 12) +
              " corners kept");
-    line(out, "  angles",
-         "smallest " + angles_text(remesh.shape) + " (before " + angles_text(remesh.shape_before) +
-             ")");
+    angles_line(out, remesh.shape_before, remesh.shape);
 }
 
 void refine_lines(std::ostringstream& out, const RefineReport& refine)

@@ -117,6 +117,8 @@ void surface_lines(std::ostringstream& out, const ShellReport& report)
         wrap_lines(out, *report.wrap);
     if (report.contour)
         line(out, "contour", contour_text(*report.contour));
+    if (report.retriangulate)
+        retriangulate_lines(out, *report.retriangulate);
     if (report.decimate)
         decimate_line(out, *report.decimate);
     if (report.remesh)

@@ -64,6 +64,7 @@ const std::map<std::string, std::string>& partners()
         {"--turntable", "--turntable 4 --picture surface -o FOLDER/s.png"},
         {"--repair", "--repair"},
         {"--wrap or --mend", "--mend"}, // which wraps only what is broken
+        {"--retriangulate", "--retriangulate"},
         {"--decimate-to", "--decimate-to 60"},
         {"--remesh-edge-length or --remesh-to", "--remesh-to 60"},
         {"--core", "--core FOLDER/core.obj"},

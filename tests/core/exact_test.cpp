@@ -48,6 +48,24 @@ TEST(orient3d, is_right_where_products_underflow)
     EXPECT_EQ(exact::orient3d({-huge, -huge, -huge}, {huge, 0, 0}, {0, huge, 0}, {0, 0, huge}), 1);
 }
 
+TEST(turn_along, is_that_of_the_other_two_axes_and_right_at_the_last_bit)
+{
+    const Vec3s a(1, 2, 3), b(2, 3, 4);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        Vec3s c = a;
+        c[v] += 1;
+        EXPECT_EQ(exact::turn_along(axis, a, b, c), 1);
+        EXPECT_EQ(exact::turn_along(axis, b, a, c), -1);
+        c = {5, 6, 7}; // on the line through a and b
+        EXPECT_EQ(exact::turn_along(axis, a, b, c), 0);
+        c[axis] = 100;
+        EXPECT_EQ(exact::turn_along(axis, a, b, c), 0);
+        c[u] = std::nextafter(c[u], 100.0F);
+        EXPECT_EQ(exact::turn_along(axis, a, b, c), -1);
+    }
+}
+
 TEST(collinear, allows_no_tolerance)
 {
     const Vec3s a(0, 0, 0), b(1, 1, 1);

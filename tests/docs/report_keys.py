@@ -57,7 +57,7 @@ def reports(command, samples, folder):
             [samples / "torus.obj", "--method", "raw"],
             [samples / "torus.obj", "--method", "raw", "--side", "both", "--thickness", "0.05"],
             [samples / "torus.obj", "--side", "both", "--thickness", "0.05", "--samples", "0"],
-            [box, "--subdivide", "1", "--want-amips", "3.01"],
+            [box, "--retriangulate", "--subdivide", "1", "--want-amips", "3.01"],
             [samples / "sphere.obj", "--core", folder / "core.obj"],
             [samples / "torus.obj", "--remesh-to", "1000", "--taper"],
             *[[samples / "sphere.obj", "--thickness-scale", "0.5", "--core-fill", FILLER]] * bool(FILLER),

@@ -304,6 +304,7 @@ TEST(ShellOptions, EveryFieldIsDescribed)
     expect_all_described<RefineOptions>("RefineOptions");
     expect_all_described<RemeshOptions>("RemeshOptions");
     expect_all_described<RepairOptions>("RepairOptions");
+    expect_all_described<RetriangulateOptions>("RetriangulateOptions");
     expect_all_described<ScaleOptions>("ScaleOptions");
     expect_all_described<SmoothOptions>("SmoothOptions");
     expect_all_described<SplitOptions>("SplitOptions");

@@ -22,6 +22,7 @@
 #include "vdb_shell/repair/repair_mesh.h"
 #include "vdb_shell/resample/decimate.h"
 #include "vdb_shell/resample/remesh.h"
+#include "vdb_shell/resample/retriangulate.h"
 #include "vdb_shell/shell/quality.h"
 #include "vdb_shell/shell/sides.h"
 #include "vdb_shell/shell/surface_bounds.h"
@@ -110,6 +111,7 @@ struct ShellReport {
     /// Vertices of several fans that got copies (repair/split_fans.h), by the input's index.
     Defect<std::uint32_t> split_vertices;
     std::size_t vertex_copies = 0;
+    std::optional<RetriangulateReport> retriangulate;
     std::optional<DecimateReport> decimate;
     std::optional<RemeshReport> remesh;
     std::size_t subdivided_from = 0; ///< triangles before subdivision; 0 when there was none
