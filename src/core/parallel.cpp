@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Takes: what is to be done, as a pointer and a function that knows its type. Leaves it done, on
-// TBB's threads, which are those of OpenVDB too. An exception ends the rest and is thrown on. So
-// does the interrupter of the stage (core/stage_stop.h), which is asked between parts of a range:
-// TBB makes few ranges, and one of a million indices may take seconds.
+// TBB's threads, which are those of OpenVDB too. An exception ends the rest of a loop and is thrown
+// on. So does the interrupter of the stage (core/stage_stop.h), which is asked between parts of a
+// range: TBB makes few ranges, and one of a million indices may take seconds. Of jobs that are done
+// together one that throws must not end the others: TBB would cancel the loops inside of them too,
+// OpenVDB's among them, which then end without a word, and OpenVDB goes on with half of what it
+// needs (seen: a crash where memory ran out in another job).
 
 #include "core/parallel.h"
 
@@ -15,6 +18,8 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <array>
+#include <exception>
 
 #if defined(VDB_SHELL_TELL_THREAD_SANITIZER)
 #include <openvdb/openvdb.h>
@@ -144,16 +149,24 @@ void run(const Job* jobs, std::size_t count)
         return;
     LatchedInterrupter* const stop = stage_stop();
     Milestone begin, end;
-    const auto marked = [&](const auto& job) {
+    const auto marked = [&](std::exception_ptr& thrown, const auto& job) {
         const StageStopScope scope(stop);
         begin.awaited();
-        job();
+        try {
+            job();
+        } catch (...) {
+            thrown = std::current_exception();
+        }
         end.passed();
     };
+    std::array<std::exception_ptr, 2> thrown;
     begin.passed();
-    tbb::parallel_invoke([&] { marked([&] { jobs[0].call(jobs[0].body); }); },
-                         [&] { marked([&] { run(jobs + 1, count - 1); }); });
+    tbb::parallel_invoke([&] { marked(thrown[0], [&] { jobs[0].call(jobs[0].body); }); },
+                         [&] { marked(thrown[1], [&] { run(jobs + 1, count - 1); }); });
     end.awaited();
+    for (const std::exception_ptr& one : thrown)
+        if (one)
+            std::rethrow_exception(one);
 }
 
 } // namespace parallel

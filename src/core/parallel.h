@@ -79,7 +79,8 @@ template <typename Term> double sum_in_order(std::size_t count, const Term& term
 }
 
 /// Calls them all, in any order or at once: for jobs that are serial in part and write what none of
-/// the others reads.
+/// the others reads. Where some throw, the others are done all the same; then what the first of
+/// those in the list threw is thrown on.
 template <typename... Body> void run_together(const Body&... body)
 {
     const parallel::Job jobs[] = {parallel::job(body)...};
