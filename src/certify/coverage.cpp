@@ -19,6 +19,7 @@
 #include "core/counter_random.h"
 #include "core/parallel.h"
 #include "core/stage_progress.h"
+#include "core/text_stream.h"
 #include "shell/tet_faces.h"
 
 #include <algorithm>
@@ -194,7 +195,7 @@ void require_solid(const TriangleMesh& surface)
     const double volume = signed_volume(surface.points, surface.triangles);
     if (volume > 0)
         return;
-    std::ostringstream message;
+    OutText message;
     message << "coverage: the surface encloses a volume of " << volume
             << ", which has to be positive: is it open, flat, or oriented inward?";
     throw GeometryError(message.str());

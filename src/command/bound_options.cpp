@@ -14,6 +14,7 @@
 #include "vdb_shell/pose/pose_shell.h"
 
 #include "command/build_command.h"
+#include "core/text_stream.h"
 #include "options/option_json.h"
 #include "options/shown_text.h"
 
@@ -233,7 +234,7 @@ void settle_exclusions(BoundOptions& bound)
 /// One of Option::needs; an option that this command does not have is not missed.
 bool is_there(BoundOptions& bound, const std::string& needed)
 {
-    std::istringstream words(needed);
+    InText words(needed);
     std::string flag;
     words >> flag;
     const BoundOption* other = find(bound, flag);

@@ -8,6 +8,8 @@
 
 #include "command/completion.h"
 
+#include "core/text_stream.h"
+
 #include <sstream>
 
 namespace vdb_shell::command
@@ -80,7 +82,7 @@ std::string names_of(const std::vector<CommandEntry>& commands, const char* betw
 /// all others to files.
 std::string bash_completion(const std::vector<CommandEntry>& commands)
 {
-    std::ostringstream out;
+    OutText out;
     out << "# Completion of vdb_shell for bash, made by `vdb_shell options --complete bash`.\n"
            "_vdb_shell_files()\n"
            "{\n"

@@ -15,6 +15,7 @@
 #include "command/help.h"
 #include "core/available_memory.h"
 #include "core/parallel.h"
+#include "core/text_stream.h"
 #include "fill/outside_program.h"
 #include "io/mesh_formats.h"
 #include "options/shown_text.h"
@@ -58,7 +59,7 @@ void print_folder(std::ostream& out, const char* what, const fs::path& folder)
 {
     std::error_code unknown;
     const fs::space_info space = fs::space(folder, unknown);
-    std::ostringstream text;
+    OutText text;
     text.precision(3);
     text << folder.string()
          << (::access(folder.c_str(), W_OK) == 0 ? ", can be written" : ", CANNOT be written");

@@ -14,6 +14,7 @@
 #include "command/exit_code.h"
 #include "command/sequence.h"
 #include "core/parallel.h"
+#include "core/text_stream.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -66,7 +67,7 @@ ordered_json json_of(const Estimate& estimate)
 std::string cost_text(const Estimate& estimate)
 {
     const CallCost& cost = estimate.cost;
-    std::ostringstream text;
+    OutText text;
     text << cost.file << ": " << std::setprecision(9) << cost.triangles << " triangles";
     if (cost.voxel_size > 0)
         text << ", voxel size " << cost.voxel_size;
@@ -169,7 +170,7 @@ FilePlan plan_estimate(const EstimateArguments& arguments)
         if (!build.outputs.paths.empty())
             throw InvalidOption("the call stands behind --, with all its options: estimate -- " +
                                 arguments.words.front() + " ...");
-        std::ostringstream unheard; // what is to be said is said by the run
+        OutText unheard; // what is to be said is said by the run
         const Context silent{unheard, unheard, LogLevel::error, MessageFormat::text, {}};
         GlobalArguments global;
         with_errors_of_call([&] {

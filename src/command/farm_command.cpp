@@ -18,6 +18,7 @@
 #include "command/farm_tops.h"
 #include "command/shell_words.h"
 #include "command/signals.h"
+#include "core/text_stream.h"
 #include "fill/outside_program.h"
 #include "options/shown_text.h"
 
@@ -310,7 +311,7 @@ FilePlan plan_farm(const FarmArguments& arguments)
     plan.add_input(arguments.calls);
     plan.add_output(arguments.job);
     require_engine_is_there(arguments);
-    std::ostringstream unheard;
+    OutText unheard;
     const Context silent{unheard, unheard, LogLevel::error, MessageFormat::text, {}};
     // Without an estimate, which would read a surface: a plan reads nothing. A list of calls is a
     // file too, and is looked at by the run.

@@ -8,6 +8,7 @@
 
 #include "command/frames.h"
 #include "command/shell_words.h"
+#include "core/text_stream.h"
 
 #include <cmath>
 #include <sstream>
@@ -187,7 +188,7 @@ void write_joins(std::ostream& out, const FarmJob& job)
 /// Lines for sbatch have to stand before the first command; functions before what calls them.
 std::string slurm_script(const FarmJob& job, const std::string& file)
 {
-    std::ostringstream out;
+    OutText out;
     const std::string call = "bash " + quoted(file);
     out << "#!/bin/bash\n# " << job.name << ": " << job.steps() << " frames or runs of "
         << job.calls.size() << (job.calls.size() == 1 ? " call" : " calls") << " in "

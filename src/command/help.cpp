@@ -4,6 +4,8 @@
 
 #include "command/help.h"
 
+#include "core/text_stream.h"
+
 #include <CLI/CLI.hpp>
 #include <blosc.h>
 #include <nlohmann/json.hpp>
@@ -129,7 +131,7 @@ void begin_help_with_examples(CLI::App& app)
 /// What a report of a fault has to say.
 std::string version_text()
 {
-    std::ostringstream text;
+    OutText text;
     text << "vdb_shell " VDB_SHELL_VERSION "\n"
          << "OpenVDB " << openvdb::getLibraryVersionString() << ", oneTBB " << TBB_runtime_version()
          << ", Blosc " BLOSC_VERSION_STRING ", JSON for Modern C++ " << NLOHMANN_JSON_VERSION_MAJOR

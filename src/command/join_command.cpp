@@ -11,6 +11,7 @@
 #include "command/exit_code.h"
 #include "command/frames.h"
 #include "command/manifest.h"
+#include "core/folder_names.h"
 #include "options/shown_text.h"
 
 #include <CLI/CLI.hpp>
@@ -72,14 +73,14 @@ std::vector<fs::path> parts_of(const JoinArguments& arguments)
             continue;
         }
         std::vector<fs::path> inside;
-        fs::directory_iterator entry(part, unknown);
-        for (; !unknown && entry != fs::directory_iterator(); entry.increment(unknown)) {
+        for (const std::string& name : names_in(part, unknown)) {
+            const fs::path path = part / name;
             std::error_code gone;
             // The whole manifest may stand in the folder of its parts, from an earlier join, and is
             // none of them. Neither are folders, pipes and links to nothing.
-            if (entry->path().extension() == ".json" && entry->is_regular_file(gone) &&
-                !fs::equivalent(entry->path(), arguments.whole, gone))
-                inside.push_back(entry->path());
+            if (path.extension() == ".json" && fs::is_regular_file(path, gone) &&
+                !fs::equivalent(path, arguments.whole, gone))
+                inside.push_back(path);
         }
         if (unknown)
             throw ReadError(part.string() + ": the folder cannot be read: " + unknown.message());

@@ -6,6 +6,7 @@
 #include "command/man_page.h"
 
 #include "command/help.h"
+#include "core/text_stream.h"
 
 #include <sstream>
 
@@ -86,7 +87,7 @@ void write_examples(std::ostream& out, const std::string& command)
 
 std::string man_page(const std::vector<CommandEntry>& commands)
 {
-    std::ostringstream out;
+    OutText out;
     out << ".TH VDB_SHELL 1 \"\" \"vdb_shell " VDB_SHELL_VERSION "\" \"User commands\"\n"
            ".SH NAME\nvdb_shell \\- thick shells of prisms and tets from triangle surfaces\n"
            ".SH SYNOPSIS\n\\fBvdb_shell\\fR [\\fIoptions\\fR] \\fIcommand\\fR [\\fIoptions\\fR] "

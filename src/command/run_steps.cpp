@@ -18,6 +18,7 @@
 #include "command/signals.h"
 #include "core/available_memory.h"
 #include "core/parallel.h"
+#include "core/text_stream.h"
 
 #include <tbb/task_arena.h>
 
@@ -177,7 +178,7 @@ private:
             const std::size_t i = next_++;
             if (i >= steps_.size())
                 return;
-            std::ostringstream out, err;
+            OutText out, err;
             // What it says is kept until all frames before it have been printed; so the text of a
             // call is the same however many run at once.
             Context context{out, err, context_.level, context_.format, std::nullopt};

@@ -7,6 +7,7 @@
 #include "command/surface_input.h"
 
 #include "core/temporary_file.h"
+#include "core/text_stream.h"
 #include "field/map_values.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/core/words.h"
@@ -148,7 +149,7 @@ void warn_of_lost_digits(const std::filesystem::path& path, const ReadResult& re
     constexpr double kShare = 1.0 / (1 << 18);
     if (read.report.largest_rounding <= kShare * longest)
         return;
-    std::ostringstream text;
+    OutText text;
     text << "warning: " << path.string() << ": rounding to float32 moved coordinates by up to "
          << read.report.largest_rounding << " of an object of size " << longest
          << ", which lies far from the origin; --recentre keeps the digits of the file";

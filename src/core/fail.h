@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/text_stream.h"
+
 #include <sstream>
 
 namespace vdb_shell
@@ -9,7 +11,7 @@ namespace vdb_shell
 /// Throws an Error whose message is the parts, one behind the other as streams print them.
 template <typename Error, typename... Parts> [[noreturn]] void fail(const Parts&... parts)
 {
-    std::ostringstream message;
+    OutText message;
     (message << ... << parts);
     throw Error(message.str());
 }

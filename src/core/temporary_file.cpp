@@ -9,6 +9,7 @@
 
 #include "core/temporary_file.h"
 
+#include "core/folder_names.h"
 #include "core/output_target.h"
 #include "vdb_shell/core/atomic_file.h"
 
@@ -186,11 +187,10 @@ std::string no_temporary_folder(const std::error_code& why)
 
 void remove_leftovers(const fs::path& folder)
 {
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error))
-        if (is_name_of_ours(entry->path().filename().string()))
-            remove_if_left(entry->path());
+    std::error_code unknown; // what cannot be listed stays
+    for (const std::string& name : names_in(folder, unknown))
+        if (is_name_of_ours(name))
+            remove_if_left(folder / name);
 }
 
 CommitGuard::CommitGuard()

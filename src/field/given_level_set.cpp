@@ -8,6 +8,7 @@
 
 #include "vdb_shell/field/given_level_set.h"
 
+#include "core/text_stream.h"
 #include "field/field_sampler.h"
 #include "field/value_range.h"
 #include "io/vdb_grids.h"
@@ -39,7 +40,7 @@ constexpr double kLeastSlope = 0.8, kMostSlope = 1.25;
 
 template <typename... Parts> std::string text(const Parts&... parts)
 {
-    std::ostringstream out;
+    OutText out;
     (out << ... << parts);
     return out.str();
 }

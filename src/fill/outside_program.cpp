@@ -9,6 +9,7 @@
 #include "fill/outside_program.h"
 
 #include "core/temporary_file.h"
+#include "core/text_stream.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/fill/fill_core.h"
 #include "vdb_shell/options/option_value.h"
@@ -94,7 +95,7 @@ std::vector<std::string> environment_with_home(const fs::path& home)
 std::string text_of(const fs::path& path)
 {
     std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
+    OutText text;
     text << in.rdbuf();
     return text.str();
 }
@@ -171,7 +172,7 @@ TemporaryFolder::~TemporaryFolder()
 fs::path find_program(const std::string& name)
 {
     const char* path = std::getenv("PATH");
-    std::istringstream folders(path ? path : "");
+    InText folders(path ? path : "");
     for (std::string folder; std::getline(folders, folder, ':');) {
         // An empty entry means the present folder to a shell, a well known trap; here it is none.
         if (folder.empty())
@@ -186,7 +187,7 @@ fs::path find_program(const std::string& name)
 
 std::string last_line(const std::string& text)
 {
-    std::istringstream lines(text);
+    InText lines(text);
     std::string last;
     for (std::string line; std::getline(lines, line);)
         if (line.find_first_not_of(" \t\r") != std::string::npos)

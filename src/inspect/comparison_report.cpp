@@ -6,6 +6,7 @@
 #include "vdb_shell/inspect/compare_shells.h"
 
 #include "core/degrees.h"
+#include "core/text_stream.h"
 #include "report/text_lines.h"
 
 #include <nlohmann/json.hpp>
@@ -105,7 +106,7 @@ std::string comparison_text(const ShellComparison& c, const std::string& first,
                             const std::string& second)
 {
     constexpr int kLabel = 25;
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     out << "A  " << first << "\nB  " << second << '\n' << verdict(c) << "\n\n";
     // As wide as the longest figure of A; those of B come last and need no width.

@@ -8,6 +8,8 @@
 // latter. The kinds are keys that programs read in the JSON and have a row each in
 // docs/stages/repair.md.
 
+#include "core/text_stream.h"
+
 #include "vdb_shell/inspect/inspect_mesh.h"
 
 #include <algorithm>
@@ -33,7 +35,7 @@ std::string shown(const std::array<std::uint32_t, 2>& pair)
 }
 std::string shown(const BoundaryLoop& loop)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     out << "at point " << loop.first_point << ": " << loop.edges << " edges, length " << loop.length
         << (loop.closed ? "" : ", not closed");
@@ -168,7 +170,7 @@ void add_float_limits(Findings& findings, const MeshInspection& inspection)
         reading_lost ? "--recentre keeps the digits that the file has"
                      : "move the object to the origin in the program that it comes from: the file "
                        "has no more digits";
-    std::ostringstream text;
+    OutText text;
     text.imbue(std::locale::classic());
     text << "coordinates up to " << floats.farthest << " are " << floats.spacing
          << " apart in float32, " << floats.spacing / floats.longest_side << " of the longest side";

@@ -6,6 +6,7 @@
 
 #include "vdb_shell/inspect/inspect_mesh.h"
 
+#include "core/text_stream.h"
 #include "mesh/components_json.h"
 #include "mesh/placement_json.h"
 
@@ -78,7 +79,7 @@ std::string inspection_text(const std::string& name, const ReadReport& read,
 {
     const MeshCheck& check = inspection.check;
     const std::vector<Finding> findings = findings_of(inspection);
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     out << name << ": " << read.format << ", " << check.points << " points ("
         << read.welded_vertices << " welded, " << read.unused_vertices << " unused), "

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <ostream>
 #include <streambuf>
 #include <string>
@@ -65,6 +66,11 @@ struct VdbStream {
         : settings(std::make_shared<openvdb::io::StreamMetadata>(wanted))
     {
         openvdb::io::setStreamMetadataPtr(out, settings);
+        // Where memory runs out, in VdbBytes or for these settings, a stream only makes a mark, at
+        // which nobody looks.
+        if (!out)
+            throw std::bad_alloc();
+        out.exceptions(std::ios_base::badbit);
     }
     VdbBytes bytes;
     std::ostream out{&bytes};

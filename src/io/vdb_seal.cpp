@@ -9,6 +9,7 @@
 
 #include "io/vdb_seal.h"
 
+#include "core/text_stream.h"
 #include "io/vdb_walk.h"
 #include "vdb_shell/core/digest.h"
 #include "vdb_shell/core/error.h"
@@ -106,7 +107,7 @@ std::size_t place_of(std::string_view bytes, const VdbEntry& entry, const std::s
     std::size_t line = 0;
     while (line < entry.value.size()) {
         const std::size_t end = std::min(entry.value.find('\n', line), entry.value.size());
-        std::istringstream words{std::string(entry.value.substr(line, end - line))};
+        InText words{std::string(entry.value.substr(line, end - line))};
         std::string first, values, digits;
         // Lines of attributes have two words only, for their values lie scattered among the bytes
         // of their grid.

@@ -6,6 +6,8 @@
 
 #include "mesh/placement_json.h"
 
+#include "core/text_stream.h"
+
 #include <locale>
 #include <sstream>
 
@@ -20,7 +22,7 @@ nlohmann::ordered_json placement_json(const Placement& placement)
 
 std::string placement_text(const Placement& placement)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     constexpr int kAllDigits = 17;
     out.precision(kAllDigits);

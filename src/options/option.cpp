@@ -9,6 +9,7 @@
 
 #include "vdb_shell/options/option.h"
 
+#include "core/text_stream.h"
 #include "options/shown_text.h"
 #include "vdb_shell/core/error.h"
 
@@ -25,7 +26,7 @@ namespace
 
 std::string text_of_number(double value)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     out << value;
     return out.str();
@@ -157,7 +158,7 @@ bool is_whole_number(const std::string& text)
 /// hold.
 template <typename Number> OptionValue parsed(const std::string& text)
 {
-    std::istringstream in(text);
+    InText in(text);
     in.imbue(std::locale::classic());
     Number number{};
     in >> std::noskipws >> number;

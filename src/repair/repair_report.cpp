@@ -7,6 +7,7 @@
 
 #include "vdb_shell/repair/repair_mesh.h"
 
+#include "core/text_stream.h"
 #include "mesh/defect_json.h"
 #include "mesh/mesh_check_json.h"
 
@@ -38,7 +39,7 @@ std::string shown(const Defect<std::uint32_t>& defect)
 
 std::string hole_text(const HoleFill& hole)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     if (hole.first_point == kNoSource)
         out << "hole, cut out later, of ";
@@ -60,7 +61,7 @@ std::string hole_text(const HoleFill& hole)
 
 std::string repair_text(const RepairReport& report)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     const auto add = [&](const Defect<std::uint32_t>& defect, const char* what) {
         if (defect.count > 0)

@@ -9,6 +9,7 @@
 #include "vdb_shell/report/report.h"
 
 #include "core/degrees.h"
+#include "core/text_stream.h"
 #include "report/cores_report.h"
 #include "report/pose_report.h"
 #include "report/resample_report.h"
@@ -359,7 +360,7 @@ std::string unmet_of(const ShellReport& report)
 /// What a pose cannot change is left out, as it stands in the report of the shell at rest.
 std::string posed_report_text(const ShellReport& report)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     if (report.pose)
         pose_lines(out, *report.pose);
@@ -378,7 +379,7 @@ std::string posed_report_text(const ShellReport& report)
 
 std::string report_text(const ShellReport& report)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     surface_lines(out, report);
     field_lines(out, report.field);

@@ -3,6 +3,8 @@
 
 // Lines and figures of the report for people.
 
+#include "core/text_stream.h"
+
 #include "vdb_shell/report/report.h"
 
 #include <iomanip>
@@ -27,7 +29,7 @@ inline void line(std::ostringstream& out, const char* label, const std::string& 
 /// Whole numbers come out whole, whatever the digits.
 template <typename T> std::string number(T value, int digits = 4)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     out << std::setprecision(digits) << value;
     return out.str();
@@ -36,7 +38,7 @@ template <typename T> std::string number(T value, int digits = 4)
 /// Fixed decimals, since most fills are close to 1 and differ in the last ones.
 inline std::string percent(double share)
 {
-    std::ostringstream out;
+    OutText out;
     out.imbue(std::locale::classic());
     out << std::fixed << std::setprecision(2) << 100.0 * share << " %";
     return out.str();

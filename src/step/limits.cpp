@@ -8,6 +8,7 @@
 #include "vdb_shell/step/limits.h"
 
 #include "core/parallel.h"
+#include "core/text_stream.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/options/option.h"
 
@@ -141,7 +142,7 @@ void apply_limits(LineLengths& lengths, const std::vector<double>& limits)
             lengths.reason[v] = StopReason::limit;
         }
         if (!std::isfinite(lengths.length[v])) {
-            std::ostringstream message;
+            OutText message;
             message << "limits: vertex " << v << " has no bound on its length ("
                     << lengths.length[v]
                     << "): the surface never folds there; give a thickness or a stop test";

@@ -7,6 +7,7 @@
 #include "step/thickness.h"
 
 #include "core/parallel.h"
+#include "core/text_stream.h"
 #include "core/voxel_numbers.h"
 #include "vdb_shell/core/error.h"
 
@@ -38,7 +39,7 @@ std::vector<double> sample_thickness(const TriangleMesh& mesh, const openvdb::Fl
     // the first faulty one.
     for (std::size_t v = 0; v < sampled.size(); ++v)
         if (!(std::isfinite(sampled[v]) && sampled[v] >= 0)) {
-            std::ostringstream message;
+            OutText message;
             message << "thickness grid '" << grid.getName() << "': value " << sampled[v]
                     << " at vertex " << v << " " << mesh.points[v]
                     << ", must be finite and not negative";

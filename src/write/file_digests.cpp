@@ -6,6 +6,7 @@
 
 #include "write/file_digests.h"
 
+#include "core/text_stream.h"
 #include "io/vdb_seal.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/io/read_file.h"
@@ -67,9 +68,9 @@ StatedDigests::StatedDigests(const openvdb::MetaMap& metadata, fs::path path)
             throw ReadError(path_.string() + ": metadata \"" + kDigestsKey + "\" is missing");
         return;
     }
-    std::istringstream lines(entry->str());
+    InText lines(entry->str());
     for (std::string line; std::getline(lines, line);) {
-        std::istringstream words(line);
+        InText words(line);
         NamedDigest one;
         // What follows the digest is the seal of the bytes (io/vdb_seal.h), which is looked at
         // before OpenVDB opens the file.

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/point_grid_instances.h"
+#include "core/text_stream.h"
 #include "vdb_shell/core/digest.h"
 #include "vdb_shell/core/words.h"
 
@@ -35,7 +36,7 @@ void add_metadata(Digest& digest, const openvdb::MetaMap& metadata, const Wanted
     for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry) {
         if (!wanted(entry->first))
             continue;
-        std::ostringstream bytes;
+        OutText bytes;
         entry->second->write(bytes);
         digest.add_text(entry->first);
         // Two entries of the same bytes may be of different types, a number and a string.
@@ -133,7 +134,7 @@ void add_head(Digest& digest, const GridBase& grid)
 {
     digest.add_text(grid.getName());
     digest.add_text(grid.type());
-    std::ostringstream transform;
+    OutText transform;
     transform << grid.transform().mapType();
     grid.transform().baseMap()->write(transform);
     digest.add_text(transform.str());

@@ -9,6 +9,7 @@
 
 #include "write/vdb_metadata.h"
 
+#include "core/text_stream.h"
 #include "io/vdb_archive.h"
 
 #include "vdb_shell/core/error.h"
@@ -318,7 +319,7 @@ ShellInfo info_from_metadata(const openvdb::MetaMap& metadata, const fs::path& p
     info.orientation = entry<std::string>(metadata, path, kOrientationKey);
     info.checksum = entry<std::string>(metadata, path, kChecksumKey);
     // For people and programs that list a file. Which grids are read is decided by the counts.
-    std::istringstream names(entry<std::string>(metadata, path, kGridsKey));
+    InText names(entry<std::string>(metadata, path, kGridsKey));
     for (std::string name; names >> name;)
         info.grids.push_back(name);
     info.points_at = points_place(metadata, path);

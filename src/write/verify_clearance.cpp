@@ -8,6 +8,7 @@
 
 #include "vdb_shell/write/verify_clearance.h"
 
+#include "core/text_stream.h"
 #include "options/parse_json.h"
 #include "vdb_shell/certify/stack_certificate.h"
 #include "vdb_shell/core/error.h"
@@ -68,7 +69,7 @@ Verification verify_clearance(const ShellFile& file, std::vector<CoreMesh> cores
         const bool clear = certified_with(file.stack, prepared.kept_out, interrupter);
         const double least = report_cores(file.stack, prepared, options, {}).least_distance;
         const std::optional<double> claimed = stated_of_cores(report, "least_distance");
-        std::ostringstream detail;
+        OutText detail;
         detail.imbue(std::locale::classic());
         detail.precision(17);
         detail << (clear ? "certified with them" : "not certified with them") << ", kept off at "

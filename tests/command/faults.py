@@ -174,8 +174,8 @@ def main():
     for name in ("command", "mesh", "calls", "new"):
         parser.add_argument(name)
     parser.add_argument("--signals", type=int, default=40)
-    parser.add_argument("--allocations", type=int, default=40)
-    parser.add_argument("--sparse", type=int, default=2)
+    parser.add_argument("--allocations", type=int, default=200)
+    parser.add_argument("--sparse", type=int, default=8)
     parser.add_argument("--large", help="a mesh for signals that takes seconds")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
