@@ -8,7 +8,8 @@
 namespace vdb_shell
 {
 
-/// Retriangulates, decimates, remeshes and subdivides the surface as the options ask for, and looks at it anew.
+/// Retriangulates, decimates, remeshes and subdivides the surface as the options ask for, and looks
+/// at it anew.
 void resample_surface(ShellResult& result, const ShellOptions& options, StageClock& clock,
                       Interrupter* interrupter);
 

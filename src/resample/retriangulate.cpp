@@ -203,7 +203,7 @@ OptionList describe(RetriangulateOptions& o)
                 "Farthest that it may part the surfaces, world units; unset: 1e-5 of "
                 "the diagonal")
              .in(Unit::world_length)
-             .within(at_least(0))
+             .within(above(0))
              .needing("--retriangulate")});
 }
 

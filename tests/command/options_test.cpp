@@ -62,7 +62,7 @@ TEST_F(Options, ImpossibleOnesAreRefusedByTheirFlagsBeforeAnyFileIsRead)
     refused("--thickest --method raw", "--thickest excludes --method");
     refused("--retriangulate-tolerance 1", "--retriangulate-tolerance needs --retriangulate");
     refused("--retriangulate --retriangulate-tolerance -1",
-            "--retriangulate-tolerance is -1, must be 0 or more");
+            "--retriangulate-tolerance is -1, must be above 0");
     refused("--decimate-tolerance 1", "--decimate-tolerance needs --decimate-to");
     refused("--remesh-edge-length 0", "--remesh-edge-length is 0, must be above 0");
     refused("--remesh-to 3", "--remesh-to is 3, must be 4 or more");

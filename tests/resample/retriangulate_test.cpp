@@ -214,9 +214,10 @@ TEST(Retriangulate, SameBytesForAnyNumberOfThreads)
     EXPECT_EQ(on(1), on(4));
 }
 
-TEST(Retriangulate, RefusesAToleranceBelowZero)
+TEST(Retriangulate, RefusesAToleranceOfNothing)
 {
-    EXPECT_THROW(retriangulate(icosphere(1.0, 1), within(-1)), InvalidOption);
+    for (const double tolerance : {0.0, -1.0})
+        EXPECT_THROW(retriangulate(icosphere(1.0, 1), within(tolerance)), InvalidOption);
 }
 
 TEST(Retriangulate, CanBeCancelled)
