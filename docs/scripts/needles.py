@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fill of parts whose flat walls are cut into needles, by builds of two versions, for docs/measurements/tried.md.
 
-    needles.py BEFORE COMMAND PREFIX=FOLDER ... [--triangles 0 5000] [--flags "--for speed"] [--now=--retriangulate]
+    needles.py BEFORE COMMAND PREFIX=FOLDER ... [--triangles 0 5000] [--flags "--for speed"] [--now=--retriangulate] [--never-run]
 
 Of the parts of docs/measurements/machined.md, which have their halves and names from there, those of so many triangles (least and most)
 that the page says are less than .99 full by default; and plates of needles, made here. Prints a table. --now has what the second
-command is given besides; with it the table has the seconds of both as well.
+command is given besides; with it the table has the seconds of both as well. --never-run takes all parts of the folders with so many
+triangles instead, collections that nothing was tuned with.
 """
 import argparse
 import math
@@ -64,16 +65,18 @@ def main():
     parser.add_argument("--triangles", type=int, nargs=2, default=[0, 5000], metavar=("LEAST", "MOST"))
     parser.add_argument("--flags", default="")
     parser.add_argument("--now", default="")
+    parser.add_argument("--never-run", action="store_true")
     a = parser.parse_args()
     flags = [*a.flags.split(), "--samples", "0"]
     names, rows, means = wanted_names(*a.triangles), [], {}
     with tempfile.TemporaryDirectory() as folder:
-        chosen = [*(plates(folder) if a.triangles[0] == 0 else []), *(part for part in parts(a.folders) if part[0] in names)]
+        made = [] if a.triangles[0] > 0 or a.never_run else plates(folder)
+        chosen = [*made, *(part for part in parts(a.folders) if part[0] in names or a.never_run)]
         for name, path in chosen:
             two = [build(a.before, path, flags, figures), build(a.command, path, [*flags, *a.now.split()], figures)]
-            if any(one["exit"] != 0 for one in two):
+            if any(one["exit"] != 0 for one in two) or not a.triangles[0] <= two[0]["triangles"] <= a.triangles[1]:
                 continue
-            half = "made here" if path.parent == pathlib.Path(folder) else half_of(name)
+            half = "never run" if a.never_run else "made here" if path.parent == pathlib.Path(folder) else half_of(name)
             rows.append([name, half, f"{two[0]['triangles']:,}", *(f"{one['fill']:.4f}" for one in two),
                          str(two[1]["pins"] - two[1]["demanded"]), *(f"{one['seconds']:.1f}" for one in two if a.now)])
             means.setdefault(half, []).append([one[key] for key in ("fill", "seconds") for one in two])
