@@ -10,8 +10,6 @@
 
 #include "core/text_stream.h"
 
-#include <sstream>
-
 namespace vdb_shell::command
 {
 namespace

@@ -28,7 +28,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <sstream>
 #include <thread>
 
 namespace vdb_shell::command

@@ -23,7 +23,6 @@
 #include <cmath>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 namespace vdb_shell::command
 {

@@ -29,7 +29,6 @@
 #include <cctype>
 #include <fstream>
 #include <ostream>
-#include <sstream>
 
 namespace vdb_shell::command
 {

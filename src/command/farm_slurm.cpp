@@ -11,7 +11,6 @@
 #include "core/text_stream.h"
 
 #include <cmath>
-#include <sstream>
 
 namespace vdb_shell::command
 {

@@ -15,7 +15,6 @@
 #include <array>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <vector>
 
 namespace vdb_shell::command

@@ -8,8 +8,6 @@
 #include "command/help.h"
 #include "core/text_stream.h"
 
-#include <sstream>
-
 namespace vdb_shell::command
 {
 namespace

@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <sstream>
 
 namespace vdb_shell::command
 {

@@ -3,8 +3,6 @@
 
 #include "core/text_stream.h"
 
-#include <sstream>
-
 namespace vdb_shell
 {
 

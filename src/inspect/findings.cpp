@@ -13,7 +13,6 @@
 #include "vdb_shell/inspect/inspect_mesh.h"
 
 #include <algorithm>
-#include <sstream>
 
 namespace vdb_shell
 {

@@ -10,8 +10,6 @@
 #include "mesh/components_json.h"
 #include "mesh/placement_json.h"
 
-#include <sstream>
-
 namespace vdb_shell
 {
 namespace

@@ -9,7 +9,6 @@
 #include "core/text_stream.h"
 
 #include <locale>
-#include <sstream>
 
 namespace vdb_shell
 {

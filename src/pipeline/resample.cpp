@@ -155,8 +155,10 @@ void retriangulate_surface(ShellResult& result, const ShellOptions& options,
 {
     require_embedded(result, "retriangulation");
     RetriangulateResult turned = retriangulate(result.surface, options.retriangulate, interrupter);
-    result.surface = std::move(turned.mesh);
     result.report.retriangulate = turned.report;
+    if (turned.report.flips == 0)
+        return; // the surface is what it was
+    result.surface = std::move(turned.mesh);
     result.report.mesh = check_mesh(result.surface, interrupter);
 }
 

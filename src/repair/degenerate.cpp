@@ -14,6 +14,7 @@
 #include "core/exact.h"
 #include "core/parallel.h"
 #include "mesh/surface_defects.h"
+#include "mesh/triangle_height.h"
 
 #include <algorithm>
 #include <map>
@@ -26,32 +27,6 @@ namespace
 
 using openvdb::Vec3d;
 using openvdb::Vec3I;
-
-/// The longest side of a triangle, the first of equal ones. Side k runs from corner k to the next.
-int longest_side(const TriangleMesh& mesh, const Vec3I& t)
-{
-    int best = 0;
-    double longest = -1;
-    for (int k = 0; k < 3; ++k) {
-        const double length =
-            (Vec3d(mesh.points[t[(k + 1) % 3]]) - Vec3d(mesh.points[t[k]])).lengthSqr();
-        if (length > longest) {
-            longest = length;
-            best = k;
-        }
-    }
-    return best;
-}
-
-/// All three sides give the same area with their heights, so the longest has the smallest one.
-double smallest_height(const TriangleMesh& mesh, const Vec3I& t)
-{
-    const int k = longest_side(mesh, t);
-    const Vec3d a(mesh.points[t[k]]), b(mesh.points[t[(k + 1) % 3]]),
-        c(mesh.points[t[(k + 2) % 3]]);
-    const double length = (b - a).length();
-    return length > 0 ? (b - a).cross(c - a).length() / length : 0.0;
-}
 
 bool is_flat(const TriangleMesh& mesh, const Vec3I& t)
 {
@@ -125,7 +100,8 @@ private:
     bool is_bad(const Vec3I& t) const
     {
         return is_flat(mesh_, t) ||
-               (sliver_height_ > 0 && smallest_height(mesh_, t) < sliver_height_);
+               (sliver_height_ > 0 &&
+                height_over(mesh_, t, longest_side(mesh_, t)) < sliver_height_);
     }
 
     void drop(std::uint32_t t)

@@ -13,8 +13,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <sstream>
-
 namespace vdb_shell
 {
 namespace

@@ -296,8 +296,7 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
     if (needles_hold_back(report))
         line(out, "  void",
              "needles hold pillars back; --retriangulate cuts flat parts into better triangles "
-             "first, "
-             "--remesh-to N the whole surface; --thickest fills more");
+             "first, --remesh-to N the whole surface; --thickest fills more");
     if (report.wanted)
         for (const WantedBound& bound : report.wanted->bounds)
             line(out, "wanted", wanted_text(bound));

@@ -11,7 +11,9 @@
 #include "resample/flat_parts.h"
 
 #include "core/exact.h"
+#include "core/parallel.h"
 #include "mesh/triangle_corners.h"
+#include "mesh/triangle_height.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,27 +69,11 @@ std::vector<std::uint32_t> largest_first(const TriangleMesh& mesh)
     return order;
 }
 
-/// Height over the longest side, which is this one.
+/// Of a triangle.
 struct Height {
-    double over_longest;
     int longest_side;
+    double over_longest;
 };
-Height height_of(const std::array<Vec3d, 3>& corners)
-{
-    Height height{0, 0};
-    double longest = 0;
-    for (int side = 0; side < 3; ++side) {
-        const double squared =
-            (corners[std::size_t(side + 1) % 3] - corners[std::size_t(side)]).lengthSqr();
-        if (squared > longest) {
-            longest = squared;
-            height.longest_side = side;
-        }
-    }
-    const double twice = (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();
-    height.over_longest = longest > 0 ? twice / std::sqrt(longest) : 0;
-    return height;
-}
 
 /// A part as it grows.
 struct Growing {
@@ -99,9 +85,15 @@ class Grower
 {
 public:
     Grower(const TriangleMesh& mesh, const std::vector<NeighboursAcross>& across, double thickness)
-        : mesh_(mesh), across_(across), farthest_(kFarthest * thickness)
+        : mesh_(mesh), across_(across), farthest_(kFarthest * thickness),
+          height_(mesh.triangles.size())
     {
         found_.part_of.assign(mesh.triangles.size(), kInNoPart);
+        for_each_index(height_.size(), [&](std::size_t t) {
+            const openvdb::Vec3I& corners = mesh.triangles[t];
+            const int side = longest_side(mesh, corners);
+            height_[t] = {side, height_over(mesh, corners, side)};
+        });
     }
 
     FlatParts grow()
@@ -129,10 +121,7 @@ private:
         });
     }
 
-    bool is_thin(std::uint32_t t) const
-    {
-        return height_of(triangle_corners(mesh_, t)).over_longest <= farthest_;
-    }
+    bool is_thin(std::uint32_t t) const { return height_[t].over_longest <= farthest_; }
 
     void start(std::uint32_t seed, Thin thin)
     {
@@ -157,14 +146,14 @@ private:
                 const auto corners = triangle_corners(mesh_, t);
                 if (is_far(part.plane, corners))
                     continue;
-                const Height height = height_of(corners);
-                const bool is_thin = height.over_longest <= farthest_;
-                const Vec3d cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                if (!is_thin && !(cross.dot(part.plane.normal()) > 0))
+                if (!is_thin(t)) {
+                    const Vec3d cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+                    if (!(cross.dot(part.plane.normal()) > 0))
+                        continue;
+                } else if (thin == Thin::over_longest_side &&
+                           across_[t][std::size_t(height_[t].longest_side)] != from) {
                     continue;
-                if (is_thin && thin == Thin::over_longest_side &&
-                    across_[t][std::size_t(height.longest_side)] != from)
-                    continue;
+                }
                 found_.part_of[t] = number;
                 part.triangles.push_back(t);
                 part.plane.add(corners);
@@ -182,16 +171,15 @@ private:
         for (const std::uint32_t t : growing.triangles) {
             const auto corners = triangle_corners(mesh_, t);
             const bool turned = turns(mesh_, mesh_.triangles[t], part);
-            const double height = height_of(corners).over_longest;
             found_.part_of[t] = kInNoPart;
-            if (is_far(growing.plane, corners) || (!turned && height > farthest_))
+            if (is_far(growing.plane, corners) || (!turned && !is_thin(t)))
                 continue;
             part.triangles.push_back(t);
             for (const Vec3d& p : corners) {
                 low = std::min(low, growing.plane.height(p));
                 high = std::max(high, growing.plane.height(p));
             }
-            folded = std::max(folded, turned ? 0.0 : height);
+            folded = std::max(folded, turned ? 0.0 : height_[t].over_longest);
         }
         if (part.triangles.size() < 2)
             return;
@@ -221,6 +209,7 @@ private:
     const TriangleMesh& mesh_;
     const std::vector<NeighboursAcross>& across_;
     double farthest_; ///< from the plane
+    std::vector<Height> height_;
     std::vector<Growing> growing_;
     FlatParts found_; ///< while parts grow, part_of counts those
 };

@@ -207,15 +207,10 @@ OptionList describe(RetriangulateOptions& o)
              .needing("--retriangulate")});
 }
 
-void require_sensible(const RetriangulateOptions& options)
-{
-    require_in_range(options, "retriangulate");
-}
-
 RetriangulateResult retriangulate(const TriangleMesh& mesh, const RetriangulateOptions& options,
                                   Interrupter* interrupter)
 {
-    require_sensible(options);
+    require_in_range(options, "retriangulate");
     const StageProgress progress(interrupter, "retriangulate");
     RetriangulateResult out;
     RetriangulateReport& report = out.report;

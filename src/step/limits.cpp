@@ -16,7 +16,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace vdb_shell
 {

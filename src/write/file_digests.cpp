@@ -12,7 +12,6 @@
 #include "vdb_shell/io/read_file.h"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 namespace vdb_shell

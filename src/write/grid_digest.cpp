@@ -17,7 +17,6 @@
 
 #include <array>
 #include <cstring>
-#include <sstream>
 
 namespace vdb_shell
 {

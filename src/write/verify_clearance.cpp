@@ -19,7 +19,6 @@
 
 #include <locale>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 namespace vdb_shell

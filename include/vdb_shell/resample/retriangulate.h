@@ -35,9 +35,6 @@ struct RetriangulateResult {
     RetriangulateReport report;
 };
 
-/// Throws InvalidOption when an option is out of its range.
-void require_sensible(const RetriangulateOptions& options);
-
 /// The same points and the same shape in better triangles: inside each flat part edges are flipped
 /// until none of them makes the smallest angle of its two triangles larger, which is a Delaunay
 /// triangulation of that part between the edges around it (Lawson 1977, "Software for C1 surface
@@ -46,8 +43,8 @@ void require_sensible(const RetriangulateOptions& options);
 /// are as near as that. Edges that bound a part stay, so no feature is lost. Where triangles would
 /// touch others, which flat parts that are not exactly flat may, the part stays as it was: the
 /// result is embedded, exactly, like the input. Same result for any number of threads.
-/// Precondition: manifold, consistently oriented, embedded mesh. Throws what require_sensible
-/// throws, and Cancelled.
+/// Precondition: manifold, consistently oriented, embedded mesh. Throws InvalidOption when an
+/// option is out of its range, and Cancelled.
 RetriangulateResult retriangulate(const TriangleMesh& mesh, const RetriangulateOptions& options,
                                   Interrupter* interrupter = nullptr);
 
