@@ -54,8 +54,6 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
             attempts.push_back({GrowFrom::lines, other, next});
     if (thickest && !on_levels)
         attempts.push_back({GrowFrom::lines, first, next});
-    if (options.top_down && prism_test_of(options) == PrismTest::twelve_tets)
-        attempts.push_back({GrowFrom::lines, LineStart::thin, options});
     return attempts;
 }
 
@@ -74,6 +72,9 @@ Restarts restarts_of(const Attempt& first, std::size_t triangles)
     Restarts restarts{{GrowFrom::shell, {}, for_other_starts(first.options)},
                       schedule.restarts.most,
                       enough_for(first)};
+    GrowthSchedule& own = restarts.attempt.options.schedule;
+    own.barrier.weight_decrease = schedule.restarts.weight_decrease;
+    own.radius.factor_on_move = schedule.restarts.factor_on_move;
     if (first.from == GrowFrom::shell || !may_leave_lines(first.options))
         restarts.most = 0;
     if (first.from != GrowFrom::levels)

@@ -19,6 +19,7 @@
 #include "growth/mend_prolonged.h"
 #include "growth/multilevel.h"
 #include "growth/pins.h"
+#include "growth/prism.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "mesh/curve_order.h"
@@ -28,6 +29,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace vdb_shell
@@ -52,7 +55,18 @@ struct Ordered {
     const std::vector<Vec3s>& inner; ///< GrowStart::inner
     const GrowStart& start;          ///< but for the inner points
     const MeshOrder& order;
+    const GrowResult* restarted = nullptr; ///< what a restart goes on from
 };
+
+/// The state that the shell was left in. Any test that it passed then it passes still.
+void restore(GrowState& s, const GrowResult& grown)
+{
+    s.b.assign(grown.shell.inner.begin(), grown.shell.inner.end());
+    for (std::size_t v = 0; v < s.b.size(); ++v)
+        s.pinned[v] = s.b[v] == s.a[v];
+    for (std::size_t f = 0; f < s.order.size(); ++f)
+        s.order[f] = static_cast<std::uint8_t>(order_index(grown.split.order[f]));
+}
 
 /// The lines to where the inner points are.
 Directions own_lines(const TriangleMesh& mesh, const GrowState& s, Directions lines)
@@ -97,6 +111,10 @@ Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
             start_from_levels(s, given.mesh, started.lines, given.stepped, given.start.levels,
                               given.order, options, progress, report);
         take_lines_if_fuller(s, given, options, progress, started);
+    } else if (given.restarted) {
+        s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
+        restore(s, *given.restarted);
+        started.lines = own_lines(given.mesh, s, std::move(started.lines));
     } else if (attempt.from == GrowFrom::shell) {
         s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
         const Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
@@ -219,6 +237,8 @@ bool any_of(const std::vector<std::uint8_t>& components)
 struct Fullest {
     GrowResult result;
     double fill;
+    int restarts = 0;
+    double last_share = 1; ///< of what was empty, that the last of them has won
 };
 
 /// A pin costs more than the volume around it: prisms, and all that needs their pillars. So does
@@ -228,8 +248,10 @@ void take_if_better(const Connectivity& connectivity, GrowResult other, Fullest&
     const double fill = fill_of(other.shell);
     if (fill > fullest.fill && pins_of(other.shell) <= pins_of(fullest.result.shell) &&
         other.report.tets_below_quality <= fullest.result.report.tets_below_quality &&
-        !any_of(turned_components(connectivity, other.shell)))
-        fullest = {std::move(other), fill};
+        !any_of(turned_components(connectivity, other.shell))) {
+        fullest.result = std::move(other);
+        fullest.fill = fill;
+    }
 }
 
 /// Of a shell that was grown on from another: what led to that one counts too.
@@ -243,40 +265,82 @@ GrowReport reports_of_both(const GrowReport& before, GrowReport report)
     return report;
 }
 
-/// The shell of the first attempt, and where that is not full enough the fullest of all; then what
-/// growth comes to from that, again and again.
-GrowResult grow_fullest(const Ordered& given, const Connectivity& connectivity,
-                        const std::vector<double>& cap, const GrowOptions& options,
-                        const SplitOptions& split, const StageProgress& progress)
+/// The way from the attempts to one shell.
+class Growth
 {
-    const std::size_t triangles = given.mesh.triangles.size();
-    const std::vector<Attempt> attempts = attempts_of(given.start, triangles, options);
-    const auto grown = [&](const Ordered& from, const Attempt& attempt) {
-        return grow_once(from, connectivity, cap, attempt, split, progress);
-    };
-    Fullest fullest{grown(given, attempts.front()), 0};
-    // Such a bound leaves a void by itself.
-    if (bounds_thickness(cap))
-        return std::move(fullest.result);
-    fullest.fill = fill_of(fullest.result.shell);
-    const double enough = enough_for(attempts.front());
-    for (std::size_t i = 1; i < attempts.size() && fullest.fill < enough; ++i)
-        take_if_better(connectivity, grown(given, attempts[i]), fullest);
-
-    const Restarts restarts = restarts_of(attempts.front(), triangles);
-    double wanted = 0;
-    for (int i = 0; i < restarts.most && fullest.fill < restarts.enough && fullest.fill >= wanted;
-         ++i) {
-        const std::vector<Vec3s> inner = fullest.result.shell.inner;
-        wanted = fullest.fill + options.schedule.restarts.least_gain_of_void * (1 - fullest.fill);
-        const Ordered from{given.mesh, given.directions, given.stepped,
-                           inner,      given.start,      given.order};
-        GrowResult next = grown(from, restarts.attempt);
-        next.report = reports_of_both(fullest.result.report, next.report);
-        take_if_better(connectivity, std::move(next), fullest);
+public:
+    Growth(const Ordered& given, const Connectivity& connectivity, const std::vector<double>& cap,
+           const GrowOptions& options, const SplitOptions& split, const StageProgress& progress)
+        : given_(given), connectivity_(connectivity), cap_(cap), split_(split), progress_(progress),
+          schedule_(options.schedule.restarts),
+          attempts_(attempts_of(given.start, given.mesh.triangles.size(), options)),
+          restarts_(restarts_of(attempts_.front(), given.mesh.triangles.size()))
+    {
     }
-    return std::move(fullest.result);
-}
+
+    GrowResult fullest() const
+    {
+        Fullest first{grown(given_, attempts_.front()), 0};
+        // Such a bound leaves a void by itself.
+        if (bounds_thickness(cap_))
+            return std::move(first.result);
+        first.fill = fill_of(first.result.shell);
+        constexpr double kAnyNumber = std::numeric_limits<double>::infinity();
+        const double enough = enough_for(attempts_.front());
+        Fullest fullest = first;
+        if (first.fill >= schedule_.before_others_from)
+            restart(fullest, schedule_.most_before_others);
+        if (fullest.fill < enough) {
+            // By what each has come to itself: they have had no restarts.
+            Fullest other = first;
+            for (std::size_t i = 1; i < attempts_.size() && other.fill < enough; ++i)
+                take_if_better(connectivity_, grown(given_, attempts_[i]), other);
+            if (other.fill > first.fill) {
+                restart(other, kAnyNumber);
+                take_if_better(connectivity_, std::move(other.result), fullest);
+                return std::move(fullest.result);
+            }
+        }
+        restart(fullest, kAnyNumber);
+        return std::move(fullest.result);
+    }
+
+private:
+    GrowResult grown(const Ordered& from, const Attempt& attempt) const
+    {
+        return grow_once(from, connectivity_, cap_, attempt, split_, progress_);
+    }
+
+    /// Grows on from the shell, again and again, while that wins something and so many more that
+    /// win as much would be enough.
+    void restart(Fullest& fullest, double more) const
+    {
+        const auto goes_on = [&] {
+            const double left = (1 - fullest.fill) * std::pow(1 - fullest.last_share, more);
+            return fullest.fill < restarts_.enough && fullest.restarts < restarts_.most &&
+                   fullest.last_share >= schedule_.least_gain_of_void &&
+                   left <= 1 - restarts_.enough;
+        };
+        for (; goes_on(); ++fullest.restarts) {
+            Ordered from = given_;
+            from.restarted = &fullest.result;
+            GrowResult next = grown(from, restarts_.attempt);
+            next.report = reports_of_both(fullest.result.report, next.report);
+            const double empty = 1 - fullest.fill;
+            take_if_better(connectivity_, std::move(next), fullest);
+            fullest.last_share = 1 - (1 - fullest.fill) / empty;
+        }
+    }
+
+    const Ordered& given_;
+    const Connectivity& connectivity_;
+    const std::vector<double>& cap_;
+    const SplitOptions& split_;
+    const StageProgress& progress_;
+    const RestartSchedule& schedule_;
+    std::vector<Attempt> attempts_;
+    Restarts restarts_;
+};
 
 /// The shell, in the order that the mesh is given in.
 GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOptions options,
@@ -286,7 +350,7 @@ GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOpti
     const TriangleMesh& mesh = given.mesh;
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     while (true) {
-        GrowResult result = grow_fullest(given, connectivity, cap, options, split, progress);
+        GrowResult result = Growth(given, connectivity, cap, options, split, progress).fullest();
         const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
         // A component that crosses itself encloses as much of either sign as it likes.
         const auto crosses_itself = [&] {

@@ -50,6 +50,14 @@ TEST(Attempts, AreThinAloneWithoutTopDown)
     }
 }
 
+// A thin shell, with room on all sides, is where lines go from; free moves have room of their own.
+TEST(Attempts, AreNotThinWithTopDown)
+{
+    for (const GrowOptions& options : test::ways_to_grow())
+        for (const LineStart start : starts_of(attempts_of({}, kFew, options)))
+            EXPECT_NE(start, LineStart::thin);
+}
+
 TEST(Attempts, KeepToTheLinesWithoutFreeMoves)
 {
     for (GrowOptions options : test::ways_to_grow()) {
@@ -92,6 +100,16 @@ TEST(Restarts, GoOnFromTheShellUnderTheTestThatIsAskedFor)
         EXPECT_EQ(restarts.attempt.from, GrowFrom::shell);
         EXPECT_EQ(prism_test_of(restarts.attempt.options), prism_test_of(options));
     }
+}
+
+TEST(Restarts, HaveNumbersOfTheirOwn)
+{
+    GrowOptions options;
+    options.schedule.restarts.weight_decrease = 0.9;
+    options.schedule.restarts.factor_on_move = 3;
+    const Restarts restarts = restarts_of({GrowFrom::lines, LineStart::shrunk, options}, kFew);
+    EXPECT_EQ(restarts.attempt.options.schedule.barrier.weight_decrease, 0.9);
+    EXPECT_EQ(restarts.attempt.options.schedule.radius.factor_on_move, 3);
 }
 
 TEST(Restarts, AreNoneWithoutFreeMovesNorFromAShellNorWhereTheyTakeTooLong)

@@ -61,6 +61,15 @@ struct RestartSchedule {
     double least_gain_of_void = 0.05;
     /// Count. Restarts at most: machined parts have come to eight (docs/measurements/tried.md).
     int most = 12;
+    /// Share of the solid, and count. A first shell as full as that has restarts before any other
+    /// start is tried, while so many more of them, each as good as the last, would be enough: a
+    /// restart takes half of a start's time.
+    double before_others_from = 0.95;
+    int most_before_others = 3;
+    /// BarrierSchedule::weight_decrease and TrustRadiusSchedule::factor_on_move in a restart: both
+    /// slower and farther than at first, for a third less void in as much time
+    /// (docs/measurements/tried.md).
+    double weight_decrease = 0.8, factor_on_move = 1.5;
     /// Share of the solid that is enough on a surface of more than most_coarsest_triangles, where
     /// one takes about as long as all before; from one_round_triangles on there is none
     /// (MultilevelSchedule). Scans are fuller than that (docs/measurements/scans.md).
