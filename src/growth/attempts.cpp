@@ -60,9 +60,11 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
 double enough_for(const Attempt& attempt)
 {
     // Far below what levels leave of a rounded surface, for there another way takes its time.
-    constexpr double kNearlyFull = 0.99;
+    constexpr double kNearlyFull = 0.99, kNearlyFullThickest = 0.995;
+    const double from_lines =
+        attempt.options.method == Method::thickest ? kNearlyFullThickest : kNearlyFull;
     const double full =
-        attempt.from == GrowFrom::levels ? attempt.options.schedule.lines.nearly_full : kNearlyFull;
+        attempt.from == GrowFrom::levels ? attempt.options.schedule.lines.nearly_full : from_lines;
     return std::min(full, attempt.options.schedule.barrier.enough_fill);
 }
 
