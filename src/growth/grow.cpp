@@ -280,35 +280,45 @@ public:
 
     GrowResult fullest() const
     {
-        Fullest first{grown(given_, attempts_.front()), 0};
+        Fullest fullest{grown(given_, attempts_.front()), 0};
         // Such a bound leaves a void by itself.
         if (bounds_thickness(cap_))
-            return std::move(first.result);
-        first.fill = fill_of(first.result.shell);
-        constexpr double kAnyNumber = std::numeric_limits<double>::infinity();
+            return std::move(fullest.result);
+        fullest.fill = fill_of(fullest.result.shell);
         const double enough = enough_for(attempts_.front());
-        Fullest fullest = first;
-        if (first.fill >= schedule_.before_others_from)
-            restart(fullest, schedule_.most_before_others);
-        if (fullest.fill < enough) {
-            // By what each has come to itself: they have had no restarts.
-            Fullest other = first;
-            for (std::size_t i = 1; i < attempts_.size() && other.fill < enough; ++i)
-                take_if_better(connectivity_, grown(given_, attempts_[i]), other);
-            if (other.fill > first.fill) {
-                restart(other, kAnyNumber);
-                take_if_better(connectivity_, std::move(other.result), fullest);
-                return std::move(fullest.result);
-            }
-        }
-        restart(fullest, kAnyNumber);
+        if (attempts_.size() > 1 && fullest.fill < enough)
+            try_others(fullest, enough);
+        else
+            restart(fullest, kAnyNumber);
         return std::move(fullest.result);
     }
 
 private:
+    static constexpr double kAnyNumber = std::numeric_limits<double>::infinity();
+
     GrowResult grown(const Ordered& from, const Attempt& attempt) const
     {
         return grow_once(from, connectivity_, cap_, attempt, split_, progress_);
+    }
+
+    /// After restarts of the first shell, where few may be enough; and restarts of the fullest.
+    void try_others(Fullest& fullest, double enough) const
+    {
+        // By what each has come to itself: they have had no restarts.
+        Fullest other = fullest;
+        if (fullest.fill >= schedule_.before_others_from)
+            restart(fullest, schedule_.most_before_others);
+        if (fullest.fill >= enough)
+            return;
+        const double first = other.fill;
+        for (std::size_t i = 1; i < attempts_.size() && other.fill < enough; ++i)
+            take_if_better(connectivity_, grown(given_, attempts_[i]), other);
+        if (other.fill > first) {
+            restart(other, kAnyNumber);
+            take_if_better(connectivity_, std::move(other.result), fullest);
+        } else {
+            restart(fullest, kAnyNumber);
+        }
     }
 
     /// Grows on from the shell, again and again, while that wins something and so many more that
