@@ -263,7 +263,7 @@ bool needles_hold_back(const ShellReport& report)
 {
     // Share of the solid, and longest over shortest edge. Machined parts that are less full
     // (docs/measurements/machined.md) have triangles of 70 to 5,500.
-    constexpr double kLittle = 0.9, kNeedle = 20;
+    constexpr double kLittle = 0.95, kNeedle = 20;
     const bool by_thickness =
         report.scale || report.cores || report.lines.stops[std::size_t(StopReason::thickness)] > 0;
     return report.grow && report.side == Side::inward && !by_thickness && report.fill < kLittle &&
