@@ -290,6 +290,11 @@ void write_grids(UsdStage& stage, const Samples& samples, const fs::path& path)
     throw InvalidOption(path.string() + ": " + what);
 }
 
+[[noreturn]] void refuse_shell(const fs::path& path, const std::string& what)
+{
+    throw GeometryError(path.string() + ": " + what);
+}
+
 void require_positive(const fs::path& path, const char* what, double value)
 {
     if (!(value > 0.0) || !std::isfinite(value))
@@ -304,12 +309,12 @@ void require_alike(const fs::path& path, const std::string& name, const UsdSampl
 {
     const ShellStack &stack = sample.shell->stack, &other = first.shell->stack;
     if (stack.layers.size() != other.layers.size() || stack.skin != other.skin)
-        refuse(path, name + ": it has " + std::to_string(stack.layers.size()) +
-                         " layers, the surface is number " + std::to_string(stack.skin) +
-                         "; sample 0 has " + std::to_string(other.layers.size()) + " and " +
-                         std::to_string(other.skin));
+        refuse_shell(path, name + ": it has " + std::to_string(stack.layers.size()) +
+                               " layers, the surface is number " + std::to_string(stack.skin) +
+                               "; sample 0 has " + std::to_string(other.layers.size()) + " and " +
+                               std::to_string(other.skin));
     if (stack.triangles() != other.triangles())
-        refuse(path, name + ": its surface has other triangles than that of sample 0");
+        refuse_shell(path, name + ": its surface has other triangles than that of sample 0");
     if (sample.volume.empty() != first.volume.empty())
         refuse(path, name + ": all samples have a volume or none has");
 }

@@ -80,7 +80,7 @@ void require_same_tets(const MappedShell& first, const MappedShell& second)
     // Corner for corner: a place found in one is looked up in the other by its number.
     if (a.tets != b.tets || a.prism != b.prism || a.prism_layer != b.prism_layer ||
         a.points.size() != b.points.size())
-        throw InvalidOption(second.path.string() + ": its tets (" + std::to_string(b.tets.size()) +
+        throw GeometryError(second.path.string() + ": its tets (" + std::to_string(b.tets.size()) +
                             ") are not those of " + first.path.string() + " (" +
                             std::to_string(a.tets.size()) +
                             "): the two are not one shell in two poses");

@@ -54,7 +54,7 @@ double voxel_size_of(const MappedShell& shell, double wanted);
 /// readers of texture coordinates throw.
 SurfaceCoordinates texture_of(const std::filesystem::path& mesh, const MappedShell& shell);
 
-/// Throws InvalidOption unless the tets of both are the same: place for place, they are one shell.
+/// Throws GeometryError unless the tets of both are the same: place for place, they are one shell.
 void require_same_tets(const MappedShell& first, const MappedShell& second);
 
 } // namespace vdb_shell::command

@@ -46,7 +46,7 @@ struct Wanted {
 
 [[noreturn]] void refuse(const PosedSurface& posed, const TriangleMesh& mesh, const Wanted& wanted)
 {
-    throw InvalidOption(posed.mesh.string() + ": it has " + std::to_string(mesh.points.size()) +
+    throw GeometryError(posed.mesh.string() + ": it has " + std::to_string(mesh.points.size()) +
                         " vertices and " + std::to_string(mesh.triangles.size()) +
                         " triangles that are not those of " + wanted.whose + ", which has " +
                         std::to_string(wanted.vertices) + " and " +

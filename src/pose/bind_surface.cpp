@@ -91,14 +91,14 @@ std::vector<openvdb::Vec3s> in_order_of_ids(const std::vector<openvdb::Vec3s>& p
     std::unordered_map<std::int64_t, std::size_t> place;
     for (std::size_t i = 0; i < ids.size(); ++i)
         if (!place.emplace(ids[i], i).second)
-            throw InvalidOption(name + ": the points " + std::to_string(place[ids[i]]) + " and " +
+            throw GeometryError(name + ": the points " + std::to_string(place[ids[i]]) + " and " +
                                 std::to_string(i) + " have the same id " + std::to_string(ids[i]));
     std::vector<openvdb::Vec3s> ordered;
     ordered.reserve(wanted.size());
     for (const std::int64_t id : wanted) {
         const auto found = place.find(id);
         if (found == place.end())
-            throw InvalidOption(name + ": no point has the id " + std::to_string(id));
+            throw GeometryError(name + ": no point has the id " + std::to_string(id));
         ordered.push_back(points[found->second]);
     }
     return ordered;

@@ -149,7 +149,7 @@ void HtmlPage::add(const std::string& label, const ShellFile& file)
         p.about["origin"] = json_of(file.placement.origin);
         p.about["unit"] = file.placement.unit;
     } else if (digest != p.digest) {
-        throw InvalidOption(label + ": its triangles or tets are not those of " +
+        throw GeometryError(label + ": its triangles or tets are not those of " +
                             p.about["frames"][0]["label"].get<std::string>() +
                             ", and a page has frames of one shell");
     }

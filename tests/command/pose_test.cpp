@@ -160,7 +160,7 @@ TEST_F(Pose, FramesComeOntoOnePage)
     ASSERT_EQ(run("build " + rod + kCoarse + " --layers 2 -q -o " + file("two.vdb")).status,
               ExitCode::success);
     expect_refusal("page " + file("p.1.vdb") + " " + file("two.vdb") + " -o " + file("x.html"),
-                   ExitCode::usage_error, {"two", "not those of p.1"});
+                   ExitCode::geometry_error, {"two", "not those of p.1"});
     EXPECT_FALSE(std::filesystem::exists(folder / "x.html"));
 }
 
@@ -188,7 +188,7 @@ TEST_F(Pose, OtherTrianglesNeedTheSurfaceAtRest)
     const std::string at_rest = mesh_file("box.obj", other),
                       posed = mesh_file("t.obj", turn(other));
     expect_refusal("pose " + file("rest.vdb") + " " + posed + " -q -o " + file("o.vdb"),
-                   ExitCode::usage_error, {"t.obj", "--rest-mesh", "rest.vdb"});
+                   ExitCode::geometry_error, {"t.obj", "--rest-mesh", "rest.vdb"});
     EXPECT_FALSE(std::filesystem::exists(folder / "o.vdb"));
     ASSERT_EQ(run("pose " + file("rest.vdb") + " " + posed + " --rest-mesh " + at_rest + " -q -o " +
                   file("o.vdb"))
@@ -238,7 +238,7 @@ TEST_F(Pose, PolygonsMayBeCutOtherwiseThanAtRest)
             t[k] = (t[k] + std::uint32_t(box.points.size()) - 1) % std::uint32_t(box.points.size());
     expect_refusal("pose " + file("quads.vdb") + " " + write_quads(folder / "other.obj", box) +
                        " -q -o " + file("o.vdb"),
-                   ExitCode::usage_error, {"other.obj", "not those of the surface of"});
+                   ExitCode::geometry_error, {"other.obj", "not those of the surface of"});
 }
 
 /// The mesh's points back to front, as text, with ids.
@@ -335,7 +335,7 @@ TEST_F(Pose, IdsSayWhichPointIsWhich)
     write_bytes(folder / "posed.ply", with_ids(pose, name));
     write_bytes(folder / "still.ply", with_ids(rest, name));
     expect_refusal("pose " + file("rest.vdb") + " " + file("posed.ply") + " -q -o " + file("o.vdb"),
-                   ExitCode::usage_error, {"posed.ply", "no point has the id"});
+                   ExitCode::geometry_error, {"posed.ply", "no point has the id"});
     EXPECT_EQ(run("pose " + file("rest.vdb") + " " + file("posed.ply") + " --rest-mesh " +
                   file("still.ply") + " -q -o " + file("o.vdb"))
                   .status,

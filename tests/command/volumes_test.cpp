@@ -221,7 +221,7 @@ TEST_F(Volumes, RefuseBadInput)
             .status,
         ExitCode::success);
     expect_refusal("deform " + fog + " --rest " + other + " --posed " + posed + " -o " + out,
-                   ExitCode::usage_error, {"posed.vdb", "other.vdb", "not one shell"});
+                   ExitCode::geometry_error, {"posed.vdb", "other.vdb", "not one shell"});
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 

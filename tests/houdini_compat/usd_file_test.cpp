@@ -72,7 +72,7 @@ protected:
         try {
             write_usd(folder / "refused.usda", samples, options);
             ADD_FAILURE() << "written, though it should say " << words.front();
-        } catch (const InvalidOption& error) {
+        } catch (const Error& error) {
             for (const std::string& word : words)
                 EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
         }

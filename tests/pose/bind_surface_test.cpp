@@ -55,7 +55,7 @@ TEST(BindSurface, IdsOrderPointsWhereverTheyStand)
     const auto complaint = [&](const std::vector<std::int64_t>& ids) -> std::string {
         try {
             in_order_of_ids(points, ids, {1, 2, 3}, "m.ply");
-        } catch (const InvalidOption& error) {
+        } catch (const GeometryError& error) {
             return error.what();
         }
         return "";

@@ -261,7 +261,7 @@ std::string refusal_of(HtmlPage& page, const std::string& label, const ShellFile
 {
     try {
         page.add(label, file);
-    } catch (const InvalidOption& error) {
+    } catch (const Error& error) {
         return error.what();
     }
     return "";
@@ -283,6 +283,7 @@ TEST(HtmlPage, FramesAreOfOneShell)
     page.add("a.vdb", ball());
     EXPECT_THAT(refusal_of(page, "b.vdb", page_file_of(three_layers())),
                 testing::AllOf(testing::HasSubstr("b.vdb"), testing::HasSubstr("a.vdb")));
+    EXPECT_THROW(page.add("b.vdb", page_file_of(three_layers())), GeometryError);
     EXPECT_THROW(HtmlPage().write("p.html"), InvalidOption);
     ShellFile broken = ball();
     broken.tets.tets.front()[0] = 1000000;

@@ -28,7 +28,7 @@ std::vector<BoundPoint> bind_surface(const std::vector<openvdb::Vec3s>& points,
 std::vector<openvdb::Vec3s> move_bound(const std::vector<BoundPoint>& bound,
                                        const TriangleMesh& posed);
 
-/// The points in the order in which `wanted` names them. Throws InvalidOption, its message opened
+/// The points in the order in which `wanted` names them. Throws GeometryError, its message opened
 /// by `name`, for an id that comes twice or is missing. Precondition: an id for each point.
 std::vector<openvdb::Vec3s> in_order_of_ids(const std::vector<openvdb::Vec3s>& points,
                                             const std::vector<std::int64_t>& ids,

@@ -27,8 +27,8 @@ public:
     HtmlPage& operator=(const HtmlPage&) = delete;
 
     /// The next frame, with what the page calls it; `file` is not needed afterwards. Throws
-    /// InvalidOption, its message opened by the label, where arrays do not fit together and where
-    /// triangles or tets are not those of the first frame.
+    /// InvalidOption where arrays do not fit together, GeometryError where triangles or tets are
+    /// not those of the first frame, their messages opened by the label.
     void add(const std::string& label, const ShellFile& file);
 
     /// Same bytes for the same frames. The file appears whole or not at all. Throws WriteError,

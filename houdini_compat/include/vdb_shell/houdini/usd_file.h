@@ -33,9 +33,9 @@ struct UsdSample {
 /// .vdb, by a path relative to the stage. docs/usd.md lists attributes and primvars. With one
 /// sample everything is timeless. With more, what differs between them is time-sampled. Numbers
 /// read back as the same float32, same bytes for the same input; the file appears whole or not at
-/// all. Throws InvalidOption for no samples, times that do not increase, samples whose surfaces
-/// have different triangles or which have other layers, a volume for some samples only or without
-/// grids, options that are not positive and finite; WriteError.
+/// all. Throws InvalidOption for no samples, times that do not increase, a volume for some samples
+/// only or without grids, options that are not positive and finite; GeometryError for samples whose
+/// surfaces have different triangles or which have other layers; WriteError.
 void write_usd(const std::filesystem::path& path, const std::vector<UsdSample>& samples,
                const UsdOptions& options = {}, OutputSet* with = nullptr);
 
