@@ -59,7 +59,8 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
 
 double enough_for(const Attempt& attempt)
 {
-    // Far below what levels leave of a rounded surface, for there another way takes its time.
+    // Far below what levels leave of a rounded surface, for there another way takes its time. Who
+    // asks for the thickest waits for half of what the others leave.
     constexpr double kNearlyFull = 0.99, kNearlyFullThickest = 0.995;
     const double from_lines =
         attempt.options.method == Method::thickest ? kNearlyFullThickest : kNearlyFull;

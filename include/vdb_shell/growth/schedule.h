@@ -63,7 +63,7 @@ struct RestartSchedule {
     int most = 12;
     /// Share of the solid, and count. A first shell as full as that has restarts before any other
     /// start is tried, while so many more of them, each as good as the last, would be enough: a
-    /// restart takes half of a start's time.
+    /// restart takes half of a start's time (docs/measurements/tried.md).
     double before_others_from = 0.95;
     int most_before_others = 3;
     /// BarrierSchedule::weight_decrease and TrustRadiusSchedule::factor_on_move in a restart: both
