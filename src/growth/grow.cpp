@@ -10,9 +10,10 @@
 
 #include "vdb_shell/growth/grow.h"
 
-#include "core/parallel.h"
+#include "core/marked.h"
 #include "core/stage_progress.h"
 #include "growth/attempts.h"
+#include "growth/fullest.h"
 #include "growth/improve.h"
 #include "growth/initialise.h"
 #include "growth/lengthen_lines.h"
@@ -23,14 +24,11 @@
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "mesh/curve_order.h"
-#include "mesh/exact_volume.h"
 #include "mesh/surface_defects.h"
 #include "vdb_shell/options/option.h"
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace vdb_shell
@@ -55,7 +53,6 @@ struct Ordered {
     const std::vector<Vec3s>& inner; ///< GrowStart::inner
     const GrowStart& start;          ///< but for the inner points
     const MeshOrder& order;
-    const GrowResult* restarted = nullptr; ///< what a restart goes on from
 };
 
 /// The state that the shell was left in. Any test that it passed then it passes still.
@@ -64,8 +61,7 @@ void restore(GrowState& s, const GrowResult& grown)
     s.b.assign(grown.shell.inner.begin(), grown.shell.inner.end());
     for (std::size_t v = 0; v < s.b.size(); ++v)
         s.pinned[v] = s.b[v] == s.a[v];
-    for (std::size_t f = 0; f < s.order.size(); ++f)
-        s.order[f] = static_cast<std::uint8_t>(order_index(grown.split.order[f]));
+    s.order = order_indices(grown.split.order);
 }
 
 /// The lines to where the inner points are.
@@ -97,7 +93,7 @@ void take_lines_if_fuller(GrowState& s, const Ordered& given, const GrowOptions&
 }
 
 Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
-                     const StageProgress& progress, GrowReport& report)
+                     const GrowResult* restarted, const StageProgress& progress, GrowReport& report)
 {
     const GrowOptions& options = attempt.options;
     const bool on_levels = attempt.from == GrowFrom::levels;
@@ -111,15 +107,16 @@ Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
             start_from_levels(s, given.mesh, started.lines, given.stepped, given.start.levels,
                               given.order, options, progress, report);
         take_lines_if_fuller(s, given, options, progress, started);
-    } else if (given.restarted) {
-        s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
-        restore(s, *given.restarted);
-        started.lines = own_lines(given.mesh, s, std::move(started.lines));
     } else if (attempt.from == GrowFrom::shell) {
         s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
-        const Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
-        mend_prolonged(s, pillars.lines, pillars.length, progress);
-        started.lines = own_lines(given.mesh, s, pillars.lines);
+        if (restarted) {
+            restore(s, *restarted);
+        } else {
+            Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
+            mend_prolonged(s, pillars.lines, pillars.length, progress);
+            started.lines = std::move(pillars.lines);
+        }
+        started.lines = own_lines(given.mesh, s, std::move(started.lines));
     } else {
         start_from_lines(s, started.lines, given.stepped, attempt.start, options, progress);
         if (leaves_lines(attempt.start))
@@ -135,23 +132,6 @@ GrowthSchedule schedule_of(const GrowOptions& options)
     if (options.enough_fill)
         schedule.barrier.enough_fill = schedule.multilevel.wanted_fill = *options.enough_fill;
     return schedule;
-}
-
-/// By component, whether its inner surface has turned inside out. The tests of moves do not see
-/// that: where a component has few triangles, one move may take a vertex past all others, from one
-/// embedded surface to another, and with all tets positive on both sides.
-std::vector<std::uint8_t> turned_components(const Connectivity& connectivity,
-                                            const PrismShell& shell)
-{
-    const auto signs = [&](const std::vector<openvdb::Vec3s>& points) {
-        return exact::volume_signs(points, connectivity.faces, connectivity.component,
-                                   connectivity.components);
-    };
-    const std::vector<int> outer = signs(shell.outer), inner = signs(shell.inner);
-    std::vector<std::uint8_t> turned(outer.size());
-    for (std::size_t c = 0; c < turned.size(); ++c)
-        turned[c] = outer[c] * inner[c] < 0;
-    return turned;
 }
 
 /// Such components have no shell then, which always is valid. False if they had none before.
@@ -185,10 +165,11 @@ bool take_more_care(const Connectivity& connectivity, const std::vector<std::uin
     return true;
 }
 
-/// One attempt at the shell.
+/// One attempt at the shell. `restarted` is what a restart goes on from.
 GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
                      const std::vector<double>& cap, const Attempt& attempt,
-                     const SplitOptions& split, const StageProgress& progress)
+                     const GrowResult* restarted, const SplitOptions& split,
+                     const StageProgress& progress)
 {
     const TriangleMesh& mesh = given.mesh;
     const GrowOptions& options = attempt.options;
@@ -197,7 +178,8 @@ GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
     GrowReport& report = result.report;
     // Percent. From levels on it is mostly the start that takes time, else the rounds.
     const double started_at = attempt.from == GrowFrom::levels ? 60 : 20, relaxed_at = 90;
-    Started started = start_growth(s, given, attempt, progress.part(0, started_at), report);
+    Started started =
+        start_growth(s, given, attempt, restarted, progress.part(0, started_at), report);
     report.released += static_cast<std::size_t>(
         release_pins(s, started.lines.visibility, PillarsBesidePin::turned));
     // A prolonged shell has left the lines.
@@ -218,140 +200,6 @@ GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
     return result;
 }
 
-double fill_of(const PrismShell& shell)
-{
-    return 1 - signed_volume(shell.inner, shell.triangles) /
-                   signed_volume(shell.outer, shell.triangles);
-}
-
-std::ptrdiff_t pins_of(const PrismShell& shell)
-{
-    return std::count(shell.stop.begin(), shell.stop.end(), StopReason::pinned);
-}
-
-bool any_of(const std::vector<std::uint8_t>& components)
-{
-    return std::find(components.begin(), components.end(), 1) != components.end();
-}
-
-struct Fullest {
-    GrowResult result;
-    double fill;
-    int restarts = 0;
-    double last_share = 1; ///< of what was empty, that the last of them has won
-};
-
-/// A pin costs more than the volume around it: prisms, and all that needs their pillars. So does
-/// the shape that the user asks for.
-void take_if_better(const Connectivity& connectivity, GrowResult other, Fullest& fullest)
-{
-    const double fill = fill_of(other.shell);
-    if (fill > fullest.fill && pins_of(other.shell) <= pins_of(fullest.result.shell) &&
-        other.report.tets_below_quality <= fullest.result.report.tets_below_quality &&
-        !any_of(turned_components(connectivity, other.shell))) {
-        fullest.result = std::move(other);
-        fullest.fill = fill;
-    }
-}
-
-/// Of a shell that was grown on from another: what led to that one counts too.
-GrowReport reports_of_both(const GrowReport& before, GrowReport report)
-{
-    report.rounds += before.rounds;
-    report.flips += before.flips;
-    report.released += before.released;
-    report.fill_after_lines = before.fill_after_lines;
-    report.quality_rounds += before.quality_rounds;
-    return report;
-}
-
-/// The way from the attempts to one shell.
-class Growth
-{
-public:
-    Growth(const Ordered& given, const Connectivity& connectivity, const std::vector<double>& cap,
-           const GrowOptions& options, const SplitOptions& split, const StageProgress& progress)
-        : given_(given), connectivity_(connectivity), cap_(cap), split_(split), progress_(progress),
-          schedule_(options.schedule.restarts),
-          attempts_(attempts_of(given.start, given.mesh.triangles.size(), options)),
-          restarts_(restarts_of(attempts_.front(), given.mesh.triangles.size()))
-    {
-    }
-
-    GrowResult fullest() const
-    {
-        Fullest fullest{grown(given_, attempts_.front()), 0};
-        // Such a bound leaves a void by itself.
-        if (bounds_thickness(cap_))
-            return std::move(fullest.result);
-        fullest.fill = fill_of(fullest.result.shell);
-        const double enough = enough_for(attempts_.front());
-        if (attempts_.size() > 1 && fullest.fill < enough)
-            try_others(fullest, enough);
-        else
-            restart(fullest, kAnyNumber);
-        return std::move(fullest.result);
-    }
-
-private:
-    static constexpr double kAnyNumber = std::numeric_limits<double>::infinity();
-
-    GrowResult grown(const Ordered& from, const Attempt& attempt) const
-    {
-        return grow_once(from, connectivity_, cap_, attempt, split_, progress_);
-    }
-
-    /// After restarts of the first shell, where few may be enough; and restarts of the fullest.
-    void try_others(Fullest& fullest, double enough) const
-    {
-        // By what each has come to itself: they have had no restarts.
-        Fullest other = fullest;
-        if (fullest.fill >= schedule_.before_others_from)
-            restart(fullest, schedule_.most_before_others);
-        if (fullest.fill >= enough)
-            return;
-        const double first = other.fill;
-        for (std::size_t i = 1; i < attempts_.size() && other.fill < enough; ++i)
-            take_if_better(connectivity_, grown(given_, attempts_[i]), other);
-        if (other.fill > first) {
-            restart(other, kAnyNumber);
-            take_if_better(connectivity_, std::move(other.result), fullest);
-        } else {
-            restart(fullest, kAnyNumber);
-        }
-    }
-
-    /// Grows on from the shell, again and again, while that wins something and so many more that
-    /// win as much would be enough.
-    void restart(Fullest& fullest, double more) const
-    {
-        const auto goes_on = [&] {
-            const double left = (1 - fullest.fill) * std::pow(1 - fullest.last_share, more);
-            return fullest.fill < restarts_.enough && fullest.restarts < restarts_.most &&
-                   fullest.last_share >= schedule_.least_gain_of_void &&
-                   left <= 1 - restarts_.enough;
-        };
-        for (; goes_on(); ++fullest.restarts) {
-            Ordered from = given_;
-            from.restarted = &fullest.result;
-            GrowResult next = grown(from, restarts_.attempt);
-            next.report = reports_of_both(fullest.result.report, next.report);
-            const double empty = 1 - fullest.fill;
-            take_if_better(connectivity_, std::move(next), fullest);
-            fullest.last_share = 1 - (1 - fullest.fill) / empty;
-        }
-    }
-
-    const Ordered& given_;
-    const Connectivity& connectivity_;
-    const std::vector<double>& cap_;
-    const SplitOptions& split_;
-    const StageProgress& progress_;
-    const RestartSchedule& schedule_;
-    std::vector<Attempt> attempts_;
-    Restarts restarts_;
-};
-
 /// The shell, in the order that the mesh is given in.
 GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOptions options,
                          const SplitOptions& split, Interrupter* interrupter)
@@ -360,14 +208,17 @@ GrowResult grow_in_order(const Ordered& given, std::vector<double> cap, GrowOpti
     const TriangleMesh& mesh = given.mesh;
     const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
     while (true) {
-        GrowResult result = Growth(given, connectivity, cap, options, split, progress).fullest();
+        const auto grow = [&](const Attempt& attempt, const GrowResult* restarted) {
+            return grow_once(given, connectivity, cap, attempt, restarted, split, progress);
+        };
+        GrowResult result = grow_fullest(given.start, connectivity, cap, options, grow);
         const std::vector<std::uint8_t> turned = turned_components(connectivity, result.shell);
         // A component that crosses itself encloses as much of either sign as it likes.
         const auto crosses_itself = [&] {
             return prism_test_of(options) == PrismTest::twelve_tets &&
                    !find_self_intersections(mesh, {}, interrupter).empty();
         };
-        if (!any_of(turned) || crosses_itself() ||
+        if (marked(turned).empty() || crosses_itself() ||
             !take_more_care(connectivity, turned, options, cap))
             return result;
     }

@@ -46,8 +46,7 @@ std::size_t choose_diagonals(GrowState& s, const TriangleMesh& mesh, const MeshO
     if (s.twelve) {
         // The rule looks at lengths, which moves have changed since the last time.
         by_rule = split_by_rule(shell_of(mesh, s), order, split);
-        for (std::size_t f = 0; f < by_rule.order.size(); ++f)
-            s.order[f] = static_cast<std::uint8_t>(order_index(by_rule.order[f]));
+        s.order = order_indices(by_rule.order);
     }
     if (may_turn_diagonals(s, options, split))
         report.flips += flip_for_quality(s);

@@ -7,6 +7,8 @@
 
 #include "growth/prism.h"
 
+#include <algorithm>
+
 namespace vdb_shell::growth
 {
 namespace
@@ -103,6 +105,15 @@ int order_index(const PrismOrder& o)
         if (tables().order[i] == o)
             return i;
     return -1;
+}
+
+std::vector<std::uint8_t> order_indices(const std::vector<PrismOrder>& orders)
+{
+    std::vector<std::uint8_t> indices(orders.size());
+    std::transform(orders.begin(), orders.end(), indices.begin(), [](const PrismOrder& order) {
+        return static_cast<std::uint8_t>(order_index(order));
+    });
+    return indices;
 }
 
 } // namespace vdb_shell::growth

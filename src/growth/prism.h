@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace vdb_shell::growth
 {
@@ -42,5 +43,7 @@ inline const PrismTables& tables()
     return prism_tables;
 }
 int order_index(const PrismOrder& o);
+/// By prism.
+std::vector<std::uint8_t> order_indices(const std::vector<PrismOrder>& orders);
 
 } // namespace vdb_shell::growth

@@ -177,8 +177,7 @@ Columns cut_pillars(const PrismShell& shell, const PrismSplit& split,
     c.upside_down = upside_down;
     c.test = test;
     c.around = triangles_around_vertices(shell.outer.size(), shell.triangles);
-    for (const std::array<std::uint8_t, 3>& order : split.order)
-        c.order.push_back(static_cast<std::uint8_t>(growth::order_index(order)));
+    c.order = growth::order_indices(split.order);
     const auto& skin = upside_down ? shell.inner : shell.outer;
     const auto& far = upside_down ? shell.outer : shell.inner;
     c.surface.push_back(skin);

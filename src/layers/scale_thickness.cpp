@@ -59,8 +59,7 @@ GrowState state_of(const growth::Connectivity& connectivity, const PrismShell& s
     // The scaled lengths are the caps too, so no test can be passed by a longer pillar.
     GrowState s = growth::make_state(connectivity, shell.outer, pillars.length);
     s.twelve = test == PrismTest::twelve_tets;
-    for (std::size_t f = 0; f < split.order.size(); ++f)
-        s.order[f] = static_cast<std::uint8_t>(growth::order_index(split.order[f]));
+    s.order = growth::order_indices(split.order);
     return s;
 }
 

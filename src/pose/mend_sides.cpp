@@ -85,8 +85,7 @@ void mend_between(const Parts& parts, const SkinSide& side, const std::vector<Ve
     columns.upside_down = side.outside;
     columns.test = PrismTest::chosen_tets;
     columns.around = triangles_around_vertices(skin.size(), stack.triangles());
-    for (const std::array<std::uint8_t, 3>& order : stack.splits[first].order)
-        columns.order.push_back(static_cast<std::uint8_t>(growth::order_index(order)));
+    columns.order = growth::order_indices(stack.splits[first].order);
     const std::size_t count = last - first;
     const auto point_of = [&](std::size_t j, std::size_t v) {
         return point_at(parts, side.outside ? stack.skin - j : stack.skin + j, v);
@@ -131,9 +130,7 @@ GrowState state_of(const Parts& parts, const SkinSide& side, const Connectivity&
     if (parts.stack.layers.size() == 1 && !side.outside) {
         // The tets that there are, and no others: a fold of the skin leaves them more room.
         s.twelve = false;
-        for (std::size_t t = 0; t < connectivity.faces.size(); ++t)
-            s.order[t] =
-                static_cast<std::uint8_t>(growth::order_index(parts.stack.splits.front().order[t]));
+        s.order = growth::order_indices(parts.stack.splits.front().order);
     }
     for (std::size_t v = 0; v < skin.size(); ++v) {
         s.b[v] = ends[v];

@@ -262,7 +262,7 @@ void tets_line(std::ostringstream& out, const ShellReport& report)
 bool needles_hold_back(const ShellReport& report)
 {
     // Share of the solid, and longest over shortest edge. Machined parts that are less full
-    // (docs/measurements/machined.md) have triangles of 70 to 5,500.
+    // (docs/measurements/machined.md, tried.md) have triangles of 70 to 18,000.
     constexpr double kLittle = 0.95, kNeedle = 20;
     const bool by_thickness =
         report.scale || report.cores || report.lines.stops[std::size_t(StopReason::thickness)] > 0;
