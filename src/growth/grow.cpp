@@ -20,7 +20,6 @@
 #include "growth/mend_prolonged.h"
 #include "growth/multilevel.h"
 #include "growth/pins.h"
-#include "growth/prism.h"
 #include "growth/prolongate.h"
 #include "growth/relax.h"
 #include "mesh/curve_order.h"
@@ -54,15 +53,6 @@ struct Ordered {
     const GrowStart& start;          ///< but for the inner points
     const MeshOrder& order;
 };
-
-/// The state that the shell was left in. Any test that it passed then it passes still.
-void restore(GrowState& s, const GrowResult& grown)
-{
-    s.b.assign(grown.shell.inner.begin(), grown.shell.inner.end());
-    for (std::size_t v = 0; v < s.b.size(); ++v)
-        s.pinned[v] = s.b[v] == s.a[v];
-    s.order = order_indices(grown.split.order);
-}
 
 /// The lines to where the inner points are.
 Directions own_lines(const TriangleMesh& mesh, const GrowState& s, Directions lines)
@@ -110,7 +100,7 @@ Started start_growth(GrowState& s, const Ordered& given, const Attempt& attempt,
     } else if (attempt.from == GrowFrom::shell) {
         s.twelve = prism_test_of(options) == PrismTest::twelve_tets;
         if (restarted) {
-            restore(s, *restarted);
+            put_shell(s, restarted->shell, restarted->split.order);
         } else {
             Pillars pillars = pillars_to(given.mesh, given.inner, std::move(started.lines));
             mend_prolonged(s, pillars.lines, pillars.length, progress);

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -95,6 +96,16 @@ GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
     return s;
 }
 
+void put_shell(GrowState& s, const PrismShell& shell, const std::vector<PrismOrder>& order)
+{
+    s.b.assign(shell.inner.begin(), shell.inner.end());
+    for (std::size_t v = 0; v < s.b.size(); ++v)
+        s.pinned[v] = s.b[v] == s.a[v];
+    s.order = order_indices(order);
+    // Rounds build the tree anew, but pins are released before the first of them.
+    build_inner_tree(s);
+}
+
 PrismShell shell_of(const TriangleMesh& mesh, const GrowState& s)
 {
     PrismShell shell{mesh.points, mesh.points, mesh.triangles, {}};
@@ -163,6 +174,7 @@ void build_inner_tree(GrowState& s)
 
 void refit_inner_tree(GrowState& s, const std::vector<std::uint8_t>& changed)
 {
+    assert(s.inner_tree.size() == s.mesh->faces.size());
     s.inner_tree.refit([&](std::size_t f) { return inner_box(s, f); }, changed);
 }
 

@@ -56,6 +56,10 @@ struct GrowState {
 GrowState make_state(const Connectivity& mesh, const std::vector<Vec3s>& outer,
                      const std::vector<double>& cap, const GrowthSchedule& schedule = {});
 
+/// Puts a shell in place of the state's own, as shell_of gave it, with the orders of its prisms,
+/// and builds the tree over its inner triangles. Any test that the shell passed it passes still.
+void put_shell(GrowState& s, const PrismShell& shell, const std::vector<PrismOrder>& order);
+
 /// Pillars no longer than this are lost in the rounding.
 inline double shortest_pillar(const GrowState& s)
 {

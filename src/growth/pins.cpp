@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -127,6 +128,7 @@ std::vector<std::uint8_t> with_neighbours(const GrowState& s,
 /// enough, not tight.
 void box_in(GrowState& s, const std::vector<double>& longest)
 {
+    assert(s.inner_tree.size() == s.mesh->faces.size());
     std::vector<std::uint8_t> around(s.b.size());
     std::transform(longest.begin(), longest.end(), around.begin(), [](double l) { return l > 0; });
     for (int ring = 0; ring < 2; ++ring)
