@@ -78,6 +78,7 @@ Restarts restarts_of(const Attempt& first, std::size_t triangles)
     GrowthSchedule& own = restarts.attempt.options.schedule;
     own.barrier.weight_decrease = schedule.restarts.weight_decrease;
     own.radius.factor_on_move = schedule.restarts.factor_on_move;
+    own.radius.short_from_fill = 0;
     if (first.from == GrowFrom::shell || !may_leave_lines(first.options))
         restarts.most = 0;
     if (first.from != GrowFrom::levels)

@@ -76,7 +76,8 @@ public:
         solid6_ = std::abs(volume6(s.a, s.mesh->faces));
         set_.gain = relax_.predicted_gain;
         set_.idle_rounds.assign(s.b.size(), 0);
-        set_first_radii(s, fill_);
+        set_first_radii(s, relax_.short_first_radii ||
+                               (s.bounded && fill_ > s.schedule.radius.short_from_fill));
     }
 
     double fill() const { return fill_; }

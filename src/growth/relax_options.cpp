@@ -51,6 +51,13 @@ double least_gain(const GrowState& s, const GrowOptions& options)
                                               : s.schedule.barrier.least_gain;
 }
 
+/// On the surface itself. Of a large one long radii would take far too many planes, from lines too.
+bool short_first_radii(const GrowState& s, StartedFrom from, const GrowOptions& options)
+{
+    const bool large = options.coarse_from > 0 && s.mesh->faces.size() >= options.coarse_from;
+    return from == StartedFrom::prolonged || large;
+}
+
 /// RelaxOptions::active_gain. Who asks for more has all vertices active.
 double active_gain(const GrowState& s, StartedFrom from, const GrowOptions& options)
 {
@@ -98,6 +105,7 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
     relax.most_rounds =
         std::max(affordable_rounds(s.mesh->faces.size(), s.schedule),
                  static_cast<int>(std::min(double(s.schedule.barrier.most_rounds), paid_for)));
+    relax.short_first_radii = from == StartedFrom::prolonged;
     const bool after_twelve = from == StartedFrom::lines && !s.twelve;
     relax.first_weight =
         after_twelve ? s.schedule.barrier.first_weight_three : first_weight(s, from, true);
@@ -117,6 +125,7 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
     const bool saves_time = thrifty(from, options);
     RelaxOptions relax;
     relax.most_rounds = most_rounds(s, from, options);
+    relax.short_first_radii = short_first_radii(s, from, options);
     if (options.method == Method::thickest)
         relax.most_rounds =
             std::min(relax.most_rounds, s.schedule.barrier.twelve_rounds_before_three);
@@ -137,6 +146,7 @@ RelaxOptions relax_thickest(const GrowState& s, StartedFrom from, const GrowOpti
 {
     RelaxOptions relax;
     relax.most_rounds = most_rounds(s, from, options);
+    relax.short_first_radii = short_first_radii(s, from, options);
     // No gain is predicted, so all vertices are active at first: under the new test every vertex
     // has new room. From lines they stay so.
     if (from == StartedFrom::prolonged) {

@@ -22,6 +22,8 @@ enum class StartedFrom {
 /// volume of a tet.
 struct RelaxOptions {
     int most_rounds = 0;
+    /// First trust radii are short, however full the shell is (TrustRadiusSchedule).
+    bool short_first_radii = false;
     double first_weight = 0;    ///< of the barrier
     double weight_decrease = 0; ///< factor on it in each round
     double least_gain = 0;      ///< of a round at the smallest weight, for another to follow

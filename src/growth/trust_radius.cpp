@@ -19,10 +19,10 @@ namespace
 
 /// Short where the inner surface has collapsed already, for there planes would be many. In a solid
 /// that is nearly full it has collapsed in one direction at least.
-double first_radius(const GrowState& s, int v, bool nearly_full)
+double first_radius(const GrowState& s, int v, bool short_ones)
 {
     const TrustRadiusSchedule& schedule = s.schedule.radius;
-    const double most_edges = schedule.first_inner_edges_nearly_full;
+    const double most_edges = schedule.short_first_inner_edges;
     double outer = 0, longest = 0, shortest = most_edges * s.diagonal;
     for (const int u : neighbours(*s.mesh, v)) {
         const double inner = (s.b[u] - s.b[v]).length();
@@ -31,19 +31,18 @@ double first_radius(const GrowState& s, int v, bool nearly_full)
         shortest = std::min(shortest, inner);
     }
     const int count = std::max(1, neighbours(*s.mesh, v).size());
-    const double inner = nearly_full ? std::min(longest, most_edges * shortest) : longest;
-    const double share = nearly_full ? schedule.first_share_nearly_full : 1.0;
+    const double inner = short_ones ? std::min(longest, most_edges * shortest) : longest;
+    const double share = short_ones ? schedule.short_first_share : 1.0;
     return std::max(share * std::min(schedule.first_edge_share * outer / count, inner),
                     kLeastRadiusInRoundings * s.rounding);
 }
 
 } // namespace
 
-void set_first_radii(GrowState& s, double fill)
+void set_first_radii(GrowState& s, bool short_ones)
 {
-    const bool nearly_full = s.bounded && fill > s.schedule.lines.nearly_full;
     for_each_index(s.trust_radius.size(), [&](std::size_t v) {
-        s.trust_radius[v] = first_radius(s, static_cast<int>(v), nearly_full);
+        s.trust_radius[v] = first_radius(s, static_cast<int>(v), short_ones);
     });
 }
 

@@ -11,8 +11,8 @@
 namespace vdb_shell::growth
 {
 
-/// First radii, for a shell that fills so much of the solid.
-void set_first_radii(GrowState& s, double fill);
+/// First radii, the short ones of TrustRadiusSchedule or longer ones.
+void set_first_radii(GrowState& s, bool short_ones);
 
 /// Radii for the next round, of the vertices that were active in this one: hardly more than a
 /// vertex went.

@@ -110,6 +110,7 @@ TEST(Restarts, HaveNumbersOfTheirOwn)
     const Restarts restarts = restarts_of({GrowFrom::lines, LineStart::shrunk, options}, kFew);
     EXPECT_EQ(restarts.attempt.options.schedule.barrier.weight_decrease, 0.9);
     EXPECT_EQ(restarts.attempt.options.schedule.radius.factor_on_move, 3);
+    EXPECT_EQ(restarts.attempt.options.schedule.radius.short_from_fill, 0) << "short radii always";
 }
 
 TEST(Restarts, AreNoneWithoutFreeMovesNorFromAShellNorWhereTheyTakeTooLong)
