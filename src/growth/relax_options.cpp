@@ -51,11 +51,19 @@ double least_gain(const GrowState& s, const GrowOptions& options)
                                               : s.schedule.barrier.least_gain;
 }
 
-/// On the surface itself. Of a large one long radii would take far too many planes, from lines too.
+/// Whether the void is to be filled: an unbounded side has none to go by, and where the user bounds
+/// the thickness most of it is meant to stay.
+bool fills_void(const GrowState& s)
+{
+    return s.bounded && !bounds_thickness(s.cap);
+}
+
+/// On the surface itself. Of a large one long radii would take far too many planes, from lines too;
+/// next to a void that stays planes are few.
 bool short_first_radii(const GrowState& s, StartedFrom from, const GrowOptions& options)
 {
     const bool large = options.coarse_from > 0 && s.mesh->faces.size() >= options.coarse_from;
-    return from == StartedFrom::prolonged || large;
+    return (from == StartedFrom::prolonged || large) && fills_void(s);
 }
 
 /// RelaxOptions::active_gain. Who asks for more has all vertices active.
@@ -72,9 +80,7 @@ double active_gain(const GrowState& s, StartedFrom from, const GrowOptions& opti
 /// Rounds go on until the shell is as full as the schedule wants it.
 void want_more(const GrowState& s, RelaxOptions& relax)
 {
-    // In an unbounded side there is no void to go by, and where the user bounds the thickness most
-    // of it is meant to stay.
-    if (!s.bounded || bounds_thickness(s.cap))
+    if (!fills_void(s))
         return;
     relax.wanted_fill = s.schedule.multilevel.wanted_fill;
     relax.wanted_gain_of_void = s.schedule.multilevel.wanted_gain_of_void;
@@ -105,7 +111,7 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
     relax.most_rounds =
         std::max(affordable_rounds(s.mesh->faces.size(), s.schedule),
                  static_cast<int>(std::min(double(s.schedule.barrier.most_rounds), paid_for)));
-    relax.short_first_radii = from == StartedFrom::prolonged;
+    relax.short_first_radii = from == StartedFrom::prolonged && fills_void(s);
     const bool after_twelve = from == StartedFrom::lines && !s.twelve;
     relax.first_weight =
         after_twelve ? s.schedule.barrier.first_weight_three : first_weight(s, from, true);
