@@ -17,8 +17,8 @@ namespace vdb_shell::growth
 namespace
 {
 
-/// Short where the inner surface has collapsed already, for there planes would be many. In a solid
-/// that is nearly full it has collapsed in one direction at least.
+/// Short ones by the shortest inner edge too: where the inner surface has collapsed already planes
+/// would be many, and in a solid that is nearly full it has in one direction at least.
 double first_radius(const GrowState& s, int v, bool short_ones)
 {
     const TrustRadiusSchedule& schedule = s.schedule.radius;

@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <locale>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace vdb_shell
 {
@@ -270,6 +272,25 @@ bool needles_hold_back(const ShellReport& report)
            report.surface_bounds.edge_ratio.max >= kNeedle;
 }
 
+/// Of what helps there, what has not been used yet.
+std::string advice_on_needles(const ShellReport& report)
+{
+    // A tapered stack has no certificates of layers.
+    const bool by_twelve_tets = report.certificate && !report.certificate->layers.empty() &&
+                                report.certificate->layers.front().test == PrismTest::twelve_tets;
+    std::vector<std::string> advice;
+    if (!report.remesh && !report.retriangulate)
+        advice.emplace_back("--retriangulate cuts flat parts into better triangles first");
+    if (!report.remesh)
+        advice.emplace_back("--remesh-to N makes the whole surface anew");
+    if (by_twelve_tets)
+        advice.emplace_back("--thickest fills more");
+    std::string text = "needles hold pillars back";
+    for (const std::string& one : advice)
+        text += "; " + one;
+    return text;
+}
+
 void tet_lines(std::ostringstream& out, const ShellReport& report)
 {
     line(out, "prisms",
@@ -294,9 +315,7 @@ void tet_lines(std::ostringstream& out, const ShellReport& report)
          "solid " + number(report.solid_volume, 6) + ", shell " + number(report.shell_volume, 6) +
              volume_shares(report));
     if (needles_hold_back(report))
-        line(out, "  void",
-             "needles hold pillars back; --retriangulate cuts flat parts into better triangles "
-             "first, --remesh-to N the whole surface; --thickest fills more");
+        line(out, "  void", advice_on_needles(report));
     if (report.wanted)
         for (const WantedBound& bound : report.wanted->bounds)
             line(out, "wanted", wanted_text(bound));

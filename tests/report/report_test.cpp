@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace vdb_shell
@@ -182,6 +183,38 @@ TEST(Report, SaysWhereNeedlesHoldPillarsBack)
     unless([](ShellReport& r) { r.lines.stops[std::size_t(StopReason::thickness)] = 4; });
     unless([](ShellReport& r) { r.scale.emplace(); });
     unless([](ShellReport& r) { r.cores.emplace(); });
+}
+
+TEST(Report, AdvisesAgainstNeedlesOnlyWhatHasNotBeenUsed)
+{
+    const auto advice_after = [](const auto& change) {
+        ShellReport report = good_report();
+        report.grow = GrowReport();
+        report.surface_bounds.edge_ratio.max = 300;
+        report.certificate.emplace().layers.resize(1);
+        change(report);
+        const std::string text = report_text(report);
+        const std::size_t at = text.find("needles hold pillars back");
+        return text.substr(at, text.find('\n', at) - at);
+    };
+    const auto names = [](const std::string& advice) {
+        const auto has = [&](const char* option) {
+            return advice.find(option) != std::string::npos;
+        };
+        return std::array{has("--retriangulate"), has("--remesh-to"), has("--thickest")};
+    };
+    const auto nothing = [](ShellReport&) {};
+    EXPECT_EQ(names(advice_after(nothing)), (std::array{true, true, true}));
+    const auto retriangulated = [](ShellReport& r) { r.retriangulate.emplace(); };
+    EXPECT_EQ(names(advice_after(retriangulated)), (std::array{false, true, true}));
+    const auto remeshed = [](ShellReport& r) { r.remesh.emplace(); };
+    EXPECT_EQ(names(advice_after(remeshed)), (std::array{false, false, true}));
+    const auto three_tets = [](ShellReport& r) {
+        r.certificate->layers.front().test = PrismTest::chosen_tets;
+    };
+    EXPECT_EQ(names(advice_after(three_tets)), (std::array{true, true, false}));
+    const auto tapered = [](ShellReport& r) { r.certificate->layers.clear(); };
+    EXPECT_EQ(names(advice_after(tapered)), (std::array{true, true, false}));
 }
 
 TEST(Report, NamesTheLayerThatFails)

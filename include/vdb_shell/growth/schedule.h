@@ -247,9 +247,9 @@ struct TrustRadiusSchedule {
     /// Share of the mean outer edge at a vertex: its first radius at most.
     double first_edge_share = 0.3;
     /// Share of the solid. From a start as full as that first radii are short; in a restart, after
-    /// a prolongation and on a large surface (GrowOptions::coarse_from) they always are: there
-    /// most vertices move less, and long ones take up to ten times the planes
-    /// (docs/measurements/tried.md, "Short first radii").
+    /// a prolongation and on a large surface (GrowOptions::coarse_from) they are wherever a void
+    /// is to be filled: there most vertices move less, and long ones take up to ten times the
+    /// planes (docs/measurements/tried.md, "Short first radii").
     double short_from_fill = 0.9;
     /// Share of that first radius, and shortest inner edges: the short ones.
     double short_first_share = 0.45, short_first_inner_edges = 3;
