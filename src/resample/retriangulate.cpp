@@ -36,7 +36,7 @@ using openvdb::Vec3I;
 constexpr double kTolerance = 1e-5;
 // The smallest angle has to grow by more than rounding: a square has two cuts as good as each
 // other.
-constexpr double kLeastGain = 1 + 1e-6;
+constexpr double kLeastFactor = 1 + 1e-6;
 // Triangles between two looks at the interrupter: some milliseconds.
 constexpr std::size_t kBetweenLooks = 4096;
 
@@ -138,7 +138,7 @@ private:
         const int across_side = side_from(u, b);
         const std::uint32_t d = old_u[after(after(across_side))];
         const Vec3I new_t(a, d, c), new_u(d, b, c);
-        if (c == d || !(openness(new_t, new_u) > kLeastGain * openness(old_t, old_u)))
+        if (c == d || !(openness(new_t, new_u) > kLeastFactor * openness(old_t, old_u)))
             return false;
         if (!turns(mesh_, new_t, part) || !turns(mesh_, new_u, part) || joined(t, c, d))
             return false;
