@@ -76,7 +76,7 @@ public:
                 add_element(line);
             else if (keyword == "property")
                 add_property(line);
-            else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info")
+            else if (!keyword.empty() && !is_remark(keyword))
                 complain("the keyword " + quoted(keyword) + " is unknown");
         }
         if (!has_format_)
@@ -90,6 +90,12 @@ public:
     }
 
 private:
+    // Blender 2.4x wrote "Created by Blender3D 247 - ..." into its headers, without "comment".
+    static bool is_remark(std::string_view keyword)
+    {
+        return keyword == "comment" || keyword == "obj_info" || keyword == "Created";
+    }
+
     [[noreturn]] void complain(const std::string& what) const
     {
         refuse(name_, "line " + std::to_string(lines_.number()) + " of the header: " + what);

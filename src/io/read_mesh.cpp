@@ -13,6 +13,7 @@
 #include "vdb_shell/io/read_file.h"
 
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace vdb_shell
@@ -40,11 +41,22 @@ Scan scan_for(const fs::path& path)
     return scan_stl;
 }
 
+/// Editors that write UTF-16 begin with its mark, which no text that is read here does, nor a
+/// binary PLY. The header of a binary STL may hold any bytes.
+void require_no_utf16(const std::string& name, std::string_view bytes)
+{
+    const std::string_view mark = bytes.substr(0, 2);
+    if (mark == "\xFE\xFF" || mark == "\xFF\xFE")
+        refuse(name, "the text is UTF-16, by its byte-order mark; UTF-8 or ASCII is needed");
+}
+
 } // namespace
 
 ReadResult mesh_of_bytes(const std::string& name, Scan scan, std::string bytes,
                          const ReadOptions& options)
 {
+    if (scan != scan_stl)
+        require_no_utf16(name, bytes);
     Coordinates coordinates;
     if (options.recentre || options.rescale) {
         // The origin must be known before the first coordinate is rounded.

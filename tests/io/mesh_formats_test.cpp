@@ -311,6 +311,14 @@ TEST_F(MeshFormats, skips_what_else_the_vertices_of_off_have)
                     "the keyword \"" + std::string(keyword) + "\"");
 }
 
+TEST_F(MeshFormats, refuses_utf_16)
+{
+    for (const char* const file : {"a.obj", "a.off", "a.ply"})
+        for (const char* const mark : {"\xFE\xFF", "\xFF\xFE"})
+            EXPECT_SAYS(complaint(file, std::string(mark) + std::string("\0v\0 \0001", 6)),
+                        "UTF-16");
+}
+
 TEST_F(MeshFormats, skips_a_byte_order_mark)
 {
     expect_tetrahedron(read("a.obj", std::string(kByteOrderMark) + test::kTetrahedronObj));

@@ -227,6 +227,7 @@ std::string rich_ply(bool big_endian)
         std::string("ply\r\nformat ") +
         (big_endian ? "binary_big_endian" : "binary_little_endian") +
         " 1.0\r\ncomment element vertex 7\r\nobj_info element of nothing\r\n"
+        "Created by Blender3D 247 - www.blender.org, source file: element\r\n"
         "element note 2\r\nproperty list ushort short words\r\nproperty uchar kind\r\n"
         "element face 4\r\nproperty uchar red\r\nproperty list int float uv\r\n"
         "property list uint uint vertex_index\r\n"
