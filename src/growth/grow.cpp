@@ -67,7 +67,7 @@ void take_lines_if_fuller(GrowState& s, const Ordered& given, const GrowOptions&
                           const StageProgress& progress, Started& started)
 {
     const double enough = std::min(s.schedule.lines.nearly_full, s.schedule.barrier.enough_fill);
-    if (fill_of(s) >= enough || !s.bounded || bounds_thickness(s.cap) ||
+    if (fill_of(s) >= enough || !fills_void(s) ||
         !too_large_for_attempts(given.mesh.triangles.size(), options))
         return;
     const Directions lines = prepare_directions(given.mesh, given.directions, options, true);

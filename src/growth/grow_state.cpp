@@ -167,6 +167,11 @@ bool bounds_thickness(const std::vector<double>& cap)
     return std::any_of(cap.begin(), cap.end(), [](double c) { return c > 0 && std::isfinite(c); });
 }
 
+bool fills_void(const GrowState& s)
+{
+    return s.bounded && !bounds_thickness(s.cap);
+}
+
 void build_inner_tree(GrowState& s)
 {
     s.inner_tree.build(s.mesh->faces.size(), [&](std::size_t f) { return inner_box(s, f); });

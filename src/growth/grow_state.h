@@ -125,6 +125,9 @@ Vec3d inner_volume6_gradient(const GrowState& s, int v);
 double fill_of(const GrowState& s);
 /// Whether one of these is the user's thickness: neither infinite nor the 0 of a core's vertices.
 bool bounds_thickness(const std::vector<double>& cap);
+/// Whether the void is to be filled: an unbounded side has none to go by, and where the user bounds
+/// the thickness most of it is meant to stay.
+bool fills_void(const GrowState& s);
 
 /// The tree over the inner triangles as they are, anew or in its old shape; the latter where
 /// `changed` says, empty: all.

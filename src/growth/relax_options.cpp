@@ -51,13 +51,6 @@ double least_gain(const GrowState& s, const GrowOptions& options)
                                               : s.schedule.barrier.least_gain;
 }
 
-/// Whether the void is to be filled: an unbounded side has none to go by, and where the user bounds
-/// the thickness most of it is meant to stay.
-bool fills_void(const GrowState& s)
-{
-    return s.bounded && !bounds_thickness(s.cap);
-}
-
 /// On the surface itself. Of a large one long radii would take far too many planes, from lines too;
 /// next to a void that stays planes are few.
 bool short_first_radii(const GrowState& s, StartedFrom from, const GrowOptions& options)

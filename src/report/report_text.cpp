@@ -278,16 +278,13 @@ std::string advice_on_needles(const ShellReport& report)
     // A tapered stack has no certificates of layers.
     const bool by_twelve_tets = report.certificate && !report.certificate->layers.empty() &&
                                 report.certificate->layers.front().test == PrismTest::twelve_tets;
-    std::vector<std::string> advice;
-    if (!report.remesh && !report.retriangulate)
-        advice.emplace_back("--retriangulate cuts flat parts into better triangles first");
-    if (!report.remesh)
-        advice.emplace_back("--remesh-to N makes the whole surface anew");
-    if (by_twelve_tets)
-        advice.emplace_back("--thickest fills more");
     std::string text = "needles hold pillars back";
-    for (const std::string& one : advice)
-        text += "; " + one;
+    if (!report.remesh && !report.retriangulate)
+        text += "; --retriangulate cuts flat parts into better triangles first";
+    if (!report.remesh)
+        text += "; --remesh-to N makes the whole surface anew";
+    if (by_twelve_tets)
+        text += "; --thickest fills more";
     return text;
 }
 

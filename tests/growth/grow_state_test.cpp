@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/grow_state.h"
 
+#include "growth/grown.h"
 #include "growth/move_tests.h"
 #include "growth/prism.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <vector>
 
 namespace
@@ -39,8 +39,7 @@ protected:
 
     const TriangleMesh ball_ = test::icosphere(1, 1);
     const growth::Connectivity mesh_ = growth::connect(ball_.points.size(), ball_.triangles);
-    const std::vector<double> cap_ =
-        std::vector<double>(ball_.points.size(), std::numeric_limits<double>::infinity());
+    const std::vector<double> cap_ = std::vector<double>(ball_.points.size(), test::kInfinity);
     const std::vector<PrismOrder> orders_ =
         std::vector<PrismOrder>(ball_.triangles.size(), growth::tables().order[4]);
 };

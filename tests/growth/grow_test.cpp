@@ -4,13 +4,13 @@
 #include "growth/grown.h"
 #include "growth/move_tests.h"
 #include "growth/predicates.h"
+#include "growth/sound.h"
 #include "mesh/curve_order.h"
 #include "support/shapes.h"
 #include "support/stacks.h"
 #include "vdb_shell/certify/certificate.h"
 #include "vdb_shell/certify/conformity.h"
 #include "vdb_shell/certify/coverage.h"
-#include "vdb_shell/certify/tet_signs.h"
 #include "vdb_shell/core/error.h"
 #include "vdb_shell/mesh/check_mesh.h"
 
@@ -31,49 +31,13 @@ using openvdb::Vec3s;
 using test::bumpy_sphere;
 using test::Case;
 using test::case_of;
+using test::expect_all_positive;
+using test::expect_embedded;
+using test::expect_sound;
+using test::expect_twelve_positive;
 using test::fill_of;
 using test::grown;
 using test::kInfinity;
-
-void expect_all_positive(const PrismShell& shell, const PrismSplit& split)
-{
-    const TetSigns signs = count_tet_signs(make_tets(shell, split));
-    EXPECT_EQ(signs.inverted.count, 0U);
-    EXPECT_EQ(signs.flat.count, 0U);
-}
-
-/// The tets of all six orders of a prism are its twelve.
-void expect_twelve_positive(const PrismShell& shell)
-{
-    std::array<std::uint8_t, 3> order{0, 1, 2};
-    do {
-        expect_all_positive(
-            shell, {std::vector<std::array<std::uint8_t, 3>>(shell.triangles.size(), order), 0});
-    } while (std::next_permutation(order.begin(), order.end()));
-}
-
-/// The inner surface neither touches itself nor the outer one: with the inner surface turned
-/// inside out both together bound the shell. Precondition: no pins, which both surfaces share.
-void expect_embedded(const PrismShell& shell)
-{
-    const TriangleMesh inner{shell.inner, shell.triangles};
-    const MeshCheck check =
-        check_mesh(test::joined({shell.outer, shell.triangles}, test::reversed(inner)));
-    EXPECT_EQ(check.self_intersections.count, 0U);
-    EXPECT_EQ(check.degenerate_triangles.count, 0U);
-}
-
-void expect_sound(const GrowResult& result, const GrowOptions& options = {})
-{
-    const PrismTest test = prism_test_of(options);
-    if (test == PrismTest::twelve_tets)
-        expect_twelve_positive(result.shell);
-    expect_all_positive(result.shell, result.split);
-    for (const std::string& failure : certify_shell(result.shell, result.split, test).failures())
-        ADD_FAILURE() << failure;
-    EXPECT_TRUE(check_conformity(result.shell, make_tets(result.shell, result.split)).conforming());
-    EXPECT_GE(fill_of(result.shell), result.report.fill_after_lines - 1e-12);
-}
 
 std::size_t count_of(const PrismShell& shell, StopReason reason)
 {
@@ -135,79 +99,6 @@ TEST(Grow, ThickestIsAsThickAsThreeTetsFromTheBeginning)
         EXPECT_GE(fill_of(most.shell), std::min(three - 1e-6, 0.998));
         expect_sound(most, thickest);
         expect_embedded(most.shell);
-    }
-}
-
-/// Shortened until they are valid, pillars beside needles lose most of their length, and mended
-/// ones much of it, how much is luck: without planar quads plates of 19 to 31 points are .89 to .97
-/// full by default.
-TEST(Grow, FillsPlatesOfNeedles)
-{
-    const std::vector<GrowOptions> ways = test::ways_to_grow();
-    const std::array<double, 3> at_least{0.98, 0.97, 0.98};
-    for (const int points : {19, 25, 31}) {
-        const Case plate = case_of(test::needled_plate(points));
-        for (std::size_t i = 0; i < at_least.size(); ++i) {
-            const GrowResult full = grown(plate, ways[i]);
-            EXPECT_GE(fill_of(full.shell), at_least[i]) << points << ", " << i;
-            expect_sound(full, ways[i]);
-            expect_embedded(full.shell);
-        }
-    }
-}
-
-/// Without planar quads rounds on such plates end in a jam: these shells are .73, .64 and .99 full.
-/// Under the three-tet test, where it takes more needles, most shells need the very diagonals that
-/// they have come to.
-TEST(Grow, GoesOnFromAJammedShell)
-{
-    for (GrowOptions options : test::ways_to_grow()) {
-        options.schedule.planar.most_rounds = 0;
-        const bool twelve = prism_test_of(options) == PrismTest::twelve_tets;
-        for (const int points : twelve ? std::vector<int>{22, 28} : std::vector<int>{40}) {
-            const Case plate = case_of(test::needled_plate(points));
-            options.schedule.restarts.most = 0;
-            const GrowResult jammed = grown(plate, options);
-            ASSERT_LT(fill_of(jammed.shell), 0.99);
-            options.schedule.restarts.most = 3;
-            const GrowResult on = grown(plate, options);
-            EXPECT_GT(fill_of(on.shell), fill_of(jammed.shell) + 1e-3);
-            expect_sound(on, options);
-            expect_embedded(on.shell);
-        }
-    }
-}
-
-/// Restarts of the first start, which fill .87 of this plate, do not stand in the way of a better
-/// one.
-TEST(Grow, TriesOtherStartsWhereRestartsAreNotEnough)
-{
-    const Case plate = case_of(test::needled_plate(25));
-    GrowOptions options;
-    options.schedule.restarts.before_others_from = 0;
-    const GrowResult full = grown(plate, options);
-    EXPECT_GE(fill_of(full.shell), 0.97);
-    expect_sound(full, options);
-    options.schedule.planar.most_rounds = 0;
-    const double without = fill_of(grown(plate, options).shell);
-    EXPECT_LT(without, 0.97);
-    options.schedule.restarts.most = 0;
-    EXPECT_GT(without, fill_of(grown(plate, options).shell));
-}
-
-/// What comes over coarser surfaces loses most of what it has beside needles: without lines of its
-/// own these shells are .82, .59 and .66 full.
-TEST(Grow, BeginsALargePlateOfNeedlesFromLines)
-{
-    const Case plate = case_of(test::needled_plate(20));
-    for (GrowOptions options : test::ways_to_grow()) {
-        options.coarse_from = 100;
-        options.schedule.multilevel.coarsest_triangles = 100;
-        options.schedule.multilevel.most_coarsest_triangles = 200; // so that this is a large one
-        ASSERT_FALSE(coarse_levels(plate.mesh, options).empty());
-        const GrowResult full = grown(plate, options);
-        EXPECT_GE(fill_of(full.shell), 0.9);
-        expect_sound(full, options);
     }
 }
 

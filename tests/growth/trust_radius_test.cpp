@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "growth/trust_radius.h"
 
+#include "growth/grown.h"
 #include "support/shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 namespace
@@ -18,7 +18,7 @@ using namespace vdb_shell;
 /// length.
 growth::GrowState flattened(const growth::Connectivity& mesh, const TriangleMesh& ball)
 {
-    const std::vector<double> cap(ball.points.size(), std::numeric_limits<double>::infinity());
+    const std::vector<double> cap(ball.points.size(), test::kInfinity);
     growth::GrowState s = growth::make_state(mesh, ball.points, cap);
     for (openvdb::Vec3d& p : s.b)
         p[2] *= 0.01;
@@ -36,7 +36,7 @@ TEST(TrustRadius, FirstOnesAreBoundedByEdgesAndShortOnesByTheShortestInnerEdgeTo
     growth::set_first_radii(s, true);
     bool collapsed = false;
     for (int v = 0; v < mesh.vertices; ++v) {
-        double shortest = std::numeric_limits<double>::infinity();
+        double shortest = test::kInfinity;
         for (const int u : growth::neighbours(mesh, v))
             shortest = std::min(shortest, (s.b[u] - s.b[v]).length());
         EXPECT_LE(longer[v],
