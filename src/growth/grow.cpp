@@ -17,6 +17,7 @@
 #include "growth/improve.h"
 #include "growth/initialise.h"
 #include "growth/lengthen_lines.h"
+#include "growth/mend_pins.h"
 #include "growth/mend_prolonged.h"
 #include "growth/multilevel.h"
 #include "growth/pins.h"
@@ -182,6 +183,10 @@ GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
     // What the start left no pillar to may have room now, as the pillars around it have moved.
     report.released += static_cast<std::size_t>(
         release_last_pins(s, started.lines.visibility, progress.part(relaxed_at, relaxed_at)));
+    // A restart has the pins that the shell before it was left with.
+    if (!restarted)
+        report.released += static_cast<std::size_t>(
+            mend_pins(s, started.lines.visibility, progress.part(relaxed_at, relaxed_at)));
     Improved improved =
         improve(s, mesh, given.order, options, split, progress.part(relaxed_at, 100), report);
     result.shell = shell_of(mesh, s);

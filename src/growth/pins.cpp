@@ -29,7 +29,7 @@ namespace vdb_shell::growth
 namespace
 {
 
-/// Of those beside v: about what it would have had without the pin.
+/// Of those beside v.
 double mean_pillar(const GrowState& s, int v)
 {
     double sum = 0;
@@ -150,16 +150,6 @@ void box_in(GrowState& s, const std::vector<double>& longest)
         }
         return box;
     });
-}
-
-/// Those that a pillar may be found for, in the order of their indices.
-std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& visibility)
-{
-    std::vector<int> pins;
-    for (int v = 0; v < s.mesh->vertices; ++v)
-        if (s.pinned[v] && visibility[v] > 0 && s.cap[v] > 0 && star(*s.mesh, v).size() > 0)
-            pins.push_back(v);
-    return pins;
 }
 
 // A release changes pillars up to two edges away: those beside the pin, and where one of these is
@@ -348,6 +338,20 @@ bool release_last(GrowState& s, int v, const std::vector<double>& visibility)
 
 } // namespace
 
+std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& visibility)
+{
+    std::vector<int> pins;
+    for (int v = 0; v < s.mesh->vertices; ++v)
+        if (s.pinned[v] && visibility[v] > 0 && s.cap[v] > 0 && star(*s.mesh, v).size() > 0)
+            pins.push_back(v);
+    return pins;
+}
+
+double longest_release(const GrowState& s, int v)
+{
+    return std::min(mean_pillar(s, v), s.schedule.pins.longest * s.diagonal);
+}
+
 int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBesidePin beside)
 {
     // One after another, never in parallel: each release changes what the next sees.
@@ -356,7 +360,7 @@ int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBes
         return 0;
     std::vector<double> longest(s.b.size(), 0.0);
     for (const int v : pins)
-        longest[v] = std::min(mean_pillar(s, v), s.schedule.pins.longest * s.diagonal);
+        longest[v] = longest_release(s, v);
     box_in(s, longest);
     int released = 0;
     for (const int v : pins) {

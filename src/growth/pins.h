@@ -4,6 +4,8 @@
 #include "core/stage_progress.h"
 #include "growth/grow_state.h"
 
+#include <vector>
+
 namespace vdb_shell::growth
 {
 
@@ -22,5 +24,11 @@ int release_pins(GrowState& s, const std::vector<double>& visibility, PillarsBes
 /// way, their pillars are shortened first until they pass the twelve-tet test.
 int release_last_pins(GrowState& s, const std::vector<double>& visibility,
                       const StageProgress& progress);
+
+/// The pinned vertices that a pillar may be found for, ascending.
+std::vector<int> pins_to_release(const GrowState& s, const std::vector<double>& visibility);
+
+/// The longest pillar that is tried for one: about what it would have had without the pin.
+double longest_release(const GrowState& s, int v);
 
 } // namespace vdb_shell::growth
