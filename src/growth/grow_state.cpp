@@ -172,6 +172,11 @@ bool fills_void(const GrowState& s)
     return s.bounded && !bounds_thickness(s.cap);
 }
 
+std::ptrdiff_t count_pins(const GrowState& s)
+{
+    return std::count(s.pinned.begin(), s.pinned.end(), 1);
+}
+
 void build_inner_tree(GrowState& s)
 {
     s.inner_tree.build(s.mesh->faces.size(), [&](std::size_t f) { return inner_box(s, f); });

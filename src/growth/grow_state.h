@@ -11,6 +11,7 @@
 #include "vdb_shell/growth/schedule.h"
 #include "vdb_shell/shell/prism_shell.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -128,6 +129,9 @@ bool bounds_thickness(const std::vector<double>& cap);
 /// Whether the void is to be filled: an unbounded side has none to go by, and where the user bounds
 /// the thickness most of it is meant to stay.
 bool fills_void(const GrowState& s);
+
+/// How many vertices are pinned.
+std::ptrdiff_t count_pins(const GrowState& s);
 
 /// The tree over the inner triangles as they are, anew or in its old shape; the latter where
 /// `changed` says, empty: all.

@@ -69,11 +69,6 @@ std::vector<double> first_lengths(const GrowState& s, const Directions& directio
 // another, and boxes of floats are 6e-8 wider than what they hold.
 constexpr double kNearEnough = 1 - 1e-6;
 
-std::ptrdiff_t count_pins(const GrowState& s)
-{
-    return std::count(s.pinned.begin(), s.pinned.end(), 1);
-}
-
 } // namespace
 
 Directions prepare_directions(const TriangleMesh& mesh, Directions directions,

@@ -15,7 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <limits>
 
 namespace vdb_shell::growth
 {
@@ -23,26 +23,15 @@ namespace
 {
 
 /// What mending changes.
-struct Shape {
+struct InnerPoints {
     std::vector<Vec3d> b;
-    std::vector<std::uint8_t> pinned, order;
+    std::vector<std::uint8_t> pinned;
 };
 
-Shape shape_of(const GrowState& s)
+void put(GrowState& s, const InnerPoints& points)
 {
-    return {s.b, s.pinned, s.order};
-}
-
-void put(GrowState& s, const Shape& shape)
-{
-    s.b = shape.b;
-    s.pinned = shape.pinned;
-    s.order = shape.order;
-}
-
-std::ptrdiff_t pins_of(const Shape& shape)
-{
-    return std::count(shape.pinned.begin(), shape.pinned.end(), 1);
+    s.b = points.b;
+    s.pinned = points.pinned;
 }
 
 /// Those whose triangles leave room for a pillar that rounding to float32 does not push out.
@@ -67,7 +56,6 @@ void release_together(GrowState& s, const std::vector<int>& pins, double share,
     }
     mend_placed(s, progress, MendFrom::failures);
     // What that has shortened to nothing is released like any other pin.
-    build_inner_tree(s);
     release_last_pins(s, visibility, progress);
 }
 
@@ -81,23 +69,26 @@ int mend_pins(GrowState& s, const std::vector<double>& visibility, const StagePr
     // Long ones are moved together with those beside them; where that does not do, all of them are
     // shortened, which costs less where they are short. Which leaves fewest pins differs.
     constexpr std::array<double, 3> kShares{1, 0.25, 0.0625};
-    const Shape before = shape_of(s);
-    Shape best = before;
-    double best_fill = 0;
+    const InnerPoints before{s.b, s.pinned};
+    const std::ptrdiff_t pinned_before = count_pins(s);
+    InnerPoints best = before;
+    std::ptrdiff_t fewest = pinned_before;
+    // No shell with as many pins as before is better.
+    double best_fill = std::numeric_limits<double>::infinity();
     for (const double share : kShares) {
         put(s, before);
         release_together(s, pins, share, visibility, progress);
-        Shape mended = shape_of(s);
+        const std::ptrdiff_t pinned = count_pins(s);
         const double fill = fill_of(s);
-        const std::ptrdiff_t pinned = pins_of(mended), fewest = pins_of(best);
-        if (pinned < fewest || (pinned == fewest && pinned < pins_of(before) && fill > best_fill)) {
-            best = std::move(mended);
+        if (pinned < fewest || (pinned == fewest && fill > best_fill)) {
+            best = {s.b, s.pinned};
+            fewest = pinned;
             best_fill = fill;
         }
     }
     put(s, best);
     build_inner_tree(s);
-    return static_cast<int>(pins_of(before) - pins_of(best));
+    return static_cast<int>(pinned_before - fewest);
 }
 
 } // namespace vdb_shell::growth

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -16,12 +15,6 @@ namespace
 {
 
 using namespace vdb_shell;
-
-const StageProgress& untold()
-{
-    static const StageProgress progress(nullptr, "test");
-    return progress;
-}
 
 /// A cube without an eighth: large faces, and vertices that reach into all of them. Grown, and then
 /// one vertex and those beside it pinned.
@@ -39,6 +32,8 @@ protected:
         return s;
     }
 
+    static StageProgress progress() { return StageProgress(nullptr, "test"); }
+
     static void pin(growth::GrowState& s, int v)
     {
         s.pinned[v] = 1;
@@ -51,19 +46,14 @@ protected:
     const GrowResult full_ = test::grown(case_);
 };
 
-std::size_t pins_of(const growth::GrowState& s)
-{
-    return static_cast<std::size_t>(std::count(s.pinned.begin(), s.pinned.end(), 1));
-}
-
 TEST_F(MendPins, ReleasesWhatCannotBeReleasedOneByOne)
 {
     for (const int vertex : {3, 4, 7, 11}) {
         growth::GrowState s = pinned_around(vertex);
-        growth::release_last_pins(s, case_.directions.visibility, untold());
-        ASSERT_EQ(pins_of(s), 1U) << vertex;
-        EXPECT_EQ(growth::mend_pins(s, case_.directions.visibility, untold()), 1);
-        EXPECT_EQ(pins_of(s), 0U);
+        growth::release_last_pins(s, case_.directions.visibility, progress());
+        ASSERT_EQ(growth::count_pins(s), 1) << vertex;
+        EXPECT_EQ(growth::mend_pins(s, case_.directions.visibility, progress()), 1);
+        EXPECT_EQ(growth::count_pins(s), 0);
         const PrismShell shell = growth::shell_of(case_.mesh, s);
         test::expect_twelve_positive(shell);
         test::expect_embedded(shell);
@@ -74,10 +64,10 @@ TEST_F(MendPins, LeavesTheShellAsItIsWhereNothingCanBeReleased)
 {
     growth::GrowState s = pinned_around(3);
     const std::vector<openvdb::Vec3d> inner = s.b;
-    const std::size_t pins = pins_of(s);
-    EXPECT_EQ(growth::mend_pins(s, std::vector<double>(s.b.size(), 0.0), untold()), 0);
+    const std::ptrdiff_t pins = growth::count_pins(s);
+    EXPECT_EQ(growth::mend_pins(s, std::vector<double>(s.b.size(), 0.0), progress()), 0);
     EXPECT_EQ(s.b, inner);
-    EXPECT_EQ(pins_of(s), pins);
+    EXPECT_EQ(growth::count_pins(s), pins);
 }
 
 } // namespace

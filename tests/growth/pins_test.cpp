@@ -231,7 +231,7 @@ TEST(Pins, AreReleasedBeforeVerticesThatAreServedMoreEasily)
     EXPECT_EQ(s.b, before) << "a release that fails changes nothing";
     const StageProgress progress(nullptr, "test");
     EXPECT_EQ(growth::release_last_pins(s, directions.visibility, progress), 1);
-    EXPECT_EQ(std::count(s.pinned.begin(), s.pinned.end(), 1), 0);
+    EXPECT_EQ(growth::count_pins(s), 0);
     for (std::size_t u = 0; u < s.b.size(); ++u)
         EXPECT_NE(s.b[u], s.a[u]) << u;
     expect_valid(s);
@@ -303,7 +303,7 @@ TEST(Pins, AreReleasedUnderTheThreeTetTestWhereThatTakesPillarsFarAround)
     EXPECT_EQ(growth::release_last_pins(s, directions.visibility, StageProgress(nullptr, "test")),
               1);
     EXPECT_NE(s.b[kPin], s.a[kPin]);
-    EXPECT_EQ(std::count(s.pinned.begin(), s.pinned.end(), 1), 0);
+    EXPECT_EQ(growth::count_pins(s), 0);
     expect_valid(s);
 }
 

@@ -171,7 +171,7 @@ TEST(MendProlonged, EndsValidAndLosesLittleWhereLittleIsWrong)
     mend_prolonged(sphere.s, radial(sphere), lengths, StageProgress(nullptr, "test"));
     EXPECT_EQ(invalid_prisms(sphere.s), 0);
     EXPECT_EQ(all_contacts(sphere.s), 0);
-    EXPECT_EQ(std::count(sphere.s.pinned.begin(), sphere.s.pinned.end(), 1), 0);
+    EXPECT_EQ(count_pins(sphere.s), 0);
     int short_ones = 0;
     for (std::size_t v = 0; v < lengths.size(); ++v)
         short_ones += (sphere.s.b[v] - sphere.s.a[v]).length() < 0.85;
