@@ -6,28 +6,80 @@
 
 #include "core/least_squares.h"
 
+#include "core/parallel.h"
 #include "core/stage_stop.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace vdb_shell
 {
 namespace
 {
 
-/// out = transpose(A) A x for the rows A.
-void apply(const std::vector<SparseRow>& rows, const std::vector<double>& x,
-           std::vector<double>& out)
-{
-    std::fill(out.begin(), out.end(), 0.0);
-    for (const SparseRow& row : rows) {
-        double value = 0;
-        for (const auto& [i, coefficient] : row.terms)
-            value += coefficient * x[i];
-        for (const auto& [i, coefficient] : row.terms)
-            out[i] += coefficient * value;
+// Rows or columns that one task takes: some tens of microseconds of work.
+constexpr std::size_t kLinesAtOnce = 2048;
+
+/// The rows of a matrix, or its columns, one after the other in memory: line i has the terms from
+/// first[i] on. Every product of a step reads all of them.
+struct Lines {
+    std::vector<std::size_t> first;
+    std::vector<std::uint32_t> place;
+    std::vector<double> coefficient;
+
+    std::size_t size() const { return first.size() - 1; }
+
+    /// Each sum is of one thread, so it is rounded the same way for any number of them.
+    void multiply(const std::vector<double>& x, std::vector<double>& products) const
+    {
+        for_each_index(
+            size(),
+            [&](std::size_t i) {
+                double sum = 0;
+                for (std::size_t t = first[i]; t < first[i + 1]; ++t)
+                    sum += coefficient[t] * x[place[t]];
+                products[i] = sum;
+            },
+            kLinesAtOnce);
     }
+};
+
+Lines lines_of(const std::vector<SparseRow>& rows)
+{
+    Lines lines;
+    lines.first.push_back(0);
+    for (const SparseRow& row : rows) {
+        for (const auto& [i, coefficient] : row.terms) {
+            lines.place.push_back(static_cast<std::uint32_t>(i));
+            lines.coefficient.push_back(coefficient);
+        }
+        lines.first.push_back(lines.place.size());
+    }
+    return lines;
+}
+
+/// Columns for rows. The terms of each stand in the order of the rows.
+Lines transposed(const Lines& rows, std::size_t columns)
+{
+    Lines lines;
+    lines.first.assign(columns + 1, 0);
+    for (const std::uint32_t i : rows.place)
+        ++lines.first[i + 1];
+    for (std::size_t i = 0; i < columns; ++i)
+        lines.first[i + 1] += lines.first[i];
+    lines.place.resize(rows.place.size());
+    lines.coefficient.resize(rows.place.size());
+    std::vector<std::size_t> next(lines.first.begin(), lines.first.end() - 1);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+        for (std::size_t t = rows.first[r]; t < rows.first[r + 1]; ++t) {
+            const std::size_t to = next[rows.place[t]]++;
+            lines.place[to] = static_cast<std::uint32_t>(r);
+            lines.coefficient[to] = rows.coefficient[t];
+        }
+    return lines;
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b)
@@ -44,26 +96,29 @@ void minimise_squares(const std::vector<SparseRow>& rows, const std::vector<doub
                       std::vector<double>& x, const LeastSquaresLimits& limits)
 {
     const std::size_t n = x.size();
-    std::vector<double> residual(n), direction, image(n);
-    apply(rows, x, image);
-    for (std::size_t r = 0; r < rows.size(); ++r)
-        for (const auto& [i, coefficient] : rows[r].terms)
-            residual[i] -= coefficient * constants[r];
+    assert(std::max(n, rows.size()) <= std::numeric_limits<std::uint32_t>::max());
+    const Lines by_row = lines_of(rows), by_column = transposed(by_row, n);
+    std::vector<double> residual(n), direction, image(n), values(rows.size());
+    // transpose(A) A x for the rows A.
+    const auto apply = [&](const std::vector<double>& to) {
+        by_row.multiply(to, values);
+        by_column.multiply(values, image);
+    };
+    by_column.multiply(constants, residual);
+    apply(x);
     for (std::size_t i = 0; i < n; ++i)
-        residual[i] -= image[i];
+        residual[i] = -residual[i] - image[i];
     direction = residual;
     double squared = dot(residual, residual);
     const double enough = limits.gain * limits.gain * squared;
-    std::size_t terms = 1;
-    for (const SparseRow& row : rows)
-        terms += row.terms.size();
+    const std::size_t terms = 1 + by_row.place.size();
     // Without rounding n steps would be enough; a few times as many bound the work with it. What is
     // left where the work ends sooner is a slow wave over the whole.
     const std::size_t most_steps =
         std::min({limits.most_steps, 4 * n, limits.most_work / terms + 1});
     for (std::size_t step = 0; step < most_steps && squared > enough && squared > 0; ++step) {
         stop_if_stage_wants();
-        apply(rows, direction, image);
+        apply(direction);
         const double curvature = dot(direction, image);
         // Along this direction no row changes, so there is nothing left to gain.
         if (!(curvature > 0))

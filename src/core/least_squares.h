@@ -22,8 +22,8 @@ struct LeastSquaresLimits {
 
 /// From x on, makes the sum of the squares of row(x) + constant least, by conjugate gradients on
 /// the normal equations (Hestenes and Stiefel 1952, "Methods of conjugate gradients for solving
-/// linear systems"). Serial, so that sums keep their order. Stops where the stage is to
-/// (stage_stop.h). Precondition: a constant for each row.
+/// linear systems"). The same bytes for any number of threads. Stops where the stage is to
+/// (stage_stop.h). Preconditions: a constant for each row; fewer than 2^32 rows and unknowns.
 void minimise_squares(const std::vector<SparseRow>& rows, const std::vector<double>& constants,
                       std::vector<double>& x, const LeastSquaresLimits& limits = {});
 

@@ -24,6 +24,10 @@ GrowOptions for_other_starts(GrowOptions options)
     return options;
 }
 
+/// The first way is the quick one, which most surfaces need alone. Where it has led into a corner,
+/// the others take their time.
+constexpr AttemptRounds kPatient{true};
+
 /// Only then may inner points leave their lines, as they do in all other ways.
 bool may_leave_lines(const GrowOptions& options)
 {
@@ -51,7 +55,7 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
     const GrowOptions next = for_other_starts(options);
     if (may_leave_lines(options))
         for (const LineStart other : {LineStart::planar, LineStart::mended})
-            attempts.push_back({GrowFrom::lines, other, next});
+            attempts.push_back({GrowFrom::lines, other, next, kPatient});
     if (thickest && !on_levels)
         attempts.push_back({GrowFrom::lines, first, next});
     return attempts;
@@ -72,7 +76,7 @@ double enough_for(const Attempt& attempt)
 Restarts restarts_of(const Attempt& first, std::size_t triangles)
 {
     const GrowthSchedule& schedule = first.options.schedule;
-    Restarts restarts{{GrowFrom::shell, {}, for_other_starts(first.options)},
+    Restarts restarts{{GrowFrom::shell, {}, for_other_starts(first.options), kPatient},
                       schedule.restarts.most,
                       enough_for(first)};
     GrowthSchedule& own = restarts.attempt.options.schedule;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "growth/initialise.h"
+#include "growth/relax_options.h"
 #include "vdb_shell/growth/grow.h"
 
 #include <cstddef>
@@ -15,6 +16,7 @@ struct Attempt {
     GrowFrom from;
     LineStart start; ///< GrowFrom::lines
     GrowOptions options;
+    AttemptRounds rounds = {};
 };
 
 /// Whether a surface of so many triangles is grown in one way alone, for each takes its time.

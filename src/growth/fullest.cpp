@@ -103,8 +103,11 @@ private:
         if (fullest.fill >= enough)
             return;
         const double first = other.fill;
-        for (std::size_t i = 1; i < attempts_.size() && other.fill < enough; ++i)
-            take_if_better(connectivity_, grow_(attempts_[i], nullptr), other);
+        for (std::size_t i = 1; i < attempts_.size() && other.fill < enough; ++i) {
+            Attempt attempt = attempts_[i];
+            attempt.rounds.fill_to_beat = other.fill;
+            take_if_better(connectivity_, grow_(attempt, nullptr), other);
+        }
         if (other.fill > first) {
             restart(other, kAnyNumber);
             take_if_better(connectivity_, std::move(other.result), fullest);

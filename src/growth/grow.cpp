@@ -179,7 +179,7 @@ GrowResult grow_once(const Ordered& given, const Connectivity& connectivity,
     report.fill_after_lines = fill_of(s);
     if (options.free_moves)
         relax_fully(s, started.from, std::move(started.predicted_gain), started.lines.visibility,
-                    options, progress.part(started_at, relaxed_at), report);
+                    options, attempt.rounds, progress.part(started_at, relaxed_at), report);
     // What the start left no pillar to may have room now, as the pillars around it have moved.
     report.released += static_cast<std::size_t>(
         release_last_pins(s, started.lines.visibility, progress.part(relaxed_at, relaxed_at)));

@@ -84,6 +84,12 @@ public:
     bool full() const { return s_.bounded && fill_ >= schedule_.enough_fill; }
     /// Whether the shell is less full than wanted, so that rounds go on.
     bool wants_more() const { return fill_ < relax_.wanted_fill; }
+    /// Whether so many more rounds like the last would not do. Before most jams are undone a round
+    /// may win less than those after it.
+    bool falls_short(int rounds) const
+    {
+        return settled() && fill_ + rounds * last_gain_ < relax_.fill_to_beat;
+    }
 
     /// One round: separating planes, sweeps, trust radii, diagonals, barrier weight. False if no
     /// other should follow.
@@ -107,6 +113,7 @@ public:
         ++report.rounds;
         const double gain = fill_of(s_) - fill_;
         fill_ += gain;
+        last_gain_ = gain;
         if (wants_more() ? !goes_on(gain) : ends_after(gain, static_cast<double>(active)))
             return false;
         lower_weight(gain);
@@ -204,6 +211,8 @@ private:
     /// Faster where a round neither wins nor undoes much.
     void lower_weight(double gain)
     {
+        if (relax_.keep_weight && schedule_.most_rounds * gain > 1 - fill_)
+            return;
         const bool stale = settled() && std::abs(gain) < schedule_.stale_gain;
         const double factor = stale ? schedule_.weight_decrease_stale : relax_.weight_decrease;
         weight_ = std::max(schedule_.least_weight, weight_ * factor);
@@ -214,6 +223,7 @@ private:
     const RelaxOptions& relax_;
     const BarrierSchedule& schedule_;
     double fill_;
+    double last_gain_ = 0; ///< of a round
     double mean_tet_ = 0;  ///< six times the mean volume of a tet, were the solid full
     double weight_ = 0;    ///< of the barrier, in mean tets
     double solid6_ = 0;    ///< six times the solid's volume
@@ -246,7 +256,7 @@ void relax(GrowState& s, const std::vector<double>& visibility, const GrowOption
         if (is_power_of_two_or_zero(round))
             report.released +=
                 static_cast<std::size_t>(release_pins(s, visibility, PillarsBesidePin::kept));
-        if (!relaxation.round(report))
+        if (!relaxation.round(report) || relaxation.falls_short(most_rounds() - round - 1))
             break;
     }
     if (relaxation.fill() < first_fill) {
@@ -267,14 +277,15 @@ void test_three_tets(GrowState& s)
 
 void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_gain,
                  const std::vector<double>& visibility, const GrowOptions& options,
-                 const StageProgress& progress, GrowReport& report)
+                 const AttemptRounds& rounds, const StageProgress& progress, GrowReport& report)
 {
     const bool once_more = options.method == Method::thickest;
     if (!once_more && prism_test_of(options) == PrismTest::chosen_tets)
         test_three_tets(s);
     const double changed_at = !once_more ? 100 : s.twelve ? 50 : 0;
     if (s.twelve || !once_more)
-        relax(s, visibility, options, relax_whole(s, from, options, std::move(predicted_gain)),
+        relax(s, visibility, options,
+              relax_whole(s, from, options, std::move(predicted_gain), rounds),
               progress.part(0, changed_at), report);
     if (!once_more)
         return;

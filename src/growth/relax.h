@@ -24,9 +24,9 @@ void test_three_tets(GrowState& s);
 
 /// All the rounds on the surface itself, under the test that the options ask for; for
 /// Method::thickest under the twelve-tet test, unless the state has left it, and then under the
-/// three-tet test.
+/// three-tet test. `rounds` counts for any other method.
 void relax_fully(GrowState& s, StartedFrom from, std::vector<double> predicted_gain,
                  const std::vector<double>& visibility, const GrowOptions& options,
-                 const StageProgress& progress, GrowReport& report);
+                 const AttemptRounds& rounds, const StageProgress& progress, GrowReport& report);
 
 } // namespace vdb_shell::growth

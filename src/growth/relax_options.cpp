@@ -119,7 +119,7 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
 }
 
 RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions& options,
-                         std::vector<double> predicted_gain)
+                         std::vector<double> predicted_gain, const AttemptRounds& rounds)
 {
     const bool saves_time = thrifty(from, options);
     RelaxOptions relax;
@@ -130,6 +130,8 @@ RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions
             std::min(relax.most_rounds, s.schedule.barrier.twelve_rounds_before_three);
     relax.first_weight = first_weight(s, from, saves_time);
     relax.weight_decrease = weight_decrease(s, from, options);
+    relax.keep_weight = rounds.keep_weight && fills_void(s);
+    relax.fill_to_beat = rounds.fill_to_beat;
     relax.least_gain = least_gain(s, options);
     relax.active_gain = active_gain(s, from, options);
     // Only where time is to be saved may a round that wins too little end it early on.

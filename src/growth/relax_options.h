@@ -18,6 +18,12 @@ enum class StartedFrom {
     prolonged, ///< the shell of a coarser surface, nearly done
 };
 
+/// What one attempt at a shell asks of its rounds, beside the options.
+struct AttemptRounds {
+    bool keep_weight = false; ///< RelaxOptions
+    double fill_to_beat = 0;  ///< RelaxOptions
+};
+
 /// One run of relax(). Gains are shares of the solid, barrier weights are in units of the mean
 /// volume of a tet.
 struct RelaxOptions {
@@ -26,13 +32,20 @@ struct RelaxOptions {
     bool short_first_radii = false;
     double first_weight = 0;    ///< of the barrier
     double weight_decrease = 0; ///< factor on it in each round
-    double least_gain = 0;      ///< of a round at the smallest weight, for another to follow
+    /// Except in those after which BarrierSchedule::most_rounds like them would fill all that is
+    /// still empty: inner vertices are on their way to where this weight would have them, and one
+    /// that falls sooner lets them jam on it.
+    bool keep_weight = false;
+    double least_gain = 0; ///< of a round at the smallest weight, for another to follow
     /// Ends once the weight is below end_weight and a round has won no more than
     /// end_gain_of_void, a share of what was still empty. A weight of 0 ends nothing.
     double end_weight = 0, end_gain_of_void = 0;
     /// Ends with a round that wins no more than this for each active vertex, whatever the weight.
     /// Below 0 not even a loss ends it: early on a loss is the barrier undoing jams.
     double least_gain_per_vertex = -1;
+    /// Ends once most jams are undone and the rounds that are left, each winning as much as the
+    /// last, would leave the shell less full than that. A fill of 0 ends nothing.
+    double fill_to_beat = 0;
     /// What a vertex must have won in the round before for it and its neighbours to be active, once
     /// most jams are undone. 0: all are active.
     double active_gain = 0;
@@ -58,7 +71,7 @@ RelaxOptions relax_coarse(const GrowState& s, StartedFrom from, std::size_t tria
 
 /// The rounds on the surface itself: of a prolonged shell for Method::certified alone.
 RelaxOptions relax_whole(const GrowState& s, StartedFrom from, const GrowOptions& options,
-                         std::vector<double> predicted_gain);
+                         std::vector<double> predicted_gain, const AttemptRounds& rounds = {});
 
 /// The rounds under the three-tet test, for Method::thickest.
 RelaxOptions relax_thickest(const GrowState& s, StartedFrom from, const GrowOptions& options);

@@ -2,6 +2,7 @@
 #include "core/least_squares.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <vector>
@@ -48,6 +49,33 @@ TEST(LeastSquares, AreTheSameInColumnsOfLengthOne)
     EXPECT_NEAR(x[0] * factor[0], 2, 1e-9);
     EXPECT_NEAR(1000 * x[1] * factor[1], 3, 1e-9);
     EXPECT_EQ(x[2], 0);
+}
+
+/// A chain of springs between a row of points, many to a task, whose ends are held at 0 and 1.
+TEST(LeastSquares, OfManyRowsAreTheSameForAnyNumberOfThreads)
+{
+    const std::size_t points = 20000;
+    std::vector<SparseRow> rows{{{{0, 1.0}}}, {{{points - 1, 1.0}}}};
+    std::vector<double> constants{0, -1};
+    for (std::size_t i = 1; i < points; ++i) {
+        rows.push_back({{{i - 1, -1.0}, {i, 1.0}}});
+        constants.push_back(0);
+    }
+    const auto solved = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        LeastSquaresLimits limits;
+        limits.most_steps = 200;
+        std::vector<double> x(points);
+        for (std::size_t i = 0; i < points; ++i)
+            x[i] = double(i % 7) + double(i) / double(points - 1);
+        minimise_squares(rows, constants, x, limits);
+        return x;
+    };
+    const std::vector<double> x = solved(1);
+    EXPECT_EQ(solved(4), x);
+    // The waves of seven points are gone; the straight line between the ends is what is left.
+    for (std::size_t i = points / 2; i < points / 2 + 100; ++i)
+        EXPECT_NEAR(x[i + 1] - x[i], 1.0 / double(points - 1), 1e-3);
 }
 
 TEST(LeastSquares, EndAfterAsManyStepsAsAreAllowed)

@@ -40,6 +40,20 @@ TEST(Attempts, BeginAsTheOptionsSay)
     }
 }
 
+/// The first one alone, which is enough for most surfaces, lowers the barrier's weight in any case.
+TEST(Attempts, TakeTheirTimeAfterTheFirst)
+{
+    for (const GrowOptions& options : test::ways_to_grow()) {
+        const std::vector<Attempt> attempts = attempts_of({}, kFew, options);
+        ASSERT_GT(attempts.size(), 2U);
+        for (const Attempt& attempt : attempts)
+            if (leaves_lines(attempt.start))
+                EXPECT_TRUE(attempt.rounds.keep_weight);
+        EXPECT_FALSE(attempts.front().rounds.keep_weight);
+        EXPECT_TRUE(restarts_of(attempts.front(), kFew).attempt.rounds.keep_weight);
+    }
+}
+
 // A lever that is off stays off.
 TEST(Attempts, AreThinAloneWithoutTopDown)
 {

@@ -37,6 +37,7 @@ protected:
         const Connectivity connectivity = connect(mesh.points.size(), mesh.triangles);
         const std::vector<double> cap(mesh.points.size(), std::numeric_limits<double>::infinity());
         asked.clear();
+        to_beat.clear();
         return grow_fullest({}, connectivity, cap, options,
                             [&](const Attempt& attempt, const GrowResult* restarted) {
                                 EXPECT_EQ(restarted != nullptr, attempt.from == GrowFrom::shell);
@@ -46,6 +47,7 @@ protected:
                                                                               : 's';
                                 if (restarted)
                                     from.push_back(fill_of(*restarted));
+                                to_beat.push_back(attempt.rounds.fill_to_beat);
                                 EXPECT_LE(asked.size(), told.size()) << asked;
                                 return told[std::min(asked.size(), told.size()) - 1];
                             });
@@ -59,8 +61,9 @@ protected:
 
     TriangleMesh mesh = test::icosphere(1.0, 2);
     GrowOptions options;
-    std::string asked;        ///< shrunk, planar, mended; restarts
-    std::vector<double> from; ///< fill of what restarts were to go on from
+    std::string asked;           ///< shrunk, planar, mended; restarts
+    std::vector<double> from;    ///< fill of what restarts were to go on from
+    std::vector<double> to_beat; ///< fill that each need not go on without
 };
 
 TEST_F(Fullest, AFullShellIsTheOnlyOne)
@@ -82,6 +85,17 @@ TEST_F(Fullest, OtherStartsComeFirstFarFromFull)
     EXPECT_EQ(asked, "spmrr");
     ASSERT_EQ(from.size(), 2U);
     EXPECT_NEAR(from.front(), 0.7, 1e-6);
+}
+
+/// A restart goes on from the fullest as far as it gets.
+TEST_F(Fullest, OtherStartsAreToldWhatTheyHaveToBeat)
+{
+    fullest({result_of(0.6), result_of(0.7), result_of(0.65), result_of(0.7)});
+    ASSERT_EQ(asked, "spmr");
+    EXPECT_EQ(to_beat[0], 0);
+    EXPECT_NEAR(to_beat[1], 0.6, 1e-6);
+    EXPECT_NEAR(to_beat[2], 0.7, 1e-6);
+    EXPECT_EQ(to_beat[3], 0);
 }
 
 /// One that wins a tenth would have to be followed by ten.

@@ -77,6 +77,64 @@ TEST(Relax, EndsWhenNoVertexIsToWin)
     EXPECT_EQ(sphere.s.b, before);
 }
 
+/// Three rounds of all vertices with a heavy barrier.
+RelaxOptions heavy(double weight_decrease, bool keep_weight)
+{
+    RelaxOptions relax;
+    relax.most_rounds = 3;
+    relax.first_weight = 1;
+    relax.weight_decrease = weight_decrease;
+    relax.keep_weight = keep_weight;
+    return relax;
+}
+
+TEST(Relax, KeepsTheWeightWhileRoundsLikeTheLastWouldFillAll)
+{
+    HalfFull kept, fixed, falling;
+    kept.relax_with(heavy(0.5, true));
+    fixed.relax_with(heavy(1.0, false));
+    falling.relax_with(heavy(0.5, false));
+    ASSERT_GT(fill_of(fixed.s), 0.9) << "each round wins far more than a fortieth";
+    EXPECT_EQ(kept.s.b, fixed.s.b);
+    EXPECT_NE(kept.s.b, falling.s.b);
+}
+
+TEST(Relax, LowersTheWeightOnceRoundsWinTooLittleForThat)
+{
+    HalfFull kept, falling;
+    for (HalfFull* sphere : {&kept, &falling})
+        sphere->s.schedule.barrier.most_rounds = 1;
+    kept.relax_with(heavy(0.5, true));
+    falling.relax_with(heavy(0.5, false));
+    EXPECT_EQ(kept.s.b, falling.s.b);
+}
+
+RelaxOptions to_beat(double fill)
+{
+    RelaxOptions relax = by_gain(40, {});
+    relax.active_gain = 0;
+    relax.fill_to_beat = fill;
+    return relax;
+}
+
+TEST(Relax, EndsWhereTheRoundsThatAreLeftCannotBeatAnotherShell)
+{
+    HalfFull alone, beside_a_fuller;
+    const int rounds = alone.relax_with(to_beat(0));
+    const double fuller = 0.5 * (1 + fill_of(alone.s));
+    EXPECT_LT(beside_a_fuller.relax_with(to_beat(fuller)), rounds);
+    EXPECT_GT(fill_of(beside_a_fuller.s), 0.9) << "while it could, it went on";
+    EXPECT_LT(fill_of(beside_a_fuller.s), fuller);
+}
+
+TEST(Relax, IsTheSameBesideAShellThatItBeats)
+{
+    HalfFull alone, beside_a_thinner;
+    alone.relax_with(to_beat(0));
+    beside_a_thinner.relax_with(to_beat(fill_of(alone.s) - 0.01));
+    EXPECT_EQ(beside_a_thinner.s.b, alone.s.b);
+}
+
 RelaxOptions wanting(double fill, std::vector<double> predicted_gain)
 {
     RelaxOptions relax = by_gain(1, std::move(predicted_gain));
