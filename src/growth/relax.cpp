@@ -84,11 +84,12 @@ public:
     bool full() const { return s_.bounded && fill_ >= schedule_.enough_fill; }
     /// Whether the shell is less full than wanted, so that rounds go on.
     bool wants_more() const { return fill_ < relax_.wanted_fill; }
-    /// Whether so many more rounds like the last would not do. Before most jams are undone a round
-    /// may win less than those after it.
+    /// Whether so many more rounds like the last would not do. While the weight falls a round may
+    /// win less than those after it.
     bool falls_short(int rounds) const
     {
-        return settled() && fill_ + rounds * last_gain_ < relax_.fill_to_beat;
+        return weight_ <= schedule_.least_weight &&
+               fill_ + rounds * last_gain_ < relax_.fill_to_beat;
     }
 
     /// One round: separating planes, sweeps, trust radii, diagonals, barrier weight. False if no

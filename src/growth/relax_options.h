@@ -43,8 +43,8 @@ struct RelaxOptions {
     /// Ends with a round that wins no more than this for each active vertex, whatever the weight.
     /// Below 0 not even a loss ends it: early on a loss is the barrier undoing jams.
     double least_gain_per_vertex = -1;
-    /// Ends once most jams are undone and the rounds that are left, each winning as much as the
-    /// last, would leave the shell less full than that. A fill of 0 ends nothing.
+    /// Ends once the weight is at its least and the rounds that are left, each winning as much as
+    /// the last, would leave the shell less full than that. A fill of 0 ends nothing.
     double fill_to_beat = 0;
     /// What a vertex must have won in the round before for it and its neighbours to be active, once
     /// most jams are undone. 0: all are active.

@@ -46,9 +46,8 @@ TEST(Attempts, TakeTheirTimeAfterTheFirst)
     for (const GrowOptions& options : test::ways_to_grow()) {
         const std::vector<Attempt> attempts = attempts_of({}, kFew, options);
         ASSERT_GT(attempts.size(), 2U);
-        for (const Attempt& attempt : attempts)
-            if (leaves_lines(attempt.start))
-                EXPECT_TRUE(attempt.rounds.keep_weight);
+        for (std::size_t i = 1; i < 3; ++i)
+            EXPECT_TRUE(attempts[i].rounds.keep_weight);
         EXPECT_FALSE(attempts.front().rounds.keep_weight);
         EXPECT_TRUE(restarts_of(attempts.front(), kFew).attempt.rounds.keep_weight);
     }
