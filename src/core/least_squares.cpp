@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 namespace vdb_shell
 {
@@ -21,11 +22,11 @@ namespace
 {
 
 // Rows or columns that one task takes: some tens of microseconds of work.
-constexpr std::size_t kLinesAtOnce = 2048;
+constexpr std::size_t kRowsAtOnce = 2048;
 
-/// The rows of a matrix, or its columns, one after the other in memory: line i has the terms from
+/// The rows of a matrix, or its columns, packed one after the other: number i has the terms from
 /// first[i] on. Every product of a step reads all of them.
-struct Lines {
+struct Packed {
     std::vector<std::size_t> first;
     std::vector<std::uint32_t> place;
     std::vector<double> coefficient;
@@ -43,43 +44,42 @@ struct Lines {
                     sum += coefficient[t] * x[place[t]];
                 products[i] = sum;
             },
-            kLinesAtOnce);
+            kRowsAtOnce);
     }
 };
 
-Lines lines_of(const std::vector<SparseRow>& rows)
+Packed packed_rows(const std::vector<SparseRow>& rows)
 {
-    Lines lines;
-    lines.first.push_back(0);
+    Packed packed;
+    packed.first.push_back(0);
     for (const SparseRow& row : rows) {
         for (const auto& [i, coefficient] : row.terms) {
-            lines.place.push_back(static_cast<std::uint32_t>(i));
-            lines.coefficient.push_back(coefficient);
+            packed.place.push_back(static_cast<std::uint32_t>(i));
+            packed.coefficient.push_back(coefficient);
         }
-        lines.first.push_back(lines.place.size());
+        packed.first.push_back(packed.place.size());
     }
-    return lines;
+    return packed;
 }
 
 /// Columns for rows. The terms of each stand in the order of the rows.
-Lines transposed(const Lines& rows, std::size_t columns)
+Packed transposed(const Packed& rows, std::size_t columns)
 {
-    Lines lines;
-    lines.first.assign(columns + 1, 0);
+    Packed packed;
+    packed.first.assign(columns + 1, 0);
     for (const std::uint32_t i : rows.place)
-        ++lines.first[i + 1];
-    for (std::size_t i = 0; i < columns; ++i)
-        lines.first[i + 1] += lines.first[i];
-    lines.place.resize(rows.place.size());
-    lines.coefficient.resize(rows.place.size());
-    std::vector<std::size_t> next(lines.first.begin(), lines.first.end() - 1);
+        ++packed.first[i + 1];
+    std::partial_sum(packed.first.begin(), packed.first.end(), packed.first.begin());
+    packed.place.resize(rows.place.size());
+    packed.coefficient.resize(rows.place.size());
+    std::vector<std::size_t> next(packed.first.begin(), packed.first.end() - 1);
     for (std::size_t r = 0; r < rows.size(); ++r)
         for (std::size_t t = rows.first[r]; t < rows.first[r + 1]; ++t) {
             const std::size_t to = next[rows.place[t]]++;
-            lines.place[to] = static_cast<std::uint32_t>(r);
-            lines.coefficient[to] = rows.coefficient[t];
+            packed.place[to] = static_cast<std::uint32_t>(r);
+            packed.coefficient[to] = rows.coefficient[t];
         }
-    return lines;
+    return packed;
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b)
@@ -97,7 +97,7 @@ void minimise_squares(const std::vector<SparseRow>& rows, const std::vector<doub
 {
     const std::size_t n = x.size();
     assert(std::max(n, rows.size()) <= std::numeric_limits<std::uint32_t>::max());
-    const Lines by_row = lines_of(rows), by_column = transposed(by_row, n);
+    const Packed by_row = packed_rows(rows), by_column = transposed(by_row, n);
     std::vector<double> residual(n), direction, image(n), values(rows.size());
     // transpose(A) A x for the rows A.
     const auto apply = [&](const std::vector<double>& to) {
