@@ -41,11 +41,54 @@ std::vector<Vec3d> points_around(const Vec3d& x)
     return points;
 }
 
+/// Of the two triangles at the edge jk, the corner of that without v which is opposite to it.
+int corner_across(const GrowState& s, int v, int j, int k)
+{
+    for (const FaceCorner& at : star(*s.mesh, j)) {
+        const int p = s.mesh->corner(at.face, (at.local + 1) % 3);
+        const int q = s.mesh->corner(at.face, (at.local + 2) % 3);
+        if (p == k && q != v)
+            return q;
+        if (q == k && p != v)
+            return p;
+    }
+    return -1;
+}
+
+/// Where both other corners of a triangle at v are pinned, its prism is a tet on the edge between
+/// them, and has to stay within the angle of the surface there. If v lies inside the plane of the
+/// other triangle at that edge, its pillar must not lean out of it: of a sliver beside a sharp edge
+/// v is hardly any way from it.
+void add_planes_across_pins(const GrowState& s, int v, View& view)
+{
+    for (const FaceCorner& at : star(*s.mesh, v)) {
+        const int j = s.mesh->corner(at.face, (at.local + 1) % 3);
+        const int k = s.mesh->corner(at.face, (at.local + 2) % 3);
+        if (!s.pinned[j] || !s.pinned[k])
+            continue;
+        const int x = corner_across(s, v, j, k);
+        if (x < 0)
+            continue;
+        const Vec3d inward = (s.a[x] - s.a[k]).cross(s.a[j] - s.a[k]);
+        if (orient(s.a[k], s.a[x], s.a[j], s.a[v]) > 0 && inward.lengthSqr() > 0)
+            view.bounds.push_back({inward.unit(), {-1, -1}});
+    }
+}
+
+void look(View& view)
+{
+    std::vector<Vec3d> normals;
+    normals.reserve(view.bounds.size());
+    for (const Bound& bound : view.bounds)
+        normals.push_back(bound.normal);
+    view.direction = most_visible(normals);
+    view.least = view.direction.lengthSqr() > 0 ? smallest_dot(normals, view.direction) : 0;
+}
+
 /// With the ends of the pillars beside v where they are, or all of them at the surface.
 View view_of(const GrowState& s, int v, bool with_pillars)
 {
     View view;
-    std::vector<Vec3d> normals;
     for (const FaceCorner& at : star(*s.mesh, v)) {
         const int j = s.mesh->corner(at.face, (at.local + 1) % 3);
         const int k = s.mesh->corner(at.face, (at.local + 2) % 3);
@@ -58,12 +101,10 @@ View view_of(const GrowState& s, int v, bool with_pillars)
                 const Vec3d n = (q - s.a[v]).cross(p - s.a[v]);
                 if (!(n.lengthSqr() > 0))
                     continue;
-                normals.push_back(n / n.length());
-                view.bounds.push_back({normals.back(), {inner_j, inner_k}});
+                view.bounds.push_back({n / n.length(), {inner_j, inner_k}});
             }
     }
-    view.direction = most_visible(normals);
-    view.least = view.direction.lengthSqr() > 0 ? smallest_dot(normals, view.direction) : 0;
+    look(view);
     return view;
 }
 
@@ -72,6 +113,15 @@ View view_of(const GrowState& s, int v, bool with_pillars)
 View best_view(const GrowState& s, int v)
 {
     return view_of(s, v, true);
+}
+
+View view_beside_pins(const GrowState& s, int v, View view)
+{
+    const std::size_t before = view.bounds.size();
+    add_planes_across_pins(s, v, view);
+    if (view.bounds.size() > before)
+        look(view);
+    return view;
 }
 
 View view_of_surface(const GrowState& s, int v)

@@ -26,6 +26,10 @@ struct View {
 /// of these tets is positive on one side of a plane through a_v, whatever the pillar's length.
 View best_view(const GrowState& s, int v);
 
+/// That view, with bounds by the triangles beyond those of v whose other corners are both pinned,
+/// where v lies inside their planes: what leans out of one meets it, but where it is very short.
+View view_beside_pins(const GrowState& s, int v, View view);
+
 /// The same with no pillar beside v: of the surface's own triangles.
 View view_of_surface(const GrowState& s, int v);
 
