@@ -8,6 +8,7 @@
 #include "growth/pillars_around_pin.h"
 
 #include "core/sort_unique.h"
+#include "core/unit_vector.h"
 #include "growth/move_tests.h"
 #include "growth/violations.h"
 #include "mesh/most_visible.h"
@@ -57,9 +58,8 @@ int corner_across(const GrowState& s, int v, int j, int k)
 
 /// Where both other corners of a triangle at v are pinned, its prism is a tet on the edge between
 /// them, and has to stay within the angle of the surface there. If v lies inside the plane of the
-/// other triangle at that edge, its pillar must not lean out of it: of a sliver beside a sharp edge
-/// v is hardly any way from it.
-void add_planes_across_pins(const GrowState& s, int v, View& view)
+/// other triangle at that edge, but nearer than its pillar is long, that must not lean out of it.
+void add_planes_across_pins(const GrowState& s, int v, double length, View& view)
 {
     for (const FaceCorner& at : star(*s.mesh, v)) {
         const int j = s.mesh->corner(at.face, (at.local + 1) % 3);
@@ -67,15 +67,15 @@ void add_planes_across_pins(const GrowState& s, int v, View& view)
         if (!s.pinned[j] || !s.pinned[k])
             continue;
         const int x = corner_across(s, v, j, k);
-        if (x < 0)
+        if (x < 0 || orient(s.a[k], s.a[x], s.a[j], s.a[v]) <= 0)
             continue;
-        const Vec3d inward = (s.a[x] - s.a[k]).cross(s.a[j] - s.a[k]);
-        if (orient(s.a[k], s.a[x], s.a[j], s.a[v]) > 0 && inward.lengthSqr() > 0)
-            view.bounds.push_back({inward.unit(), {-1, -1}});
+        const Vec3d inward = unit_vector((s.a[x] - s.a[k]).cross(s.a[j] - s.a[k]));
+        if (inward.lengthSqr() > 0 && inward.dot(s.a[v] - s.a[k]) < length)
+            view.bounds.push_back({inward, {-1, -1}});
     }
 }
 
-void look(View& view)
+void choose_direction(View& view)
 {
     std::vector<Vec3d> normals;
     normals.reserve(view.bounds.size());
@@ -104,7 +104,7 @@ View view_of(const GrowState& s, int v, bool with_pillars)
                 view.bounds.push_back({n / n.length(), {inner_j, inner_k}});
             }
     }
-    look(view);
+    choose_direction(view);
     return view;
 }
 
@@ -115,12 +115,12 @@ View best_view(const GrowState& s, int v)
     return view_of(s, v, true);
 }
 
-View view_beside_pins(const GrowState& s, int v, View view)
+View view_beside_pins(const GrowState& s, int v, double length, View view)
 {
     const std::size_t before = view.bounds.size();
-    add_planes_across_pins(s, v, view);
+    add_planes_across_pins(s, v, length, view);
     if (view.bounds.size() > before)
-        look(view);
+        choose_direction(view);
     return view;
 }
 

@@ -27,8 +27,9 @@ struct View {
 View best_view(const GrowState& s, int v);
 
 /// That view, with bounds by the triangles beyond those of v whose other corners are both pinned,
-/// where v lies inside their planes: what leans out of one meets it, but where it is very short.
-View view_beside_pins(const GrowState& s, int v, View view);
+/// where v lies inside their planes by less than `length`: a pillar so long that leans out of one
+/// of them meets its triangle.
+View view_beside_pins(const GrowState& s, int v, double length, View view);
 
 /// The same with no pillar beside v: of the surface's own triangles.
 View view_of_surface(const GrowState& s, int v);

@@ -73,7 +73,7 @@ bool make_room(GrowState& s, int v, double length, double clear, PillarsBesidePi
         const View view = best_view(s, v);
         if (view.least > 0 && place(s, v, view.direction, length, around))
             return true;
-        const View beside = view_beside_pins(s, v, view);
+        const View beside = view_beside_pins(s, v, length, view);
         if (beside.bounds.size() > view.bounds.size() && beside.least > 0 &&
             place(s, v, beside.direction, length, around))
             return true;

@@ -3,9 +3,9 @@
 // Takes a closed surface and leaves one of fewer triangles, for which nothing bounds the distance.
 // That is enough for growth, which takes such a surface only for a start: what it makes of the hint
 // is tested exactly on the surface itself. A surface that crosses itself is a bad start, for no
-// pillar near the crossing has any length, and where no direction sees a whole star there is no
-// pillar at all. The scan boot, collapsed to 1,200 triangles without a look at either, had 60 of
-// 600 vertices pinned, and its shell ended at .909 of the solid instead of .956. Idea and sources:
+// pillar near the crossing has any length. A vertex from which no direction sees all triangles is
+// let be: it is pinned there, and the next finer surface takes a point between those beside it
+// (docs/measurements/tried.md, "Coarse surfaces that hide a vertex"). Idea and sources:
 // edge_collapse.cpp.
 
 #include "vdb_shell/resample/coarsen.h"
@@ -37,12 +37,11 @@ Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles, Interrupter* 
     limits.fewest_triangles = triangles;
     limits.share_of_round = kShareOfRound;
     const StageProgress progress(interrupter, "coarsen");
-    EmbeddedCollapse sound =
-        collapse_embedded(mesh, limits, kMostRepeats, Blind::avoided, progress);
+    EmbeddedCollapse sound = collapse_embedded(mesh, limits, kMostRepeats, progress);
     // Two walls that are close together all over would stay as fine as they are.
     if (sound.repeats > 0 &&
         double(sound.result.mesh.triangles.size()) > kMostOverWanted * double(triangles))
-        sound = collapse_embedded(mesh, limits, 0, Blind::allowed, progress);
+        sound = collapse_embedded(mesh, limits, 0, progress);
     sound.result.embedded = sound.embedded;
     return std::move(sound.result);
 }

@@ -11,8 +11,6 @@
 
 #include "core/box_pairs.h"
 #include "core/parallel.h"
-#include "mesh/most_visible.h"
-#include "mesh/topology.h"
 #include "resample/component_sides.h"
 #include "resample/spoiled_triangles.h"
 
@@ -62,24 +60,10 @@ void fix_vertices_in(std::vector<FloatBox> places, int repeat, double tolerance,
     });
 }
 
-/// Boxes around the stars of vertices that no direction serves.
-std::vector<FloatBox> blind_places(const TriangleMesh& mesh)
-{
-    const std::vector<FloatBox> boxes = triangle_boxes(mesh.points, mesh.triangles);
-    const VertexTriangles around = triangles_around_vertices(mesh.points.size(), mesh.triangles);
-    std::vector<FloatBox> places;
-    for (const std::uint32_t v : blind_vertices(mesh)) {
-        places.push_back(FloatBox::around(mesh.points[v]));
-        for (const std::uint32_t t : around.around(v))
-            places.back().add(boxes[t]);
-    }
-    return places;
-}
-
 } // namespace
 
 EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limits,
-                                   int most_repeats, Blind blind, const StageProgress& progress)
+                                   int most_repeats, const StageProgress& progress)
 {
     limits.fixed.resize(mesh.points.size());
     const ComponentSides sides(mesh);
@@ -88,12 +72,9 @@ EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limi
         Coarsened left = collapse_edges(mesh, limits);
         std::vector<FloatBox> places = spoiled_places(left.mesh);
         const bool embedded = !sides.hold_turned(left, limits.fixed) && places.empty();
-        if (blind == Blind::avoided)
-            for (const FloatBox& place : blind_places(left.mesh))
-                places.push_back(place);
-        if ((embedded && places.empty()) || repeat == most_repeats)
+        if (embedded || repeat == most_repeats)
             return {std::move(left), repeat, embedded};
-        fix_vertices_in(places, repeat, limits.distance, mesh, limits.fixed);
+        fix_vertices_in(std::move(places), repeat, limits.distance, mesh, limits.fixed);
     }
 }
 

@@ -15,14 +15,11 @@ struct EmbeddedCollapse {
     bool embedded = false;
 };
 
-/// Whether vertices that no direction serves (mesh/most_visible.h) count as spoiled as well.
-enum class Blind { allowed, avoided };
-
 /// collapse_edges, and again with the vertices around all triangles that touch held, and those of
 /// components that have turned inside out, until there are none or `most_repeats` are made; the
-/// last result is given back as it is. What is blind or touches in the input stays so.
+/// last result is given back as it is. What touches in the input stays so.
 /// Precondition: closed, manifold, consistently oriented. Same result for any number of threads.
 EmbeddedCollapse collapse_embedded(const TriangleMesh& mesh, CollapseLimits limits,
-                                   int most_repeats, Blind blind, const StageProgress& progress);
+                                   int most_repeats, const StageProgress& progress);
 
 } // namespace vdb_shell

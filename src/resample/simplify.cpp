@@ -50,8 +50,7 @@ Simplified simplify(const TriangleMesh& mesh, const SimplifyLimits& limits,
     // Collapses go by the quadric error alone. With coarsen's weight of the length, the result on
     // the mesh fandisk was five times as far from the input.
     collapse.length_weight = 0;
-    EmbeddedCollapse left =
-        collapse_embedded(mesh, collapse, kMaxRepeats, Blind::allowed, progress);
+    EmbeddedCollapse left = collapse_embedded(mesh, collapse, kMaxRepeats, progress);
     if (left.embedded && is_sound(left.result.mesh))
         return {std::move(left.result.mesh), left.repeats};
     return {mesh, left.repeats};

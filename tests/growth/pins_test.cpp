@@ -8,6 +8,7 @@
 #include "growth/line_directions.h"
 #include "growth/mend_prolonged.h"
 #include "growth/move_tests.h"
+#include "growth/pillars_around_pin.h"
 #include "growth/predicates.h"
 #include "growth/violations.h"
 #include "support/pinned_patches.h"
@@ -27,6 +28,7 @@ namespace
 {
 
 using namespace vdb_shell;
+using openvdb::Vec3d;
 
 /// Whether inner triangle f meets no other.
 bool clear(const growth::GrowState& s, int f)
@@ -92,6 +94,47 @@ std::ptrdiff_t violations(growth::GrowState& s)
     const std::size_t faces = s.mesh->faces.size();
     const auto bad = growth::violating_faces(s, std::vector<std::uint8_t>(faces, 1), true);
     return std::count(bad.begin(), bad.end(), 1);
+}
+
+/// A block with an edge of 106 degrees whose wall is dented a little at one point: the sliver
+/// between that point and the edge faces back along the wall.
+TriangleMesh block_with_sliver(float dent)
+{
+    TriangleMesh block;
+    block.points = {{0, 0, 0},         {0, 0, 1},      {0.28f, 0.96f, 0},
+                    {0.28f, 0.96f, 1}, {-1, 0.96f, 0}, {-1, 0.96f, 1},
+                    {-1, 0, 0},        {-1, 0, 1},     {0, dent, 0.5f}};
+    block.triangles = {{0, 2, 1}, {1, 2, 3}, {2, 4, 3}, {3, 4, 5}, {4, 6, 5}, {5, 6, 7}, {6, 0, 8},
+                       {8, 1, 7}, {6, 8, 7}, {0, 1, 8}, {0, 4, 2}, {0, 6, 4}, {1, 3, 5}, {1, 5, 7}};
+    return block;
+}
+
+TEST(Pins, BesideTwoPinsGetPillarsWithinTheAngleOfTheSurfaceAtTheEdgeBetweenThem)
+{
+    const TriangleMesh block = block_with_sliver(1e-7f);
+    ASSERT_NEAR(signed_volume(block.points, block.triangles), 0.5 * (1.0 + 1.28) * 0.96, 1e-5);
+    const Directions directions = directions_along(block, pseudo_normals(block));
+    const growth::Connectivity mesh = growth::connect(block.points.size(), block.triangles);
+    const std::vector<double> cap(block.points.size(), std::numeric_limits<double>::infinity());
+    growth::GrowState s = growth::make_state(mesh, block.points, cap);
+    for (const std::size_t v : {2, 3, 4, 5, 6, 7})
+        s.b[v] = growth::rounded(s.a[v] + 0.1 * directions.inward[v]);
+    for (const std::size_t v : {0, 1, 8}) {
+        s.pinned[v] = 1;
+        s.b[v] = s.a[v];
+    }
+    ASSERT_EQ(violations(s), 0);
+    // What sees the triangles of the point best leans out of the block, but for lengths of less
+    // than a rounding.
+    const growth::View view = growth::best_view(s, 8);
+    const growth::View beside = growth::view_beside_pins(s, 8, 0.1, view);
+    const Vec3d across(0.96, -0.28, 0.0);
+    EXPECT_GT(across.dot(view.direction), 0.1);
+    EXPECT_LT(across.dot(beside.direction), 0.0);
+    EXPECT_GT(beside.least, 0.0);
+    EXPECT_EQ(growth::release_pins(s, visibility_of(block, 8), growth::PillarsBesidePin::kept), 1);
+    EXPECT_GT((s.b[8] - s.a[8]).length(), 0.01);
+    expect_valid(s);
 }
 
 /// Around a vertex of the scan hammer. The cone of its directions is a hundredth wide: a search

@@ -24,11 +24,10 @@ struct Coarsened {
 /// quadric error metrics") onto one of the edge's own ends, in rounds of many that do not touch
 /// each other, until `triangles` are left or no collapse is left that turns no normal far and makes
 /// no sliver. Nothing bounds the distance. Closed and manifold like the input. Where it would cross
-/// itself, or no direction would see all triangles of a vertex, the vertices around are kept and
-/// all is done anew, three times at most. If more than twice as many triangles as wanted are left
-/// then, as of a thin wall, the first result is given back as it is. `embedded` says what became of
-/// it. For those who only want a hint, soon. Same result for any number of threads. Precondition:
-/// closed, manifold. Throws Cancelled.
+/// itself the vertices around are kept and all is done anew, three times at most. If more than
+/// twice as many triangles as wanted are left then, as of a thin wall, the first result is given
+/// back as it is. `embedded` says what became of it. For those who only want a hint, soon. Same
+/// result for any number of threads. Precondition: closed, manifold. Throws Cancelled.
 Coarsened coarsen(const TriangleMesh& mesh, std::size_t triangles,
                   Interrupter* interrupter = nullptr);
 
