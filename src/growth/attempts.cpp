@@ -28,6 +28,14 @@ GrowOptions for_other_starts(GrowOptions options)
 /// the others take their time.
 constexpr AttemptRounds kPatient{true};
 
+/// What has so many triangles that it is given one round when it has come over coarser surfaces
+/// cannot afford another start or a restart. Where it has no coarser ones, as the wrap of two thin
+/// walls, each takes minutes (docs/measurements/tried.md, "Large surfaces without coarser ones").
+bool affords_one(std::size_t triangles, const GrowOptions& options)
+{
+    return double(triangles) >= options.schedule.multilevel.one_round_triangles;
+}
+
 /// Only then may inner points leave their lines, as they do in all other ways.
 bool may_leave_lines(const GrowOptions& options)
 {
@@ -50,7 +58,8 @@ std::vector<Attempt> attempts_of(const GrowStart& start, std::size_t triangles,
     const bool on_levels = start.from == GrowFrom::levels && !start.levels.empty();
     const LineStart first = options.top_down ? LineStart::shrunk : LineStart::thin;
     std::vector<Attempt> attempts{{on_levels ? GrowFrom::levels : GrowFrom::lines, first, options}};
-    if (on_levels && too_large_for_attempts(triangles, options))
+    if ((on_levels && too_large_for_attempts(triangles, options)) ||
+        affords_one(triangles, options))
         return attempts;
     const GrowOptions next = for_other_starts(options);
     if (may_leave_lines(options))
@@ -83,7 +92,8 @@ Restarts restarts_of(const Attempt& first, std::size_t triangles)
     own.barrier.weight_decrease = schedule.restarts.weight_decrease;
     own.radius.factor_on_move = schedule.restarts.factor_on_move;
     own.radius.short_from_fill = 0;
-    if (first.from == GrowFrom::shell || !may_leave_lines(first.options))
+    if (first.from == GrowFrom::shell || !may_leave_lines(first.options) ||
+        affords_one(triangles, first.options))
         restarts.most = 0;
     if (first.from != GrowFrom::levels)
         return restarts;
@@ -91,9 +101,6 @@ Restarts restarts_of(const Attempt& first, std::size_t triangles)
     restarts.enough =
         std::min(large ? schedule.restarts.large_enough : schedule.multilevel.wanted_fill,
                  schedule.barrier.enough_fill);
-    // What has had one round cannot afford as many as these take.
-    if (double(triangles) >= schedule.multilevel.one_round_triangles)
-        restarts.most = 0;
     return restarts;
 }
 

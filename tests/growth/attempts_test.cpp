@@ -91,6 +91,7 @@ TEST(Attempts, EndWithTheTestThatIsAskedFor)
 TEST(Attempts, AreOneAloneWhereEachTakesItsTime)
 {
     EXPECT_EQ(attempts_of(on_levels(), kMany, {}).size(), 1U);
+    EXPECT_EQ(attempts_of({}, kMany, {}).size(), 1U) << "no coarser surface";
     EXPECT_EQ(attempts_of({GrowFrom::shell, {}, {}}, kFew, {}).size(), 1U);
     EXPECT_GT(attempts_of(on_levels(), kFew, {}).size(), 1U);
 }
@@ -136,6 +137,7 @@ TEST(Restarts, AreNoneWithoutFreeMovesNorFromAShellNorWhereTheyTakeTooLong)
     EXPECT_EQ(restarts_of({GrowFrom::lines, LineStart::thin, thin}, kFew).most, 0);
     EXPECT_EQ(restarts_of({GrowFrom::shell, LineStart::shrunk, any}, kFew).most, 0);
     EXPECT_EQ(restarts_of({GrowFrom::levels, LineStart::shrunk, any}, kMany).most, 0);
+    EXPECT_EQ(restarts_of({GrowFrom::lines, LineStart::shrunk, any}, kMany).most, 0);
     EXPECT_GT(restarts_of({GrowFrom::levels, LineStart::shrunk, any}, kFew).most, 0);
 }
 
