@@ -59,8 +59,10 @@ int corner_across(const GrowState& s, int v, int j, int k)
 /// Where both other corners of a triangle at v are pinned, its prism is a tet on the edge between
 /// them, and has to stay within the angle of the surface there. If v lies inside the plane of the
 /// other triangle at that edge, but nearer than its pillar is long, that must not lean out of it.
-void add_planes_across_pins(const GrowState& s, int v, double length, View& view)
+/// False: there are none.
+bool add_planes_across_pins(const GrowState& s, int v, double length, View& view)
 {
+    const std::size_t before = view.bounds.size();
     for (const FaceCorner& at : star(*s.mesh, v)) {
         const int j = s.mesh->corner(at.face, (at.local + 1) % 3);
         const int k = s.mesh->corner(at.face, (at.local + 2) % 3);
@@ -73,8 +75,10 @@ void add_planes_across_pins(const GrowState& s, int v, double length, View& view
         if (inward.lengthSqr() > 0 && inward.dot(s.a[v] - s.a[k]) < length)
             view.bounds.push_back({inward, {-1, -1}});
     }
+    return view.bounds.size() > before;
 }
 
+/// The one that keeps farthest from the worst of the view's bounds.
 void choose_direction(View& view)
 {
     std::vector<Vec3d> normals;
@@ -115,12 +119,11 @@ View best_view(const GrowState& s, int v)
     return view_of(s, v, true);
 }
 
-View view_beside_pins(const GrowState& s, int v, double length, View view)
+std::optional<View> view_beside_pins(const GrowState& s, int v, double length, View view)
 {
-    const std::size_t before = view.bounds.size();
-    add_planes_across_pins(s, v, length, view);
-    if (view.bounds.size() > before)
-        choose_direction(view);
+    if (!add_planes_across_pins(s, v, length, view))
+        return std::nullopt;
+    choose_direction(view);
     return view;
 }
 

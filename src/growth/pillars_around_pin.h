@@ -4,6 +4,7 @@
 #include "growth/grow_state.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace vdb_shell::growth
@@ -28,8 +29,8 @@ View best_view(const GrowState& s, int v);
 
 /// That view, with bounds by the triangles beyond those of v whose other corners are both pinned,
 /// where v lies inside their planes by less than `length`: a pillar so long that leans out of one
-/// of them meets its triangle.
-View view_beside_pins(const GrowState& s, int v, double length, View view);
+/// of them meets its triangle. None where there are no such triangles.
+std::optional<View> view_beside_pins(const GrowState& s, int v, double length, View view);
 
 /// The same with no pillar beside v: of the surface's own triangles.
 View view_of_surface(const GrowState& s, int v);

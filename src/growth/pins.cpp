@@ -73,9 +73,8 @@ bool make_room(GrowState& s, int v, double length, double clear, PillarsBesidePi
         const View view = best_view(s, v);
         if (view.least > 0 && place(s, v, view.direction, length, around))
             return true;
-        const View beside = view_beside_pins(s, v, length, view);
-        if (beside.bounds.size() > view.bounds.size() && beside.least > 0 &&
-            place(s, v, beside.direction, length, around))
+        const std::optional<View> beside = view_beside_pins(s, v, length, view);
+        if (beside && beside->least > 0 && place(s, v, beside->direction, length, around))
             return true;
         // What is seen well and cannot be gone to has something else in the way.
         if (view.least < clear)

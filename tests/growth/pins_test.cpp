@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -127,11 +128,12 @@ TEST(Pins, BesideTwoPinsGetPillarsWithinTheAngleOfTheSurfaceAtTheEdgeBetweenThem
     // What sees the triangles of the point best leans out of the block, but for lengths of less
     // than a rounding.
     const growth::View view = growth::best_view(s, 8);
-    const growth::View beside = growth::view_beside_pins(s, 8, 0.1, view);
+    const std::optional<growth::View> beside = growth::view_beside_pins(s, 8, 0.1, view);
+    ASSERT_TRUE(beside);
     const Vec3d across(0.96, -0.28, 0.0);
     EXPECT_GT(across.dot(view.direction), 0.1);
-    EXPECT_LT(across.dot(beside.direction), 0.0);
-    EXPECT_GT(beside.least, 0.0);
+    EXPECT_LT(across.dot(beside->direction), 0.0);
+    EXPECT_GT(beside->least, 0.0);
     EXPECT_EQ(growth::release_pins(s, visibility_of(block, 8), growth::PillarsBesidePin::kept), 1);
     EXPECT_GT((s.b[8] - s.a[8]).length(), 0.01);
     expect_valid(s);
